@@ -1,0 +1,39 @@
+// What a scene file says, before any image is decoded.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/box.h"
+#include "core/camera.h"
+
+namespace photohull {
+
+enum class SceneFormat { kMiddlebury, kColmapText, kColmapBinary, kTransforms };
+
+/// "middlebury", "colmap-text", "colmap-binary", "transforms".
+const char* to_string(SceneFormat format);
+
+/// One photograph as listed by the scene; in pixels of the file (distorted, not scaled).
+struct SourceView {
+  std::string name;             ///< unique within the scene; the image's file name
+  std::filesystem::path image;  ///< exists
+  std::filesystem::path mask;   ///< empty where the scene names none
+  Camera camera;                ///< pixel centres already converted to (0, 0)
+  Distortion distortion;
+};
+
+/// Immutable result of io::load_scene.
+struct Scene {
+  std::filesystem::path path;
+  SceneFormat format = SceneFormat::kMiddlebury;
+  std::vector<SourceView> views;    ///< in the order of the scene file
+  std::vector<glm::dvec3> points;   ///< sparse points, world; may be empty
+  std::optional<Box> box;           ///< region of interest, world
+  std::string box_source;           ///< e.g. "bbox.txt", "README.txt", "--box", "sparse points"
+  std::vector<std::string> warnings;
+};
+
+}  // namespace photohull
