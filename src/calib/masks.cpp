@@ -1,0 +1,145 @@
+#include "calib/masks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <glm/gtc/packing.hpp>
+#include <map>
+
+#include "core/error.h"
+
+namespace photohull {
+namespace {
+
+constexpr std::uint16_t kHalfOne = 0x3c00;
+
+std::size_t pixel_count(const ColourImage& image) {
+  return std::size_t(image.width) * image.height;
+}
+
+std::uint16_t half_alpha(const ColourImage& image, std::size_t pixel) {
+  std::uint16_t alpha;
+  std::memcpy(&alpha, &image.bytes[pixel * 8 + 6], sizeof alpha);
+  return alpha;
+}
+
+/// Coverage from the alpha channel.
+Mask mask_from_alpha(const ColourImage& image) {
+  Mask mask{image.width, image.height, std::vector<std::uint8_t>(pixel_count(image))};
+  for (std::size_t i = 0; i < mask.coverage.size(); ++i)
+    mask.coverage[i] =
+        image.encoding == ColourImage::Encoding::kSrgb8
+            ? image.bytes[i * 4 + 3]
+            : std::uint8_t(std::lround(
+                  255 * std::clamp(glm::unpackHalf1x16(half_alpha(image, i)), 0.0f, 1.0f)));
+  return mask;
+}
+
+bool varies(const Mask& mask) {
+  const auto [low, high] = std::minmax_element(mask.coverage.begin(), mask.coverage.end());
+  return *low != *high;
+}
+
+/// Mean coverage over a rectangle, in [0, 1].
+double mean_coverage(const Mask& mask, int x0, int y0, int x1, int y1) {
+  double sum = 0;
+  for (int y = y0; y < y1; ++y)
+    for (int x = x0; x < x1; ++x) sum += mask.coverage[std::size_t(y) * mask.width + x];
+  return sum / (255.0 * std::max(x1 - x0, 1) * std::max(y1 - y0, 1));
+}
+
+/// Mostly foreground along the frame and mostly background in the middle third?
+bool looks_inverted(const Mask& mask) {
+  const int w = mask.width, h = mask.height;
+  const double frame = (mean_coverage(mask, 0, 0, w, 1) + mean_coverage(mask, 0, h - 1, w, h)) * w +
+                       (mean_coverage(mask, 0, 0, 1, h) + mean_coverage(mask, w - 1, 0, w, h)) * h;
+  return frame > 0.5 * (2 * w + 2 * h) &&
+         mean_coverage(mask, w / 3, h / 3, w - w / 3, h - h / 3) < 0.5;
+}
+
+const char* to_string(MaskOrigin origin) {
+  switch (origin) {
+    case MaskOrigin::kFile:
+      return "mask files";
+    case MaskOrigin::kAlpha:
+      return "alpha channels";
+    case MaskOrigin::kBackground:
+      return "background model";
+    case MaskOrigin::kNone:
+      break;
+  }
+  return "none";
+}
+
+}  // namespace
+
+void make_opaque(ColourImage& image) {
+  if (!image.has_alpha) return;
+  for (std::size_t i = 0; i < pixel_count(image); ++i) {
+    if (image.encoding == ColourImage::Encoding::kSrgb8)
+      image.bytes[i * 4 + 3] = 255;
+    else
+      std::memcpy(&image.bytes[i * 8 + 6], &kHalfOne, sizeof kHalfOne);
+  }
+  image.has_alpha = false;
+}
+
+MaskOrigin take_given_mask(const SourceView& source, const ViewLoader& loader, View& view) {
+  MaskOrigin origin = MaskOrigin::kNone;
+  if (!source.mask.empty()) {
+    view.mask = loader.mask(source.mask);
+    if (view.mask.width != view.image.width || view.mask.height != view.image.height)
+      throw Error(concat(source.mask.string(), ": the mask has ", view.mask.width, "x",
+                         view.mask.height, " pixels but its picture has ", view.image.width, "x",
+                         view.image.height, "; masks must match pixel by pixel"));
+    origin = MaskOrigin::kFile;
+  } else if (view.image.has_alpha) {
+    Mask mask = mask_from_alpha(view.image);
+    if (varies(mask)) {
+      view.mask = std::move(mask);
+      origin = MaskOrigin::kAlpha;
+    }
+  }
+  return origin;
+}
+
+void describe_masks(const std::vector<MaskOrigin>& origins, double model_confidence,
+                    PreparedViews& views) {
+  std::map<MaskOrigin, int> counts;
+  for (const MaskOrigin origin : origins) ++counts[origin];
+  views.mask_source.clear();
+  for (const auto& [origin, count] : counts) {
+    if (!views.mask_source.empty()) views.mask_source += ", ";
+    views.mask_source += to_string(origin);
+    if (counts.size() > 1) views.mask_source += concat(" (", count, " views)");
+  }
+  const bool none = counts.size() == 1 && counts.contains(MaskOrigin::kNone);
+  views.mask_confidence = none                                       ? 0.0
+                          : counts.contains(MaskOrigin::kBackground) ? model_confidence
+                                                                     : 1.0;
+}
+
+void check_masks(PreparedViews& views) {
+  std::size_t masks = 0, empty = 0, inverted = 0;
+  for (const View& view : views.views) {
+    if (view.mask.empty()) continue;
+    ++masks;
+    const auto is_foreground = [](std::uint8_t coverage) { return coverage >= 128; };
+    const auto& coverage = view.mask.coverage;
+    if (std::none_of(coverage.begin(), coverage.end(), is_foreground)) {
+      ++empty;
+      views.warnings.push_back(concat(view.name, ": the mask is empty: the view shows no object"));
+    } else if (std::all_of(coverage.begin(), coverage.end(), is_foreground)) {
+      views.warnings.push_back(concat(view.name, ": the mask is all foreground"));
+    }
+    inverted += looks_inverted(view.mask);
+  }
+  if (masks > 0 && empty == masks)
+    throw Error("all masks are empty: white must be the object, black the background");
+  if (2 * inverted > masks)
+    throw Error(concat("masks look inverted: in ", inverted, " of ", masks,
+                       " the frame is foreground and the middle background; "
+                       "white must be the object"));
+}
+
+}  // namespace photohull

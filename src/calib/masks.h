@@ -1,0 +1,27 @@
+// Masks that come with the photographs, and checks on all masks.
+#pragma once
+
+#include "calib/prepare_views.h"
+
+namespace photohull {
+
+enum class MaskOrigin { kNone, kFile, kAlpha, kBackground };
+
+/// Fills view.mask from the file that the scene names, else from an alpha channel that varies, in
+/// pixels of `view.image`. Throws Error for a mask of the
+/// wrong size and what the loader throws.
+MaskOrigin take_given_mask(const SourceView& source, const ViewLoader& loader, View& view);
+
+/// Sets the alpha of an image that has such a channel to 1: from here on it tells what is known.
+void make_opaque(ColourImage& image);
+
+/// Sets mask_source and mask_confidence from where each view's mask came; `model_confidence` is
+/// that of the background model.
+void describe_masks(const std::vector<MaskOrigin>& origins, double model_confidence,
+                    PreparedViews& views);
+
+/// Warns of views whose mask is all background or all foreground. Throws Error when all masks are
+/// empty, or when most show foreground along the frame and background in the middle.
+void check_masks(PreparedViews& views);
+
+}  // namespace photohull
