@@ -1,0 +1,20 @@
+#version 450 core
+// A bare texture-fetch loop: the device's raw sampling rate, for comparison with the sweep.
+layout(local_size_x = 64) in;
+layout(binding = 0) uniform sampler2DArray images;
+layout(std430, binding = 0) writeonly buffer Sums { vec4 sums[]; };
+uniform int taps;
+uniform int layers;
+uniform float lod;
+uniform vec4 step_and_size;  // du, dv in pixels a tap; image size in pixels
+
+void main() {
+  uint id = gl_GlobalInvocationID.x;
+  vec2 size = step_and_size.zw;
+  vec2 at = vec2(float(id % 512u) * 0.9 + 8.0, float(id / 512u % 384u) * 0.9 + 8.0);
+  vec4 sum = vec4(0.0);
+  for (int layer = 0; layer < layers; ++layer)
+    for (int tap = 0; tap < taps; ++tap)
+      sum += textureLod(images, vec3((at + float(tap) * step_and_size.xy) / size, float(layer)), lod);
+  sums[id] = sum;
+}

@@ -1,0 +1,50 @@
+#include "gpu/buffer.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "gpu/gl.h"
+
+namespace photohull::gpu {
+
+Buffer::Buffer(std::size_t bytes, const void* data) : bytes_(bytes) {
+  glCreateBuffers(1, &id_);
+  // A zero-sized store is illegal in GL, an empty list is not: keep at least one vector.
+  glNamedBufferStorage(id_, GLsizeiptr(std::max<std::size_t>(bytes, 16)),
+                       bytes >= 16 ? data : nullptr, GL_DYNAMIC_STORAGE_BIT);
+  const GLenum error = glGetError();
+  if (error != GL_NO_ERROR) {
+    glDeleteBuffers(1, &id_);
+    throw Error(concat("the device cannot hold a buffer of ", bytes >> 20, " MiB; lower --resolution"));
+  }
+  if (data && bytes > 0 && bytes < 16) write(0, bytes, data);
+}
+
+Buffer::~Buffer() {
+  if (id_) glDeleteBuffers(1, &id_);
+}
+
+void Buffer::bind_storage(unsigned binding) const {
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, id_);
+}
+
+void Buffer::bind_uniform(unsigned binding) const {
+  glBindBufferBase(GL_UNIFORM_BUFFER, binding, id_);
+}
+
+void Buffer::write(std::size_t offset, std::size_t size, const void* data) {
+  PHOTOHULL_CHECK_OP(offset + size, <=, bytes_);
+  if (size) glNamedBufferSubData(id_, GLintptr(offset), GLsizeiptr(size), data);
+}
+
+void Buffer::read(std::size_t offset, std::size_t size, void* data) const {
+  PHOTOHULL_CHECK_OP(offset + size, <=, bytes_);
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  if (size) glGetNamedBufferSubData(id_, GLintptr(offset), GLsizeiptr(size), data);
+}
+
+void Buffer::fill(unsigned word) {
+  glClearNamedBufferData(id_, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
+}
+
+}  // namespace photohull::gpu

@@ -1,0 +1,79 @@
+#include "gpu/context.h"
+
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+
+#include "core/error.h"
+#include "gpu/egl_devices.h"
+#include "gpu/gl.h"
+
+namespace photohull::gpu {
+namespace {
+
+std::int64_t now_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+const char* error_name(GLenum error) {
+  switch (error) {
+    case GL_OUT_OF_MEMORY: return "the device is out of memory; lower --resolution";
+    case GL_CONTEXT_LOST: return "the device was lost";
+    case GL_INVALID_ENUM: return "invalid enum";
+    case GL_INVALID_VALUE: return "invalid value";
+    case GL_INVALID_OPERATION: return "invalid operation";
+    case GL_INVALID_FRAMEBUFFER_OPERATION: return "invalid framebuffer operation";
+    default: return "unknown error";
+  }
+}
+
+}  // namespace
+
+struct Context::Egl : EglHandles {};
+
+std::unique_ptr<Context> Context::create(const std::string& device_selection, int threads) {
+  if (threads > 0) setenv("LP_NUM_THREADS", std::to_string(threads).c_str(), 1);
+  const std::vector<DeviceInfo> devices = list_devices();
+  return std::make_unique<Context>(choose_device(devices, device_selection).index);
+}
+
+Context::Context(int egl_device_index) : egl_(std::make_unique<Egl>()) {
+  const auto devices = query_egl_devices();
+  PHOTOHULL_CHECK(egl_device_index >= 0 && egl_device_index < int(devices.size()));
+  device_.index = egl_device_index;
+  static_cast<EglHandles&>(*egl_) = make_context(devices[egl_device_index], device_);
+  glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &limits_.ssbo_bytes);
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limits_.texture_size);
+  glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &limits_.texture_layers);
+  GLint groups = 0;
+  glGetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, 0, &groups);
+  limits_.groups_x = groups;
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+}
+
+Context::~Context() { destroy_context(*egl_); }
+
+void Context::check_errors(const char* where) const {
+  const GLenum error = glGetError();
+  if (error != GL_NO_ERROR)
+    throw Error(concat("OpenGL failed in ", where, " on ", device_.renderer, ": ",
+                       error_name(error)));
+}
+
+Launch::Launch(Context& context, const char* name)
+    : context_(context), name_(name), start_ns_(now_ns()) {
+  glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, name);
+}
+
+Launch::~Launch() {
+  glFinish();
+  glPopDebugGroup();
+  LaunchStatistics& statistics = context_.statistics()[name_];
+  ++statistics.launches;
+  statistics.seconds += 1e-9 * double(now_ns() - start_ns_);
+}
+
+}  // namespace photohull::gpu

@@ -1,0 +1,67 @@
+// A surfaceless OpenGL 4.5 context, current on the thread that made it.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "gpu/device.h"
+
+namespace photohull::gpu {
+
+struct Limits {
+  std::int64_t ssbo_bytes = 0;     ///< largest shader storage block
+  int texture_size = 0;            ///< largest edge of a 2D texture
+  int texture_layers = 0;          ///< largest 2D array
+  std::int64_t groups_x = 0;       ///< largest dispatch along x
+};
+
+/// Time spent in the launches of one name.
+struct LaunchStatistics {
+  std::int64_t launches = 0;
+  double seconds = 0;
+};
+
+class Context {
+ public:
+  /// `threads` bounds the software rasterizer's worker threads (0: one a core); it must be set
+  /// before the first context of the process. Throws Error when the device gives no 4.5 context.
+  static std::unique_ptr<Context> create(const std::string& device_selection, int threads = 0);
+  /// A context on one EGL device.
+  explicit Context(int egl_device_index);
+  ~Context();
+  Context(const Context&) = delete;
+  Context& operator=(const Context&) = delete;
+
+  const DeviceInfo& device() const { return device_; }
+  const Limits& limits() const { return limits_; }
+  /// Throws Error naming `where` if GL has an error pending (out of memory, lost context).
+  void check_errors(const char* where) const;
+
+  /// Seconds and count per launch name since the start; kernels add to it through `Launch`.
+  std::map<std::string, LaunchStatistics>& statistics() { return statistics_; }
+
+ private:
+  struct Egl;
+  std::unique_ptr<Egl> egl_;
+  DeviceInfo device_;
+  Limits limits_;
+  std::map<std::string, LaunchStatistics> statistics_;
+};
+
+/// Scope of a named launch: a GL debug group, and wall time up to the end of the work on the device.
+class Launch {
+ public:
+  Launch(Context& context, const char* name);
+  ~Launch();
+  Launch(const Launch&) = delete;
+  Launch& operator=(const Launch&) = delete;
+
+ private:
+  Context& context_;
+  const char* name_;
+  std::int64_t start_ns_;
+};
+
+}  // namespace photohull::gpu

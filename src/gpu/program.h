@@ -1,0 +1,56 @@
+// Compiled shader programs.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace photohull::gpu {
+
+class Context;
+
+/// A move-only linked program made of embedded shaders.
+class Program {
+ public:
+  /// A compute program from one entry point; `defines` are lines of "#define A B\n".
+  /// Throws Error with the compiler's log, its file numbers replaced by names.
+  static Program compute(std::string_view path, std::string_view defines = {});
+  static Program raster(std::string_view vertex_path, std::string_view fragment_path,
+                        std::string_view defines = {});
+  Program(Program&& other) noexcept : id_(std::exchange(other.id_, 0)) {}
+  Program& operator=(Program&& other) noexcept {
+    std::swap(id_, other.id_);
+    return *this;
+  }
+  ~Program();
+
+  void use() const;
+  /// Sets a uniform of the program; CHECKs that it exists.
+  void set(const char* name, int value) const;
+  void set(const char* name, unsigned value) const;
+  void set(const char* name, float value) const;
+  void set(const char* name, const glm::ivec2& value) const;
+  void set(const char* name, const glm::ivec3& value) const;
+  void set(const char* name, const glm::ivec4& value) const;
+  void set(const char* name, const glm::vec2& value) const;
+  void set(const char* name, const glm::vec3& value) const;
+  void set(const char* name, const glm::vec4& value) const;
+  void set(const char* name, const glm::mat4& value) const;
+
+  /// Runs `groups` work groups under `name` (see Launch) and waits for their writes to be visible.
+  void dispatch(Context& context, const char* name, std::size_t groups_x, std::size_t groups_y = 1,
+                std::size_t groups_z = 1) const;
+
+ private:
+  explicit Program(unsigned id) : id_(id) {}
+  int location(const char* name) const;
+  unsigned id_ = 0;
+};
+
+/// Work groups of `size` that cover `count` items.
+inline std::size_t group_count(std::size_t count, std::size_t size) {
+  return (count + size - 1) / size;
+}
+
+}  // namespace photohull::gpu

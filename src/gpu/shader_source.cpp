@@ -1,0 +1,57 @@
+#include "gpu/shader_source.h"
+
+#include <algorithm>
+#include <set>
+
+#include "core/error.h"
+
+namespace photohull::gpu {
+namespace {
+
+int find_shader(std::string_view path) {
+  const auto shaders = embedded_shaders();
+  const auto it = std::find_if(shaders.begin(), shaders.end(),
+                               [&](const EmbeddedShader& s) { return s.path == path; });
+  if (it == shaders.end()) check_failed("shaders", 0, "no embedded shader " + std::string(path));
+  return int(it - shaders.begin());
+}
+
+void append_file(std::string_view path, std::set<int>& seen, std::string& out) {
+  const int number = find_shader(path);
+  if (!seen.insert(number).second) return;
+  out += concat("#line 1 ", number, "\n");
+  std::string_view text = embedded_shaders()[number].text;
+  for (int line = 1; !text.empty(); ++line) {
+    const std::size_t end = std::min(text.find('\n'), text.size() - 1) + 1;
+    const std::string_view row = text.substr(0, end);
+    text.remove_prefix(end);
+    // The entry point's own #version and include extension are for the linter; ours come first.
+    if (row.starts_with("#version") || row.starts_with("#extension GL_GOOGLE_include_directive")) {
+      out += "\n";
+    } else if (row.starts_with("#include")) {
+      const std::size_t open = row.find('"'), close = row.rfind('"');
+      PHOTOHULL_CHECK(open != close);
+      append_file(row.substr(open + 1, close - open - 1), seen, out);
+      out += concat("#line ", line + 1, " ", number, "\n");
+    } else {
+      out += row;
+    }
+  }
+}
+
+}  // namespace
+
+std::string expand_shader(std::string_view path, std::string_view defines) {
+  std::string out = "#version 450 core\n";
+  out += defines;
+  std::set<int> seen;
+  append_file(path, seen, out);
+  return out;
+}
+
+std::string shader_file(int number) {
+  const auto shaders = embedded_shaders();
+  return number >= 0 && number < int(shaders.size()) ? std::string(shaders[number].path) : "?";
+}
+
+}  // namespace photohull::gpu

@@ -1,0 +1,86 @@
+#include "gpu/texture.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "core/error.h"
+#include "gpu/gl.h"
+
+namespace photohull::gpu {
+namespace {
+
+struct FormatInfo {
+  GLenum internal, layout, type;
+};
+
+FormatInfo info_of(TextureFormat format) {
+  switch (format) {
+    case TextureFormat::kSrgb8Alpha8: return {GL_SRGB8_ALPHA8, GL_RGBA, GL_UNSIGNED_BYTE};
+    case TextureFormat::kRgba8: return {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE};
+    case TextureFormat::kRgba16f: return {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT};
+    case TextureFormat::kRg8: return {GL_RG8, GL_RG, GL_UNSIGNED_BYTE};
+    case TextureFormat::kR8: return {GL_R8, GL_RED, GL_UNSIGNED_BYTE};
+    case TextureFormat::kR16f: return {GL_R16F, GL_RED, GL_FLOAT};
+    case TextureFormat::kR32f: return {GL_R32F, GL_RED, GL_FLOAT};
+  }
+  check_failed(__FILE__, __LINE__, "texture format");
+}
+
+}  // namespace
+
+TextureArray::TextureArray(TextureFormat format, int width, int height, int layers, int levels)
+    : format_(format), width_(width), height_(height), layers_(layers) {
+  const int full = int(std::bit_width(unsigned(std::max(width, height))));
+  levels_ = levels == 0 ? full : std::min(levels, full);
+  glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &id_);
+  glTextureStorage3D(id_, levels_, info_of(format).internal, width, height, layers);
+  if (glGetError() != GL_NO_ERROR) {
+    glDeleteTextures(1, &id_);
+    throw Error(concat("the device cannot hold ", layers, " images of ", width, "x", height,
+                       "; use fewer views (--views) or smaller images"));
+  }
+  glTextureParameteri(id_, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTextureParameteri(id_, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  glTextureParameteri(id_, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  set_filter(false);
+}
+
+TextureArray::~TextureArray() {
+  if (id_) glDeleteTextures(1, &id_);
+}
+
+void TextureArray::swap(TextureArray& other) noexcept {
+  std::swap(id_, other.id_);
+  std::swap(format_, other.format_);
+  std::swap(width_, other.width_);
+  std::swap(height_, other.height_);
+  std::swap(layers_, other.layers_);
+  std::swap(levels_, other.levels_);
+}
+
+void TextureArray::upload(int layer, int width, int height, const void* pixels, int level) {
+  const FormatInfo f = info_of(format_);
+  glTextureSubImage3D(id_, level, 0, 0, layer, width, height, 1, f.layout, f.type, pixels);
+}
+
+void TextureArray::read(int level, std::size_t bytes, void* pixels) const {
+  const FormatInfo f = info_of(format_);
+  glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+  glGetTextureImage(id_, level, f.layout, f.type, GLsizei(bytes), pixels);
+}
+
+void TextureArray::generate_mipmaps() { glGenerateTextureMipmap(id_); }
+
+void TextureArray::set_filter(bool trilinear) {
+  const GLenum mip = trilinear ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR_MIPMAP_NEAREST;
+  glTextureParameteri(id_, GL_TEXTURE_MIN_FILTER, GLint(levels_ > 1 ? mip : GL_LINEAR));
+}
+
+void TextureArray::bind(unsigned unit) const { glBindTextureUnit(unit, id_); }
+
+void TextureArray::bind_image(unsigned unit, int level, bool write) const {
+  glBindImageTexture(unit, id_, level, GL_TRUE, 0, write ? GL_WRITE_ONLY : GL_READ_ONLY,
+                     info_of(format_).internal);
+}
+
+}  // namespace photohull::gpu

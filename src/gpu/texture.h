@@ -1,0 +1,49 @@
+// Two-dimensional array textures: one layer a view.
+#pragma once
+
+#include <cstddef>
+#include <utility>
+
+namespace photohull::gpu {
+
+/// Internal formats that the program uses.
+enum class TextureFormat { kSrgb8Alpha8, kRgba8, kRgba16f, kRg8, kR8, kR16f, kR32f };
+
+/// A move-only 2D array texture with immutable storage.
+class TextureArray {
+ public:
+  TextureArray() = default;
+  /// `levels` 0 allocates the whole mip chain. Throws Error when the device cannot hold it.
+  TextureArray(TextureFormat format, int width, int height, int layers, int levels = 1);
+  ~TextureArray();
+  TextureArray(TextureArray&& other) noexcept { swap(other); }
+  TextureArray& operator=(TextureArray&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+
+  /// Writes a rectangle at the layer's origin; `pixels` are tightly packed in the natural client
+  /// type of the format (bytes for 8-bit formats, half or float for the others).
+  void upload(int layer, int width, int height, const void* pixels, int level = 0);
+  void read(int level, std::size_t bytes, void* pixels) const;
+  /// Builds all levels below 0 by box filtering in linear light.
+  void generate_mipmaps();
+  /// Filtering of `bind`: trilinear between levels, or bilinear at the nearest level.
+  void set_filter(bool trilinear);
+  void bind(unsigned unit) const;
+  void bind_image(unsigned unit, int level, bool write) const;
+
+  unsigned id() const { return id_; }
+  int width() const { return width_; }
+  int height() const { return height_; }
+  int layers() const { return layers_; }
+  int levels() const { return levels_; }
+
+ private:
+  void swap(TextureArray& other) noexcept;
+  unsigned id_ = 0;
+  TextureFormat format_ = TextureFormat::kRgba8;
+  int width_ = 0, height_ = 0, layers_ = 0, levels_ = 0;
+};
+
+}  // namespace photohull::gpu
