@@ -1,0 +1,316 @@
+#include "io/image_file.h"
+
+#include <OpenImageIO/half.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <mutex>
+#include <new>
+
+#include "core/error.h"
+#include "io/atomic_file.h"
+#include "io/text_file.h"
+
+namespace photohull::io {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr float kHalfMax = 65504.0f;
+
+/// Which of the file's channels matter: `colours` (1 or 3) from channel 0, and an alpha channel.
+struct Layout {
+  int colours = 0;
+  int alpha = -1;              ///< channel index; -1: none
+  bool premultiplied = false;  ///< colours are stored multiplied by alpha
+  int channels = 0;            ///< channels to read, from channel 0
+};
+
+struct OpenImage {
+  fs::path path;
+  std::unique_ptr<OIIO::ImageInput> input;
+  OIIO::ImageSpec spec;
+  Layout layout;
+
+  std::size_t pixels() const { return std::size_t(spec.width) * spec.height; }
+};
+
+/// Callers decode many images side by side; threads inside each would only get in the way.
+void keep_to_one_thread() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    OIIO::attribute("threads", 1);
+    OIIO::attribute("exr_threads", -1);
+  });
+}
+
+Layout layout_of(const OIIO::ImageSpec& spec, const fs::path& path) {
+  constexpr int kMaxChannels = 16;
+  Layout layout;
+  layout.alpha = spec.alpha_channel;
+  const int before_alpha = layout.alpha >= 0 ? layout.alpha : spec.nchannels;
+  layout.colours = before_alpha >= 3 ? 3 : 1;
+  layout.channels = std::max(layout.colours, layout.alpha + 1);
+  if (layout.alpha == 0 || layout.channels > kMaxChannels)
+    throw Error(concat(path.string(), ": ", spec.nchannels, " channels with alpha at number ",
+                       layout.alpha, " are no grey or RGB image; save it as grey, RGB or RGBA"));
+  layout.premultiplied =
+      layout.alpha >= 0 && spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;
+  return layout;
+}
+
+void check_size(const OIIO::ImageSpec& spec, const fs::path& path) {
+  if (spec.width <= 0 || spec.height <= 0 || spec.depth > 1 ||
+      std::int64_t(spec.width) * spec.height > kMaxImagePixels)
+    throw Error(concat(path.string(), ": the image claims ", spec.width, " x ", spec.height, " x ",
+                       std::max(spec.depth, 1), " pixels, but at most ", kMaxImagePixels,
+                       " in one plane can be read; scale it down"));
+}
+
+OpenImage open_image(const fs::path& path) {
+  keep_to_one_thread();
+  if (!is_file(path)) throw Error(concat(path.string(), ": there is no such image file"));
+  OpenImage file;
+  file.path = path;
+  OIIO::ImageSpec request;
+  request.attribute("oiio:UnassociatedAlpha", 1);
+  file.input = OIIO::ImageInput::open(path.string(), &request);
+  if (!file.input)
+    throw Error(concat(path.string(), ": cannot be read as an image (", OIIO::geterror(),
+                       "); PNG, JPEG, TIFF and OpenEXR are known"));
+  file.input->threads(1);
+  file.spec = file.input->spec();
+  check_size(file.spec, path);
+  const OIIO::ImageSpec& s = file.spec;
+  if (std::strcmp(file.input->format_name(), "openexr") == 0 &&
+      (s.x != s.full_x || s.y != s.full_y || s.width != s.full_width || s.height != s.full_height))
+    throw Error(concat(path.string(), ": the data window (", s.width, " x ", s.height,
+                       ") is not the display window (", s.full_width, " x ", s.full_height,
+                       "); save the image uncropped"));
+  file.layout = layout_of(file.spec, path);
+  return file;
+}
+
+/// Reads the layout's channels of every pixel, interleaved, converted to `type`.
+void read_pixels(OpenImage& file, OIIO::TypeDesc type, void* out) {
+  // Warnings of the decoders (a JPEG cut short) come as an error text after an apparent success.
+  const bool read = file.input->read_image(0, 0, 0, file.layout.channels, type, out);
+  if (!read || file.input->has_error())
+    throw Error(concat(file.path.string(), ": the image is damaged or cut short (",
+                       file.input->geterror(), "); export it again"));
+}
+
+/// Stored colour divided by stored alpha, both up to `maximum`.
+std::uint32_t unpremultiplied(std::uint32_t colour, std::uint32_t alpha, std::uint32_t maximum) {
+  if (alpha == 0) return colour;
+  return std::uint32_t(
+      std::min<std::uint64_t>(maximum, (std::uint64_t(colour) * maximum + alpha / 2) / alpha));
+}
+
+ColourImage decode_8bit(OpenImage& file, ColourImage image) {
+  const Layout layout = file.layout;
+  const std::size_t pixels = file.pixels();
+  const int n = layout.channels;
+  image.encoding = ColourImage::Encoding::kSrgb8;
+  image.bytes.resize(pixels * std::max(4, n));
+  // The file's values go to the end of the buffer and spread towards its start: pixel i is read
+  // before anything is written on it, so no second buffer is needed.
+  std::uint8_t* out = image.bytes.data();
+  const std::uint8_t* in = n < 4 ? out + pixels * (4 - n) : out;
+  read_pixels(file, OIIO::TypeDesc::UINT8, const_cast<std::uint8_t*>(in));
+  const int g = layout.colours == 3 ? 1 : 0, b = layout.colours == 3 ? 2 : 0;
+  if (layout.alpha < 0) {
+    for (std::size_t i = 0; i < pixels; ++i, in += n, out += 4) {
+      const std::uint8_t pixel[4] = {in[0], in[g], in[b], 255};
+      std::memcpy(out, pixel, 4);
+    }
+  } else if (n != 4 || layout.colours != 3 || layout.premultiplied) {
+    for (std::size_t i = 0; i < pixels; ++i, in += n, out += 4) {
+      std::uint8_t pixel[4] = {in[0], in[g], in[b], in[layout.alpha]};
+      if (layout.premultiplied)
+        for (int c = 0; c < 3; ++c)
+          pixel[c] = std::uint8_t(unpremultiplied(pixel[c], pixel[3], 255));
+      std::memcpy(out, pixel, 4);
+    }
+  }
+  image.bytes.resize(pixels * 4);
+  return image;
+}
+
+std::uint16_t half_bits(double value) { return half(float(value)).bits(); }
+
+/// Half-float bits of every 16-bit value.
+using HalfTable = std::array<std::uint16_t, 65536>;
+
+const HalfTable& half_from_16bit(bool srgb) {
+  static const auto build = [](bool decode) {
+    auto table = std::make_unique<HalfTable>();
+    for (int i = 0; i < 65536; ++i)
+      (*table)[i] = half_bits(decode ? linear_from_srgb(i / 65535.0) : i / 65535.0);
+    return table;
+  };
+  static const auto linear_table = build(false);
+  static const auto srgb_table = build(true);
+  return srgb ? *srgb_table : *linear_table;
+}
+
+bool declares_linear(const OIIO::ImageSpec& spec) {
+  std::string space(spec.get_string_attribute("oiio:ColorSpace"));
+  std::transform(space.begin(), space.end(), space.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
+  return space.starts_with("lin") || space == "scene_linear" || space == "acescg";
+}
+
+ColourImage decode_16bit(OpenImage& file, ColourImage image) {
+  const Layout layout = file.layout;
+  const std::size_t pixels = file.pixels();
+  const auto stored = std::make_unique_for_overwrite<std::uint16_t[]>(pixels * layout.channels);
+  read_pixels(file, OIIO::TypeDesc::UINT16, stored.get());
+  image.encoding = ColourImage::Encoding::kLinearHalf;
+  image.bytes.resize(pixels * 8);
+  const HalfTable& colour = half_from_16bit(!declares_linear(file.spec));
+  const HalfTable& linear = half_from_16bit(false);
+  const std::uint16_t* in = stored.get();
+  for (std::size_t i = 0; i < pixels; ++i, in += layout.channels) {
+    const std::uint16_t alpha = layout.alpha < 0 ? 65535 : in[layout.alpha];
+    std::uint16_t pixel[4];
+    for (int c = 0; c < 3; ++c) {
+      const std::uint16_t value = in[layout.colours == 3 ? c : 0];
+      pixel[c] = colour[layout.premultiplied ? unpremultiplied(value, alpha, 65535) : value];
+    }
+    pixel[3] = linear[alpha];
+    std::memcpy(image.bytes.data() + i * 8, pixel, 8);
+  }
+  return image;
+}
+
+float finite_or_zero(float value) { return std::isfinite(value) ? value : 0.0f; }
+
+ColourImage decode_float(OpenImage& file, ColourImage image) {
+  const Layout layout = file.layout;
+  const std::size_t pixels = file.pixels();
+  const auto stored = std::make_unique_for_overwrite<float[]>(pixels * layout.channels);
+  read_pixels(file, OIIO::TypeDesc::FLOAT, stored.get());
+  image.encoding = ColourImage::Encoding::kLinearHalf;
+  image.bytes.resize(pixels * 8);
+  const float* in = stored.get();
+  for (std::size_t i = 0; i < pixels; ++i, in += layout.channels) {
+    const float alpha =
+        layout.alpha < 0 ? 1.0f : std::clamp(finite_or_zero(in[layout.alpha]), 0.0f, 1.0f);
+    const float divisor = layout.premultiplied && alpha > 0 ? alpha : 1.0f;
+    std::uint16_t pixel[4];
+    for (int c = 0; c < 3; ++c) {
+      const float value = finite_or_zero(in[layout.colours == 3 ? c : 0]) / divisor;
+      pixel[c] = half_bits(std::clamp(value, -kHalfMax, kHalfMax));
+    }
+    pixel[3] = half_bits(alpha);
+    std::memcpy(image.bytes.data() + i * 8, pixel, 8);
+  }
+  return image;
+}
+
+std::uint8_t luminance(std::uint8_t r, std::uint8_t g, std::uint8_t b) {
+  return std::uint8_t((54u * r + 183u * g + 19u * b + 128u) >> 8);
+}
+
+/// The layout's channels at 8 bits, quantised from whatever the file stores.
+std::unique_ptr<std::uint8_t[]> read_quantised(OpenImage& file) {
+  const std::size_t count = file.pixels() * file.layout.channels;
+  auto values = std::make_unique_for_overwrite<std::uint8_t[]>(count);
+  if (file.spec.format == OIIO::TypeDesc::UINT8) {
+    read_pixels(file, OIIO::TypeDesc::UINT8, values.get());
+    return values;
+  }
+  const auto stored = std::make_unique_for_overwrite<float[]>(count);
+  read_pixels(file, OIIO::TypeDesc::FLOAT, stored.get());
+  std::transform(stored.get(), stored.get() + count, values.get(), [](float v) {
+    return std::uint8_t(std::lround(255.0f * std::clamp(finite_or_zero(v), 0.0f, 1.0f)));
+  });
+  return values;
+}
+
+[[noreturn]] void out_of_memory(const OpenImage& file) {
+  throw Error(concat(file.path.string(), ": there is not enough memory for ", file.spec.width,
+                     " x ", file.spec.height, " pixels; scale the image down"));
+}
+
+}  // namespace
+
+ImageSize read_image_size(const fs::path& path) {
+  const OpenImage file = open_image(path);
+  return {file.spec.width, file.spec.height};
+}
+
+ColourImage read_image(const fs::path& path) {
+  OpenImage file = open_image(path);
+  ColourImage image;
+  image.width = file.spec.width;
+  image.height = file.spec.height;
+  image.has_alpha = file.layout.alpha >= 0;
+  try {
+    switch (file.spec.format.basetype) {
+      case OIIO::TypeDesc::UINT8:
+        return decode_8bit(file, std::move(image));
+      case OIIO::TypeDesc::UINT16:
+        return decode_16bit(file, std::move(image));
+      case OIIO::TypeDesc::HALF:
+      case OIIO::TypeDesc::FLOAT:
+      case OIIO::TypeDesc::DOUBLE:
+        return decode_float(file, std::move(image));
+      default:
+        break;
+    }
+  } catch (const std::bad_alloc&) {
+    out_of_memory(file);
+  }
+  throw Error(concat(path.string(), ": pixels of type ", file.spec.format.c_str(),
+                     " are not supported; save it with 8 or 16 bits, half or float"));
+}
+
+Mask read_mask(const fs::path& path) {
+  OpenImage file = open_image(path);
+  const Layout layout = file.layout;
+  const std::size_t pixels = file.pixels();
+  Mask mask{file.spec.width, file.spec.height, {}};
+  try {
+    const auto values = read_quantised(file);
+    mask.coverage.resize(pixels);
+    if (layout.alpha >= 0) {
+      const std::uint8_t* in = values.get() + layout.alpha;
+      for (std::size_t i = 0; i < pixels; ++i) mask.coverage[i] = in[i * layout.channels];
+      const auto [low, high] = std::minmax_element(mask.coverage.begin(), mask.coverage.end());
+      if (*low != *high) return mask;
+    }
+    const std::uint8_t* in = values.get();
+    for (std::size_t i = 0; i < pixels; ++i, in += layout.channels)
+      mask.coverage[i] = layout.colours == 3 ? luminance(in[0], in[1], in[2]) : in[0];
+  } catch (const std::bad_alloc&) {
+    out_of_memory(file);
+  }
+  return mask;
+}
+
+void write_png(const fs::path& path, int width, int height, int channels,
+               std::span<const std::uint8_t> bytes) {
+  PHOTOHULL_CHECK(width > 0 && height > 0 && channels >= 1 && channels <= 4);
+  PHOTOHULL_CHECK_OP(bytes.size(), ==, std::size_t(width) * height * channels);
+  keep_to_one_thread();
+  write_atomically(path, [&](const fs::path& temporary) {
+    OIIO::ImageSpec spec(width, height, channels, OIIO::TypeDesc::UINT8);
+    if (channels == 2) spec.channelnames = {"Y", "A"};
+    spec.alpha_channel = channels % 2 == 0 ? channels - 1 : -1;
+    spec.attribute("oiio:UnassociatedAlpha", 1);
+    const auto output = OIIO::ImageOutput::create("png");
+    if (!output) throw Error("PNG files cannot be written: OpenImageIO lacks its PNG plug-in");
+    output->threads(1);
+    if (!output->open(temporary.string(), spec) ||
+        !output->write_image(OIIO::TypeDesc::UINT8, bytes.data()) || !output->close())
+      throw Error(concat(path.string(), ": cannot be written (", output->geterror(),
+                         "); choose a folder that exists, is writable and has space"));
+  });
+}
+
+}  // namespace photohull::io

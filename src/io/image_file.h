@@ -1,0 +1,48 @@
+// Image files to pixels and back. Safe to call from several threads at once; each call decodes on
+// its own thread only.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+
+#include "core/image.h"
+
+namespace photohull::io {
+
+/// No image of more pixels is decoded: the guard against files that claim absurd sizes.
+inline constexpr std::int64_t kMaxImagePixels = std::int64_t(1) << 28;
+
+struct ImageSize {
+  int width = 0;   ///< pixels
+  int height = 0;  ///< pixels
+};
+
+/// Size of an image from its header; nothing is decoded. Throws Error as read_image does.
+ImageSize read_image_size(const std::filesystem::path& path);
+
+/// Decodes PNG, JPEG, TIFF or OpenEXR; grey, grey + alpha, RGB or RGBA (further channels are
+/// ignored). Pixels stay as they are stored: no EXIF rotation, no colour profile.
+///
+///   8-bit          kSrgb8, the file's values verbatim
+///   16-bit         kLinearHalf; decoded from sRGB unless the file declares linear light
+///   half, float    kLinearHalf; taken as linear; NaN and infinities become 0, and finite values
+///                  beyond the range of half are clamped to it
+///
+/// Alpha is straight: where a file stores colours multiplied by alpha they are divided by it.
+/// Throws Error naming the file when it is missing, damaged, of another pixel type, cropped
+/// (OpenEXR data window unlike the display window) or larger than kMaxImagePixels.
+ColourImage read_image(const std::filesystem::path& path);
+
+/// Decodes a mask from an image of any channel count: its alpha where that varies over the image,
+/// else the luminance of its colours (stored values, Rec. 709 weights, no transfer function).
+/// Throws Error as read_image does.
+Mask read_mask(const std::filesystem::path& path);
+
+/// Writes an 8-bit PNG; `bytes` holds width * height * channels values, row-major from the
+/// top-left; 1 to 4 channels: grey, grey + alpha, RGB, RGBA, alpha straight. The file appears whole
+/// or not at all. Throws Error when it cannot be written.
+void write_png(const std::filesystem::path& path, int width, int height, int channels,
+               std::span<const std::uint8_t> bytes);
+
+}  // namespace photohull::io

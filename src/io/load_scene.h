@@ -1,0 +1,55 @@
+// Scenes from the folders and files of other programs.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "core/scene.h"
+
+namespace photohull::io {
+
+/// Where the views' masks come from.
+enum class MaskSource {
+  kAuto,  ///< the scene's own entries, else a masks/ folder beside the images where there is one
+  kNone,  ///< no masks, whatever the scene says
+  kDirectory  ///< LoadSceneOptions::mask_directory, which must hold one for every view
+};
+
+struct LoadSceneOptions {
+  /// Format of the scene; detected from the files' names where absent.
+  std::optional<SceneFormat> format;
+  /// Coordinates of the centre of the top-left pixel in the file: 0 or 0.5. Absent: the format's
+  /// own convention (Middlebury 0, COLMAP and transforms.json 0.5). For files whose writer
+  /// followed another one.
+  std::optional<double> pixel_center;
+  /// Region of interest in world coordinates; replaces the scene's own. Finite, min < max.
+  std::optional<Box> box;
+  MaskSource masks = MaskSource::kAuto;
+  /// Used with kDirectory only: NAME.png, NAME.EXTENSION.png (COLMAP's way) or the image's stem
+  /// with another image extension.
+  std::filesystem::path mask_directory;
+  /// Views to keep, e.g. "0-10,15,templeR0003.png,left_*": indices in file order from 0, inclusive
+  /// ranges, names, shell patterns. Empty: all.
+  std::string views;
+
+  /// Throws UsageError naming the field and its legal values.
+  void validate() const;
+};
+
+/// Reads a scene from a folder or from the file that lists its views:
+///
+///   Middlebury       *_par.txt; images beside it or in images/
+///   COLMAP           cameras, images, points3D as .txt or .bin, in the folder, sparse/0/ or
+///                    sparse/; images beside the model, in its images/, ../images or ../../images
+///   transforms.json  NeRF, Instant-NGP, nerfstudio; file_path with or without extension
+///
+/// Poses, intrinsics and pixel centres come back in the program's own conventions (core/camera.h);
+/// rotations are exactly orthonormal. Image and mask sizes are read from the files' headers, no
+/// pixel is decoded. The box is, in this order: options.box, bbox.txt in the scene's folder, the
+/// scene file's own (aabb), README.txt of a Middlebury scene, or for COLMAP the extent of the
+/// sparse points (scene_box.h). Throws Error naming file, line or field for whatever is missing,
+/// inconsistent or not finite.
+Scene load_scene(const std::filesystem::path& path, const LoadSceneOptions& options = {});
+
+}  // namespace photohull::io

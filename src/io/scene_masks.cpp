@@ -1,0 +1,117 @@
+#include "io/scene_masks.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "io/image_file.h"
+#include "io/text_file.h"
+
+namespace photohull::io {
+namespace fs = std::filesystem;
+namespace {
+
+bool is_folder(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored);
+}
+
+/// The mask in a folder for an image listed as `listed` ("cam1/0001.jpg"); empty when there is
+/// none.
+fs::path find_mask(const fs::path& folder, const fs::path& image, const std::string& listed) {
+  for (const fs::path& name : {fs::path(listed).relative_path(), image.filename()}) {
+    fs::path whole = folder / name;
+    whole += ".png";
+    if (is_file(whole)) return whole;
+    for (const char* extension : {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr"}) {
+      const fs::path candidate = fs::path(folder / name).replace_extension(extension);
+      // A list of "images/0001.png" must not make the image its own mask.
+      std::error_code ignored;
+      if (is_file(candidate) && !fs::equivalent(candidate, image, ignored)) return candidate;
+    }
+  }
+  return {};
+}
+
+/// masks/ in the scene's folder, beside the image, or beside the images/ folder that holds it,
+/// if need be through subfolders such as images/left/.
+fs::path masks_folder(const fs::path& scene_folder, const fs::path& image) {
+  const fs::path beside = image.parent_path();
+  std::vector<fs::path> candidates = {scene_folder / "masks", beside / "masks"};
+  fs::path folder = beside;
+  for (int level = 0; level < 3; ++level, folder = folder.parent_path())
+    if (folder.filename().string().starts_with("images"))
+      candidates.push_back(folder.parent_path() / "masks");
+  const auto found = std::find_if(candidates.begin(), candidates.end(), is_folder);
+  return found == candidates.end() ? fs::path() : *found;
+}
+
+void check_mask_size(const SourceView& view) {
+  const ImageSize size = read_image_size(view.mask);
+  const Intrinsics& k = view.camera.intrinsics;
+  if (size.width != k.width || size.height != k.height)
+    throw Error(concat(view.mask.string(), ": the mask is ", size.width, " x ", size.height,
+                       " but its image ", view.image.string(), " is ", k.width, " x ", k.height,
+                       "; use a mask of the image's size or --masks none"));
+}
+
+void attach_from_directory(const fs::path& folder, const std::vector<RawView>& raw, Scene& scene) {
+  if (!is_folder(folder)) throw Error(concat(folder.string(), ": there is no such mask folder"));
+  for (std::size_t i = 0; i < scene.views.size(); ++i) {
+    SourceView& view = scene.views[i];
+    view.mask = find_mask(folder, view.image, raw[i].listed);
+    if (view.mask.empty())
+      throw Error(concat(folder.string(), ": there is no mask for ", view.name, " (looked for ",
+                         view.name, ".png and ", fs::path(view.name).stem().string(),
+                         ".png, .jpg, .tif, .exr); add it or leave the view out with --views"));
+  }
+}
+
+void attach_stated(const fs::path& scene_folder, const RawView& raw, SourceView& view) {
+  view.mask = scene_folder / raw.mask;
+  if (!is_file(view.mask))
+    throw Error(concat(raw.where, ": mask_path names ", view.mask.string(),
+                       ", but there is no such file; add it or use --masks none"));
+}
+
+void attach_automatically(const fs::path& scene_folder, const std::vector<RawView>& raw,
+                          Scene& scene) {
+  std::string first_without;
+  fs::path searched;
+  std::size_t without = 0;
+  for (std::size_t i = 0; i < scene.views.size(); ++i) {
+    SourceView& view = scene.views[i];
+    if (!raw[i].mask.empty()) {
+      attach_stated(scene_folder, raw[i], view);
+      continue;
+    }
+    const fs::path folder = masks_folder(scene_folder, view.image);
+    if (folder.empty()) continue;
+    searched = folder;
+    view.mask = find_mask(folder, view.image, raw[i].listed);
+    if (view.mask.empty() && without++ == 0) first_without = view.name;
+  }
+  if (without > 0)
+    scene.warnings.push_back(concat(searched.string(), " holds no mask for ", without, " of ",
+                                    scene.views.size(), " views (the first is ", first_without,
+                                    ")"));
+}
+
+}  // namespace
+
+void attach_masks(const LoadSceneOptions& options, const fs::path& scene_folder,
+                  const std::vector<RawView>& raw, Scene& scene) {
+  switch (options.masks) {
+    case MaskSource::kNone:
+      return;
+    case MaskSource::kDirectory:
+      attach_from_directory(options.mask_directory, raw, scene);
+      break;
+    case MaskSource::kAuto:
+      attach_automatically(scene_folder, raw, scene);
+      break;
+  }
+  for (const SourceView& view : scene.views)
+    if (!view.mask.empty()) check_mask_size(view);
+}
+
+}  // namespace photohull::io

@@ -1,0 +1,19 @@
+// Pairs masks with images. Internal to io.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "io/load_scene.h"
+#include "io/raw_scene.h"
+
+namespace photohull::io {
+
+/// Sets the mask of every view as the options ask; `raw[i]` is what the scene file said of
+/// `scene.views[i]`. Checks that each mask exists and has its image's size. Views left without a
+/// mask by a folder found automatically are reported in the scene's warnings.
+/// Throws Error naming the view and where its mask was looked for.
+void attach_masks(const LoadSceneOptions& options, const std::filesystem::path& scene_folder,
+                  const std::vector<RawView>& raw, Scene& scene);
+
+}  // namespace photohull::io
