@@ -1,0 +1,26 @@
+// The surface of a volume as triangles.
+#pragma once
+
+#include "core/grid.h"
+#include "core/mesh.h"
+
+namespace photohull {
+
+/// The zero level set of the volume's distance as a mesh in world coordinates, relative to the
+/// centre of the grid's bounds. Triangles are counter-clockwise seen from outside, and normals are
+/// unit and point outward. The mesh is closed: what lies outside the grid counts as outside, so a
+/// body that the grid's border cuts gets a flat face there. Colours and confidence stay empty.
+///
+/// `adaptivity` in [0, 1] merges flat neighbourhoods into larger polygons: 0 keeps a vertex for
+/// every voxel that the surface crosses; larger values trade detail for fewer triangles.
+///
+/// Throws UsageError when adaptivity is outside its range. An empty volume gives an empty mesh.
+TriMesh extract_mesh(const SparseVolume& volume, double adaptivity = 0);
+
+/// Outward unit normals for the vertices of a mesh of this volume's surface: the gradient of the
+/// distance by central differences, interpolated at the vertex. Where the distance does not tell
+/// (at the grid's border, where it is flat, or against the faces) the area-weighted mean of the
+/// faces around the vertex. Replaces mesh.normals.
+void compute_normals(const SparseVolume& volume, TriMesh& mesh);
+
+}  // namespace photohull

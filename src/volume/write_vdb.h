@@ -1,0 +1,31 @@
+// Volumes in OpenVDB files.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "core/grid.h"
+#include "volume/attributes.h"
+
+namespace photohull {
+
+using Metadata = std::map<std::string, std::string>;
+
+/// Writes an OpenVDB file with the grids
+///   surface     float level set in world units; active where nearer than 3 voxels, inside negative
+///   Cd          linear RGB (half), active where nearer than 1.5 voxels and known
+///   confidence  [0, 1] (half), active likewise
+/// the last two only where `attributes` has them. Index (i, j, k) of every grid is the voxel of
+/// that index, whose centre is at grid.world({i, j, k}). `metadata` becomes string metadata of the
+/// file and of every grid, beside voxel_size and photohull_version.
+/// The file appears whole or not at all; throws Error when it cannot be written.
+void write_vdb(const std::filesystem::path& path, const SparseVolume& volume,
+               const VolumeAttributes& attributes, const Metadata& metadata);
+
+/// Reads the grid `surface`, or else the first level set, as a volume in voxels. Indices are
+/// shifted by whole bricks so that they start at 0; grid.origin follows. Throws Error when the
+/// file cannot be read, has no such grid, or its voxels are no axis-aligned cubes.
+SparseVolume read_vdb_surface(const std::filesystem::path& path);
+
+}  // namespace photohull
