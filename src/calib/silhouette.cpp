@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "core/error.h"
@@ -16,100 +17,97 @@
 namespace photohull {
 namespace {
 
-constexpr int kMargin = 16;    ///< pixels around the contour's box where distances are swept
-constexpr int kSaturated = 4;  ///< coverage this close to 0 or 255 counts as none or all
-constexpr float kUnreached = 1e30f;
+/// Segments are measured exactly from pixels this close to their cell. Farther off the sweeps err
+/// by up to about 0.5 / distance pixels, since they lose a point whose pixels are under one pixel
+/// wide.
+constexpr int kReach = 2;
+constexpr int kSaturated = 4;       ///< coverage this close to 0 or 255 counts as none or all
+constexpr float kUnreached = 1e9f;  ///< coordinate of points that are not known yet
 
 struct Point {
   float x, y;
 };
 
-/// Pixels [x0, x1) x [y0, y1) of the mask.
-struct Window {
-  int x0, y0, x1, y1;
-  int width() const { return x1 - x0; }
-  int height() const { return y1 - y0; }
-};
+float squared(float dx, float dy) { return dx * dx + dy * dy; }
 
 bool is_foreground(std::uint8_t coverage) { return coverage >= 128; }
 
-/// Nearest contour point of every pixel of a window, in window coordinates.
+/// Nearest contour point of every pixel of a mask. Rows are padded by an
+/// unreached pixel at either end.
 class NearestPoints {
  public:
   NearestPoints(int width, int height)
-      : width_(width), height_(height), x_(count()), y_(count()), squared_(count(), kUnreached) {}
+      : width_(width),
+        height_(height),
+        x_(std::size_t(width + 2) * height, kUnreached),
+        y_(x_.size(), kUnreached) {}
 
   void offer_segment(int x, int y, Point a, Point b);
   void sweep();
-  float distance(int x, int y) const { return std::sqrt(squared_[index(x, y)]); }
+  /// Distances of a row, with the sign of its coverage.
+  void signed_distances(int y, const std::uint8_t* coverage, float* out) const;
 
  private:
-  std::size_t count() const { return std::size_t(width_) * height_; }
-  std::size_t index(int x, int y) const { return std::size_t(y) * width_ + x; }
+  std::size_t row(int y) const { return std::size_t(y) * (width_ + 2) + 1; }
   void offer_row(int y, int from_y);
   void sweep_row(int y, int step);
 
   int width_, height_;
-  std::vector<float> x_, y_, squared_;
+  std::vector<float> x_, y_;
 };
 
 /// Offers a segment of the contour that lies in the cell (x, y)..(x+1, y+1) to the pixels around.
 void NearestPoints::offer_segment(int x, int y, Point a, Point b) {
   const float dx = b.x - a.x, dy = b.y - a.y;
   const float inverse = 1.0f / std::max(dx * dx + dy * dy, 1e-12f);
-  for (int py = std::max(y - 1, 0); py <= std::min(y + 2, height_ - 1); ++py)
-    for (int px = std::max(x - 1, 0); px <= std::min(x + 2, width_ - 1); ++px) {
+  for (int py = std::max(y - kReach, 0); py <= std::min(y + 1 + kReach, height_ - 1); ++py)
+    for (int px = std::max(x - kReach, 0); px <= std::min(x + 1 + kReach, width_ - 1); ++px) {
       const float s = std::clamp(((px - a.x) * dx + (py - a.y) * dy) * inverse, 0.0f, 1.0f);
-      const float fx = a.x + s * dx, fy = a.y + s * dy;
-      const float squared = (px - fx) * (px - fx) + (py - fy) * (py - fy);
-      const std::size_t i = index(px, py);
-      if (squared < squared_[i]) {
-        x_[i] = fx;
-        y_[i] = fy;
-        squared_[i] = squared;
+      const Point p{a.x + s * dx, a.y + s * dy};
+      float& best_x = x_[row(py) + px];
+      float& best_y = y_[row(py) + px];
+      if (squared(px - p.x, py - p.y) < squared(px - best_x, py - best_y)) {
+        best_x = p.x;
+        best_y = p.y;
       }
     }
 }
 
 /// Takes over points from the three neighbours in an adjacent row; free of dependencies along x.
 void NearestPoints::offer_row(int y, int from_y) {
-  const std::size_t to = index(0, y), from = index(0, from_y);
-  for (int shift = -1; shift <= 1; ++shift) {
-    const int begin = std::max(0, -shift), end = std::min(width_, width_ - shift);
-    float* __restrict tx = &x_[to];
-    float* __restrict ty = &y_[to];
-    float* __restrict td = &squared_[to];
-    const float* __restrict sx = &x_[from] + shift;
-    const float* __restrict sy = &y_[from] + shift;
-    const float* __restrict sd = &squared_[from] + shift;
-    for (int x = begin; x < end; ++x) {
-      const float dx = float(x) - sx[x], dy = float(y) - sy[x];
-      const float squared = sd[x] < kUnreached ? dx * dx + dy * dy : kUnreached;
-      const bool nearer = squared < td[x];
-      tx[x] = nearer ? sx[x] : tx[x];
-      ty[x] = nearer ? sy[x] : ty[x];
-      td[x] = nearer ? squared : td[x];
+  float* __restrict to_x = &x_[row(y)];
+  float* __restrict to_y = &y_[row(y)];
+  const float* __restrict from_x = &x_[row(from_y)];
+  const float* __restrict from_points_y = &y_[row(from_y)];
+  for (int x = 0; x < width_; ++x) {
+    Point best{to_x[x], to_y[x]};
+    float nearest = squared(x - best.x, y - best.y);
+    for (int shift = -1; shift <= 1; ++shift) {
+      const Point p{from_x[x + shift], from_points_y[x + shift]};
+      const float distance = squared(x - p.x, y - p.y);
+      const bool nearer = distance < nearest;
+      best = {nearer ? p.x : best.x, nearer ? p.y : best.y};
+      nearest = nearer ? distance : nearest;
     }
+    to_x[x] = best.x;
+    to_y[x] = best.y;
   }
 }
 
+/// Hands points on along a row. The branch is taken in long runs, so that it costs less than a
+/// selection, which would make every pixel wait for the one before.
 void NearestPoints::sweep_row(int y, int step) {
   const int begin = step > 0 ? 0 : width_ - 1, end = step > 0 ? width_ : -1;
-  float* row_x = &x_[index(0, y)];
-  float* row_y = &y_[index(0, y)];
-  float* row_d = &squared_[index(0, y)];
-  Point best{row_x[begin], row_y[begin]};
-  bool reached = row_d[begin] < kUnreached;
+  float* points_x = &x_[row(y)];
+  float* points_y = &y_[row(y)];
+  Point best{points_x[begin], points_y[begin]};
   for (int x = begin + step; x != end; x += step) {
-    const float dx = float(x) - best.x, dy = float(y) - best.y;
-    const float squared = dx * dx + dy * dy;
-    if (reached && squared < row_d[x]) {
-      row_x[x] = best.x;
-      row_y[x] = best.y;
-      row_d[x] = squared;
-    } else if (row_d[x] < kUnreached) {
-      best = {row_x[x], row_y[x]};
-      reached = true;
+    const Point own{points_x[x], points_y[x]};
+    if (squared(x - best.x, y - best.y) < squared(x - own.x, y - own.y)) {
+      points_x[x] = best.x;
+      points_y[x] = best.y;
+    } else {
+      best = own;
     }
   }
 }
@@ -124,6 +122,15 @@ void NearestPoints::sweep() {
     offer_row(y, y + 1);
     sweep_row(y, 1);
     sweep_row(y, -1);
+  }
+}
+
+void NearestPoints::signed_distances(int y, const std::uint8_t* coverage, float* out) const {
+  const float* points_x = &x_[row(y)];
+  const float* points_y = &y_[row(y)];
+  for (int x = 0; x < width_; ++x) {
+    const float d = std::sqrt(squared(x - points_x[x], y - points_y[x]));
+    out[x] = is_foreground(coverage[x]) ? -d : d;
   }
 }
 
@@ -143,27 +150,38 @@ float crossing(const std::uint8_t* p, std::ptrdiff_t stride, bool outer) {
 }
 
 /// Offers the contour segments of one cell of four pixel centres; (x, y) is its top-left pixel.
-void trace_cell(const Mask& mask, int x, int y, const Window& window, NearestPoints& nearest) {
+void trace_cell(const Mask& mask, int x, int y, NearestPoints& nearest) {
   const std::ptrdiff_t stride = mask.width;
   const std::uint8_t* p = mask.coverage.data() + y * stride + x;
   const bool in00 = is_foreground(p[0]), in10 = is_foreground(p[1]);
   const bool in01 = is_foreground(p[stride]), in11 = is_foreground(p[stride + 1]);
   const bool outer_x = x > 0 && x + 2 < mask.width, outer_y = y > 0 && y + 2 < mask.height;
-  const int wx = x - window.x0, wy = y - window.y0;
   Point points[4];  // crossings of the top, right, bottom and left edge, in this order
   int n = 0;
-  if (in00 != in10) points[n++] = {wx + crossing(p, 1, outer_x), float(wy)};
-  if (in10 != in11) points[n++] = {float(wx + 1), wy + crossing(p + 1, stride, outer_y)};
-  if (in01 != in11) points[n++] = {wx + crossing(p + stride, 1, outer_x), float(wy + 1)};
-  if (in00 != in01) points[n++] = {float(wx), wy + crossing(p, stride, outer_y)};
-  if (n == 2) nearest.offer_segment(wx, wy, points[0], points[1]);
+  if (in00 != in10) points[n++] = {x + crossing(p, 1, outer_x), float(y)};
+  if (in10 != in11) points[n++] = {float(x + 1), y + crossing(p + 1, stride, outer_y)};
+  if (in01 != in11) points[n++] = {x + crossing(p + stride, 1, outer_x), float(y + 1)};
+  if (in00 != in01) points[n++] = {float(x), y + crossing(p, stride, outer_y)};
+  if (n == 2) nearest.offer_segment(x, y, points[0], points[1]);
   if (n == 4) {
     // A saddle: the mean tells whether the foreground corners are joined.
     const bool joined = is_foreground((p[0] + p[1] + p[stride] + p[stride + 1]) / 4);
     const int first = joined == in00 ? 1 : 3;  // top joins right or left
-    nearest.offer_segment(wx, wy, points[0], points[first]);
-    nearest.offer_segment(wx, wy, points[2], points[4 - first]);
+    nearest.offer_segment(x, y, points[0], points[first]);
+    nearest.offer_segment(x, y, points[2], points[4 - first]);
   }
+}
+
+/// Are the pixels p[0..8] and those of the row below all foreground or all background?
+bool is_uniform(const std::uint8_t* p, int stride) {
+  constexpr std::uint64_t kTopBits = 0x8080808080808080u;
+  std::uint64_t eight[4];
+  std::memcpy(&eight[0], p, 8);
+  std::memcpy(&eight[1], p + 1, 8);
+  std::memcpy(&eight[2], p + stride, 8);
+  std::memcpy(&eight[3], p + stride + 1, 8);
+  return ((eight[0] | eight[1] | eight[2] | eight[3]) & kTopBits) == 0 ||
+         (eight[0] & eight[1] & eight[2] & eight[3] & kTopBits) == kTopBits;
 }
 
 /// Calls visit(x, y) for each cell of four pixel centres that the contour crosses.
@@ -172,31 +190,15 @@ void for_each_contour_cell(const Mask& mask, const Visit& visit) {
   for (int y = 0; y + 1 < mask.height; ++y) {
     const std::uint8_t* row = mask.coverage.data() + std::size_t(y) * mask.width;
     const std::uint8_t* next = row + mask.width;
-    int before = is_foreground(row[0]) + is_foreground(next[0]);
     for (int x = 0; x + 1 < mask.width; ++x) {
-      const int after = is_foreground(row[x + 1]) + is_foreground(next[x + 1]);
-      if (before + after != 0 && before + after != 4) visit(x, y);
-      before = after;
+      if (x + 9 <= mask.width && is_uniform(row + x, mask.width)) {
+        x += 7;
+        continue;
+      }
+      const int inside = is_foreground(row[x]) + is_foreground(row[x + 1]) +
+                         is_foreground(next[x]) + is_foreground(next[x + 1]);
+      if (inside != 0 && inside != 4) visit(x, y);
     }
-  }
-}
-
-/// Beyond the window, q being the window's pixel nearest to p, every contour point c satisfies
-/// |p - c|^2 >= |p - q|^2 + |q - c|^2, because the window is convex and holds the contour.
-void extend_beyond(const Window& window, SilhouetteDistance& result) {
-  for (int y = 0; y < result.height; ++y) {
-    const int qy = std::clamp(y, window.y0, window.y1 - 1);
-    const float dy = float(y - qy);
-    float* row = &result.pixels[std::size_t(y) * result.width];
-    const float* inner = &result.pixels[std::size_t(qy) * result.width];
-    const auto bound = [&](int x, int qx) {
-      const float dx = float(x - qx), d = inner[qx];
-      row[x] = std::copysign(std::sqrt(dx * dx + dy * dy + d * d), d);
-    };
-    for (int x = 0; x < window.x0; ++x) bound(x, window.x0);
-    if (qy != y)
-      for (int x = window.x0; x < window.x1; ++x) bound(x, x);
-    for (int x = window.x1; x < result.width; ++x) bound(x, window.x1 - 1);
   }
 }
 
@@ -206,33 +208,23 @@ SilhouetteDistance silhouette_distance(const Mask& mask) {
   PHOTOHULL_CHECK(!mask.empty());
   PHOTOHULL_CHECK_OP(mask.coverage.size(), ==, std::size_t(mask.width) * mask.height);
   SilhouetteDistance result{mask.width, mask.height, {}};
-  std::vector<std::pair<int, int>> cells;
-  Window window{mask.width, mask.height, 0, 0};
+  NearestPoints nearest(mask.width, mask.height);
+  bool has_contour = false;
   for_each_contour_cell(mask, [&](int x, int y) {
-    cells.emplace_back(x, y);
-    window = {std::min(window.x0, x), std::min(window.y0, y), std::max(window.x1, x + 2),
-              std::max(window.y1, y + 2)};
+    has_contour = true;
+    trace_cell(mask, x, y, nearest);
   });
-  if (cells.empty()) {
-    const bool inside = is_foreground(mask.coverage[0]);
-    result.pixels.assign(mask.coverage.size(),
-                         inside ? -SilhouetteDistance::kNoContour : SilhouetteDistance::kNoContour);
+  if (!has_contour) {
+    const float none = SilhouetteDistance::kNoContour;
+    result.pixels.assign(mask.coverage.size(), is_foreground(mask.coverage[0]) ? -none : none);
     return result;
   }
-  window = {std::max(window.x0 - kMargin, 0), std::max(window.y0 - kMargin, 0),
-            std::min(window.x1 + kMargin, mask.width), std::min(window.y1 + kMargin, mask.height)};
-  NearestPoints nearest(window.width(), window.height());
-  for (const auto& [x, y] : cells) trace_cell(mask, x, y, window, nearest);
   nearest.sweep();
-
   result.pixels.resize(mask.coverage.size());
-  for (int y = window.y0; y < window.y1; ++y)
-    for (int x = window.x0; x < window.x1; ++x) {
-      const std::size_t i = std::size_t(y) * mask.width + x;
-      const float d = nearest.distance(x - window.x0, y - window.y0);
-      result.pixels[i] = is_foreground(mask.coverage[i]) ? -d : d;
-    }
-  extend_beyond(window, result);
+  for (int y = 0; y < mask.height; ++y) {
+    const std::size_t row = std::size_t(y) * mask.width;
+    nearest.signed_distances(y, &mask.coverage[row], &result.pixels[row]);
+  }
   return result;
 }
 
