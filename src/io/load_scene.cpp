@@ -27,11 +27,11 @@ RawScene read_raw(const SceneLocation& location) {
     case SceneFormat::kTransforms:
       return read_transforms(location.file);
     case SceneFormat::kColmapText:
+      return read_colmap_text(location.file);
     case SceneFormat::kColmapBinary:
-      break;
+      return read_colmap_binary(location.file);
   }
-  throw Error(concat(location.file.string(), ": ", to_string(location.format),
-                     " scenes cannot be read yet"));
+  PHOTOHULL_CHECK(false);
 }
 
 /// The file a listed name means; empty when it is nowhere.

@@ -38,5 +38,7 @@ struct RawScene {
 
 RawScene read_middlebury(const std::filesystem::path& par_file);
 RawScene read_transforms(const std::filesystem::path& json_file);
+RawScene read_colmap_text(const std::filesystem::path& model_folder);
+RawScene read_colmap_binary(const std::filesystem::path& model_folder);
 
 }  // namespace photohull::io

@@ -1,0 +1,80 @@
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "io/atomic_file.h"
+#include "io/write_scene.h"
+#include "io/write_scene_parts.h"
+
+namespace photohull::io {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json triple(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+
+/// Camera to world with the camera's axes turned from ours (y down, z forward) to OpenGL's.
+ordered_json transform_matrix(const Camera& camera) {
+  const glm::dmat3 r = glm::transpose(camera.cam_from_world.rotation);
+  const glm::dvec3 center = camera.center();
+  ordered_json rows = ordered_json::array();
+  for (int row = 0; row < 3; ++row)
+    rows.push_back({r[0][row], -r[1][row], -r[2][row], center[row]});
+  rows.push_back({0.0, 0.0, 0.0, 1.0});
+  return rows;
+}
+
+void add_distortion(const SourceView& view, ordered_json& frame) {
+  const std::array<double, 8>& c = view.distortion.coefficients;
+  switch (view.distortion.model) {
+    case DistortionModel::kNone:
+      return;
+    case DistortionModel::kBrown:
+      if (c[5] != 0 || c[6] != 0 || c[7] != 0)
+        throw Error(concat(view.name,
+                           ": its camera has rational distortion (k4, k5, k6), which "
+                           "transforms.json cannot express; write COLMAP"));
+      frame["camera_model"] = "OPENCV";
+      frame["k1"] = c[0];
+      frame["k2"] = c[1];
+      frame["p1"] = c[2];
+      frame["p2"] = c[3];
+      frame["k3"] = c[4];
+      return;
+    case DistortionModel::kFisheye:
+      frame["camera_model"] = "OPENCV_FISHEYE";
+      for (int i = 0; i < 4; ++i) frame[concat("k", i + 1)] = c[i];
+      return;
+  }
+}
+
+ordered_json frame_of(const SourceView& view, const std::filesystem::path& folder) {
+  require_no_skew(view, "transforms.json");
+  const Intrinsics& k = view.camera.intrinsics;
+  ordered_json frame;
+  frame["file_path"] = listed_name(view, folder, {"."});
+  if (!view.mask.empty()) frame["mask_path"] = relative_path(view.mask, folder);
+  frame["w"] = k.width;
+  frame["h"] = k.height;
+  frame["fl_x"] = k.fx;
+  frame["fl_y"] = k.fy;
+  frame["cx"] = k.cx + 0.5;
+  frame["cy"] = k.cy + 0.5;
+  add_distortion(view, frame);
+  frame["transform_matrix"] = transform_matrix(view.camera);
+  return frame;
+}
+
+}  // namespace
+
+void write_transforms(const Scene& scene, const std::filesystem::path& folder) {
+  make_folder(folder);
+  ordered_json root;
+  if (scene.box) root["aabb"] = {triple(scene.box->min), triple(scene.box->max)};
+  root["frames"] = ordered_json::array();
+  for (const SourceView& view : scene.views) root["frames"].push_back(frame_of(view, folder));
+  // Names that are not UTF-8 could not be read back, but must not end in an exception of json's.
+  const auto replace = ordered_json::error_handler_t::replace;
+  write_atomically(folder / "transforms.json", root.dump(1, ' ', false, replace) + "\n");
+}
+
+}  // namespace photohull::io
