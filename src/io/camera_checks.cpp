@@ -42,7 +42,7 @@ glm::dmat3 checked_rotation(const glm::dmat3& matrix, const std::string& where,
   if (!all_finite(matrix)) throw Error(prefix + "holds a value that is not a finite number");
   const glm::dmat3 gram = glm::transpose(matrix) * matrix;
   const double scale = std::sqrt((gram[0][0] + gram[1][1] + gram[2][2]) / 3.0);
-  if (!(scale > 0) || !(deviation(matrix, scale) <= kRotationTolerance))
+  if (!(scale > 0) || !std::isfinite(scale) || !(deviation(matrix, scale) <= kRotationTolerance))
     throw Error(prefix + concat("is not a rotation (its axes are off orthonormal by ",
                                 scale > 0 ? deviation(matrix, scale) : 1.0,
                                 "); write it with more digits or check the order of its values"));

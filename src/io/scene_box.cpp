@@ -24,16 +24,6 @@ std::optional<glm::dvec3> parse_corner(std::string_view line) {
   return corner;
 }
 
-bool next_corner(Lines& lines, glm::dvec3& corner) {
-  while (lines.next())
-    if (!lines.text().empty()) {
-      const auto parsed = parse_corner(lines.text());
-      if (parsed) corner = *parsed;
-      return parsed.has_value();
-    }
-  return false;
-}
-
 }  // namespace
 
 void check_box(const Box& box, const std::string& source) {
@@ -64,14 +54,21 @@ std::optional<Box> read_bbox_file(const fs::path& folder) {
 std::optional<Box> read_readme_box(const fs::path& folder) {
   const fs::path file = folder / "README.txt";
   if (!is_file(file)) return std::nullopt;
-  for (Lines lines(file); lines.next();) {
-    if (lines.text().find("bounding box") == std::string_view::npos) continue;
-    Box box;
-    if (!next_corner(lines, box.min) || !next_corner(lines, box.max)) continue;
-    check_box(box, file.string());
-    return box;
+  Box box;
+  int corners = -1;  // read since the words; -1: not seen, or followed by something else
+  for (Lines lines(file); corners < 2 && lines.next();) {
+    if (lines.text().empty()) continue;
+    if (lines.text().find("bounding box") != std::string_view::npos) {
+      corners = 0;
+    } else if (corners >= 0) {
+      const auto corner = parse_corner(lines.text());
+      if (corner) (corners == 0 ? box.min : box.max) = *corner;
+      corners = corner ? corners + 1 : -1;
+    }
   }
-  return std::nullopt;
+  if (corners < 2) return std::nullopt;
+  check_box(box, file.string());
+  return box;
 }
 
 std::optional<Box> box_of_points(const std::vector<glm::dvec3>& points) {
