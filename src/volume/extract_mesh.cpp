@@ -122,7 +122,7 @@ TriMesh extract_mesh(const SparseVolume& volume, double adaptivity) {
     std::memcpy(mesh.positions.data(), mesher.pointList().get(),
                 mesh.positions.size() * sizeof(glm::vec3));
   add_polygons(mesher, mesh);
-  compute_normals(volume, mesh);
+  refine_vertices(volume, mesh);
   return mesh;
 }
 

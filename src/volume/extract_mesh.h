@@ -17,10 +17,11 @@ namespace photohull {
 /// Throws UsageError when adaptivity is outside its range. An empty volume gives an empty mesh.
 TriMesh extract_mesh(const SparseVolume& volume, double adaptivity = 0);
 
-/// Outward unit normals for the vertices of a mesh of this volume's surface: the gradient of the
-/// distance by central differences, interpolated at the vertex. Where the distance does not tell
-/// (at the grid's border, where it is flat, or against the faces) the area-weighted mean of the
-/// faces around the vertex. Replaces mesh.normals.
-void compute_normals(const SparseVolume& volume, TriMesh& mesh);
+/// Moves the vertices of a mesh of this volume's surface onto the zero of the distance (one step of
+/// Newton's along the gradient, at most a quarter voxel) and sets their outward unit normals: the
+/// gradient by central differences, interpolated at the vertex. Where the distance does not tell
+/// (at the grid's border, where it is flat, or against the faces) a vertex stays and its normal is
+/// the area-weighted mean of the faces around it. Replaces mesh.normals.
+void refine_vertices(const SparseVolume& volume, TriMesh& mesh);
 
 }  // namespace photohull

@@ -33,10 +33,12 @@ class CheckedArchive : public openvdb::io::Archive {
   }
 };
 
-openvdb::MetaMap meta_map(const SparseVolume& volume, const Metadata& metadata) {
+openvdb::MetaMap meta_map(const SparseVolume& volume, const VdbMetadata& metadata) {
   openvdb::MetaMap map;
   for (const auto& [name, value] : metadata) map.insertMeta(name, openvdb::StringMetadata(value));
   const glm::ivec3 bricks = volume.grid.bricks;
+  for (const char* name : {"voxel_size", "grid_bricks", "photohull_version"})
+    map.removeMeta(name);  // These are facts, and keep their types.
   map.insertMeta("voxel_size", openvdb::DoubleMetadata(volume.grid.voxel_size));
   map.insertMeta("grid_bricks", openvdb::Vec3IMetadata({bricks.x, bricks.y, bricks.z}));
   map.insertMeta("photohull_version", openvdb::StringMetadata(PHOTOHULL_VERSION));
@@ -126,10 +128,95 @@ void write_grids(const std::filesystem::path& path, const openvdb::GridCPtrVec& 
   file.commit();
 }
 
+/// Runs a reader of an OpenVDB file; whatever it throws becomes an Error that names the file.
+template <typename Read>
+auto with_file(const std::filesystem::path& path, Read read) {
+  try {
+    openvdb::io::File file(path.string());
+    file.open(/*delayLoad=*/false);
+    return read(file);
+  } catch (const Error& error) {
+    throw Error(concat("cannot read ", path.string(), ": ", error.what(), "."));
+  } catch (const std::exception& error) {
+    throw Error(concat("cannot read ", path.string(), ": ", error.what(),
+                       "; give a complete OpenVDB file."));
+  }
+}
+
+/// The grid named surface, or else the first level set; null when there is none.
+FloatGrid::Ptr find_level_set(openvdb::io::File& file) {
+  const openvdb::GridPtrVecPtr all = file.readAllGridMetadata();
+  std::string name;
+  for (const openvdb::GridBase::Ptr& grid : *all) {
+    if (!grid->isType<FloatGrid>() || grid->getGridClass() != openvdb::GRID_LEVEL_SET) continue;
+    if (name.empty() || grid->getName() == "surface") name = grid->getName();
+  }
+  return name.empty() ? nullptr : openvdb::gridPtrCast<FloatGrid>(file.readGrid(name));
+}
+
+/// The bricks to store: those that the file's grid had, where it says so, or else the box of the
+/// leaves. `first` is the brick that becomes (0, 0, 0).
+glm::ivec3 grid_bricks(const FloatGrid& grid, glm::ivec3& first) {
+  openvdb::CoordBBox box;
+  if (!grid.tree().evalLeafBoundingBox(box)) box = openvdb::CoordBBox({0, 0, 0}, {7, 7, 7});
+  const openvdb::Coord low = box.min() >> 3, high = box.max() >> 3;
+  if (const auto said = grid.getMetadata<openvdb::Vec3IMetadata>("grid_bricks")) {
+    const openvdb::Vec3i size = said->value();
+    if (low.x() >= 0 && low.y() >= 0 && low.z() >= 0 && high.x() < size.x() &&
+        high.y() < size.y() && high.z() < size.z()) {
+      first = glm::ivec3(0);
+      return {size.x(), size.y(), size.z()};
+    }
+  }
+  first = {low.x(), low.y(), low.z()};
+  return glm::ivec3(high.x(), high.y(), high.z()) - first + 1;
+}
+
+SparseVolume to_volume(const FloatGrid& source) {
+  const openvdb::math::Transform& transform = source.transform();
+  const openvdb::math::Mat4d matrix = transform.baseMap()->getAffineMap()->getMat4();
+  SparseVolume volume;
+  GridSpec& grid = volume.grid;
+  grid.voxel_size = matrix(0, 0);
+  const auto is_cube = openvdb::math::Mat3d::identity() * grid.voxel_size;
+  if (!transform.isLinear() || !(grid.voxel_size > 0) || !is_cube.eq(matrix.getMat3(), 1e-9))
+    throw Error("its voxels are not axis-aligned cubes; resample the grid");
+
+  glm::ivec3 first;
+  grid.bricks = grid_bricks(source, first);
+  constexpr double kMostBricks = 1 << 27;  // 4096^3 voxels; a table of half a gigabyte
+  if (double(grid.bricks.x) * grid.bricks.y * grid.bricks.z > kMostBricks)
+    throw Error("its leaves are spread over more than 4096^3 voxels; clip the grid");
+  const glm::ivec3 corner = first * kBrickEdge;
+  const openvdb::Vec3d origin =
+      transform.indexToWorld(openvdb::Coord(corner.x, corner.y, corner.z));
+  grid.origin = {origin.x(), origin.y(), origin.z()};
+
+  auto accessor = source.getConstAccessor();
+  for (int z = 0; z < grid.bricks.z; ++z)
+    for (int y = 0; y < grid.bricks.y; ++y)
+      for (int x = 0; x < grid.bricks.x; ++x) {
+        const glm::ivec3 at = corner + glm::ivec3(x, y, z) * kBrickEdge;
+        const openvdb::Coord coord(at.x, at.y, at.z);
+        const auto* leaf = accessor.probeConstLeaf(coord);
+        if (!leaf) {
+          const bool inside = accessor.getValue(coord) < 0;
+          volume.table.push_back(inside ? SparseVolume::kInside : SparseVolume::kOutside);
+          continue;
+        }
+        volume.table.push_back(std::uint32_t(volume.bricks.size()));
+        volume.bricks.emplace_back(x, y, z);
+        for (int i = 0; i < kBrickVoxels; ++i)
+          volume.distance.push_back(std::clamp(float(leaf->getValue(i) / grid.voxel_size),
+                                               -SparseVolume::kBand, SparseVolume::kBand));
+      }
+  return volume;
+}
+
 }  // namespace
 
 void write_vdb(const std::filesystem::path& path, const SparseVolume& volume,
-               const VolumeAttributes& attributes, const Metadata& metadata) {
+               const VolumeAttributes& attributes, const VdbMetadata& metadata) {
   PHOTOHULL_CHECK(volume.grid.voxel_size > 0);
   const std::size_t voxels = volume.distance.size();
   PHOTOHULL_CHECK(attributes.colour.empty() || attributes.colour.size() == voxels);
@@ -147,6 +234,15 @@ void write_vdb(const std::filesystem::path& path, const SparseVolume& volume,
   if (!attributes.confidence.empty())
     add(confidence_grid(volume, attributes.confidence), "confidence");
   write_grids(path, grids, map);
+}
+
+SparseVolume read_vdb_surface(const std::filesystem::path& path) {
+  openvdb::initialize();
+  return with_file(path, [&](openvdb::io::File& file) {
+    const FloatGrid::Ptr grid = find_level_set(file);
+    if (!grid) throw Error("it has no level set; give a file with a grid named surface");
+    return to_volume(*grid);
+  });
 }
 
 }  // namespace photohull

@@ -10,7 +10,7 @@
 
 namespace photohull {
 
-using Metadata = std::map<std::string, std::string>;
+using VdbMetadata = std::map<std::string, std::string>;
 
 /// Writes an OpenVDB file with the grids
 ///   surface     float level set in world units; active where nearer than 3 voxels, inside negative
@@ -21,11 +21,12 @@ using Metadata = std::map<std::string, std::string>;
 /// file and of every grid, beside voxel_size and photohull_version.
 /// The file appears whole or not at all; throws Error when it cannot be written.
 void write_vdb(const std::filesystem::path& path, const SparseVolume& volume,
-               const VolumeAttributes& attributes, const Metadata& metadata);
+               const VolumeAttributes& attributes, const VdbMetadata& metadata);
 
 /// Reads the grid `surface`, or else the first level set, as a volume in voxels. Indices are
-/// shifted by whole bricks so that they start at 0; grid.origin follows. Throws Error when the
-/// file cannot be read, has no such grid, or its voxels are no axis-aligned cubes.
+/// shifted by whole bricks so that none is negative; grid.origin follows. Distances are clamped to
+/// the band; tiles count by their sign. Throws Error when the file cannot be read, has no such
+/// grid, or its voxels are no axis-aligned cubes.
 SparseVolume read_vdb_surface(const std::filesystem::path& path);
 
 }  // namespace photohull
