@@ -12,6 +12,7 @@ namespace photohull::io {
 namespace {
 
 namespace fs = std::filesystem;
+using namespace std::string_literals;
 using testing::AllOf;
 using testing::HasSubstr;
 
@@ -104,7 +105,7 @@ TEST_F(HostileInput, DamagedFilesNeverCrash) {
     state = state * 1664525u + 1013904223u;
     return std::size_t((std::uint64_t(state) * below) >> 32);
   };
-  const std::string palette("\0\xff\x80-+.eE019nanif\"[]{},: \n\r#/\\", 33);
+  const std::string palette = "\0\xff\x80-+.eE019nanif\"[]{},: \n\r#/\\"s;
   for (const std::string& name : files_) {
     const std::string whole = contents(folder_ / name);
     for (int round = 0; round < 300; ++round) {
