@@ -88,8 +88,9 @@ SceneLocation search_folder(const fs::path& folder, std::optional<SceneFormat> w
   if (!found)
     throw Error(concat(folder.string(), ": no scene found here (looked for ", tried,
                        "); give the folder or file that lists the cameras"));
+  std::error_code ignored;
   const fs::path sibling = found->file.parent_path() / "1";
-  if (is_colmap(found->format) && found->file.filename() == "0" && fs::exists(sibling))
+  if (is_colmap(found->format) && found->file.filename() == "0" && fs::exists(sibling, ignored))
     found->warnings.push_back(concat(sibling.string(),
                                      " is a separate COLMAP model of other "
                                      "images and was not read"));

@@ -34,18 +34,21 @@ RawScene read_raw(const SceneLocation& location) {
   PHOTOHULL_CHECK(false);
 }
 
+/// The file that a path means, tidied where that does not change it (".." after a symbolic link
+/// may); empty when there is none.
+fs::path existing(const fs::path& path) {
+  const fs::path tidy = path.lexically_normal();
+  return is_file(tidy) ? tidy : is_file(path) ? path : fs::path();
+}
+
 /// The file a listed name means; empty when it is nowhere.
 fs::path find_image(const std::string& listed, const std::vector<fs::path>& folders) {
-  for (const fs::path& folder : folders) {
-    const fs::path exact = folder / listed;
-    if (is_file(exact)) return exact.lexically_normal();
+  for (const fs::path& folder : folders)
     for (const char* extension :
-         {".png", ".jpg", ".jpeg", ".PNG", ".JPG", ".tif", ".tiff", ".exr"}) {
-      fs::path completed = exact;
-      completed += extension;
-      if (is_file(completed)) return completed.lexically_normal();
+         {"", ".png", ".jpg", ".jpeg", ".PNG", ".JPG", ".tif", ".tiff", ".exr"}) {
+      const fs::path found = existing(folder / (listed + extension));
+      if (!found.empty()) return found;
     }
-  }
   return {};
 }
 

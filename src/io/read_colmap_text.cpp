@@ -45,6 +45,17 @@ ColmapCameras read_cameras(const fs::path& file) {
   return cameras;
 }
 
+/// Steps over an image's second line, "X Y POINT3D_ID" for each of its points. A file written by
+/// hand often lacks it, and every other image would be lost in silence.
+void skip_observations(Lines& lines) {
+  constexpr std::size_t kImageFields = 10;
+  if (!lines.next()) return;
+  if (split_fields(lines.text(), kImageFields + 1).size() == kImageFields)
+    throw Error(concat(lines.where(),
+                       ": 10 fields found where the 2D points of the image above "
+                       "are expected; put an empty line after each image"));
+}
+
 void read_images(const ColmapCameras& cameras, RawScene& scene) {
   for (Lines lines(scene.file); lines.next_content();) {
     constexpr std::size_t kFixed = 9;  // IMAGE_ID, quaternion, translation, CAMERA_ID
@@ -62,7 +73,7 @@ void read_images(const ColmapCameras& cameras, RawScene& scene) {
         make_colmap_view(std::string(fields[kFixed].data(), end),
                          std::span<const double, 4>(pose, 4), {pose[4], pose[5], pose[6]},
                          identifier(lines, fields[8], "CAMERA_ID"), cameras, lines.where()));
-    lines.next();  // the 2D points, an empty line where there are none
+    skip_observations(lines);
   }
 }
 

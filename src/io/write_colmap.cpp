@@ -2,6 +2,7 @@
 // (https://colmap.github.io/format.html).
 #include <algorithm>
 #include <glm/gtc/quaternion.hpp>
+#include <sstream>
 #include <vector>
 
 #include "core/error.h"
@@ -89,26 +90,27 @@ constexpr double kUnknownError = -1.0;
 void write_colmap_text(const Scene& scene, const fs::path& folder) {
   make_folder(folder);
   const Model model = model_of(scene, folder);
-  std::ostringstream cameras = number_stream(), images = number_stream(), points = number_stream();
+  std::ostringstream cameras, images, points;
   cameras << "# CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]\n";
   for (std::size_t i = 0; i < model.cameras.size(); ++i) {
     const CameraEntry& camera = model.cameras[i];
     cameras << i + 1 << " " << camera.lens->name << " " << camera.width << " " << camera.height;
-    for (const double value : camera.parameters) cameras << " " << value;
+    for (const double value : camera.parameters) cameras << " " << number_text(value);
     cameras << "\n";
   }
   images << "# IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME, then POINTS2D[] (none here)\n";
   for (std::size_t i = 0; i < model.images.size(); ++i) {
     const ImageEntry& image = model.images[i];
     images << i + 1;
-    for (const double value : image.quaternion) images << " " << value;
-    for (int axis = 0; axis < 3; ++axis) images << " " << image.translation[axis];
+    for (const double value : image.quaternion) images << " " << number_text(value);
+    for (int axis = 0; axis < 3; ++axis) images << " " << number_text(image.translation[axis]);
     images << " " << image.camera + 1 << " " << image.name << "\n\n";
   }
   points << "# POINT3D_ID X Y Z R G B ERROR TRACK[]\n";
   for (std::size_t i = 0; i < scene.points.size(); ++i) {
-    const glm::dvec3& p = scene.points[i];
-    points << i + 1 << " " << p.x << " " << p.y << " " << p.z << " 0 0 0 " << kUnknownError << "\n";
+    points << i + 1;
+    for (int axis = 0; axis < 3; ++axis) points << " " << number_text(scene.points[i][axis]);
+    points << " 0 0 0 " << kUnknownError << "\n";
   }
   write_atomically(folder / "cameras.txt", cameras.str());
   write_atomically(folder / "images.txt", images.str());

@@ -1,3 +1,5 @@
+#include <sstream>
+
 #include "core/error.h"
 #include "io/atomic_file.h"
 #include "io/write_scene.h"
@@ -7,7 +9,7 @@ namespace photohull::io {
 
 void write_middlebury(const Scene& scene, const std::filesystem::path& folder) {
   make_folder(folder);
-  std::ostringstream out = number_stream();
+  std::ostringstream out;
   out << scene.views.size() << "\n";
   for (const SourceView& view : scene.views) {
     if (view.distortion.model != DistortionModel::kNone)
@@ -19,8 +21,8 @@ void write_middlebury(const Scene& scene, const std::filesystem::path& folder) {
     const Pose& pose = view.camera.cam_from_world;
     for (const glm::dmat3& m : {k, pose.rotation})
       for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 3; ++column) out << " " << m[column][row];
-    for (int axis = 0; axis < 3; ++axis) out << " " << pose.translation[axis];
+        for (int column = 0; column < 3; ++column) out << " " << number_text(m[column][row]);
+    for (int axis = 0; axis < 3; ++axis) out << " " << number_text(pose.translation[axis]);
     out << "\n";
   }
   write_atomically(folder / "scene_par.txt", out.str());

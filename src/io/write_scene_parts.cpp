@@ -1,8 +1,7 @@
 #include "io/write_scene_parts.h"
 
+#include <charconv>
 #include <cmath>
-#include <limits>
-#include <locale>
 
 #include "core/error.h"
 #include "io/atomic_file.h"
@@ -10,11 +9,9 @@
 namespace photohull::io {
 namespace fs = std::filesystem;
 
-std::ostringstream number_stream() {
-  std::ostringstream out;
-  out.imbue(std::locale::classic());
-  out.precision(std::numeric_limits<double>::max_digits10);
-  return out;
+std::string number_text(double value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
 std::string relative_path(const fs::path& path, const fs::path& folder) {
@@ -51,10 +48,11 @@ void require_no_skew(const SourceView& view, const char* format) {
 
 void write_bbox_file(const Scene& scene, const fs::path& folder) {
   if (!scene.box) return;
-  std::ostringstream out = number_stream();
+  std::string text;
   for (const glm::dvec3& corner : {scene.box->min, scene.box->max})
-    out << corner.x << " " << corner.y << " " << corner.z << "\n";
-  write_atomically(folder / "bbox.txt", out.str());
+    text +=
+        concat(number_text(corner.x), " ", number_text(corner.y), " ", number_text(corner.z), "\n");
+  write_atomically(folder / "bbox.txt", text);
 }
 
 }  // namespace photohull::io

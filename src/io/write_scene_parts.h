@@ -3,15 +3,14 @@
 
 #include <filesystem>
 #include <initializer_list>
-#include <sstream>
 #include <string>
 
 #include "core/scene.h"
 
 namespace photohull::io {
 
-/// A text stream whose numbers read back to the same double, whatever the locale.
-std::ostringstream number_stream();
+/// The shortest decimal number that reads back to the same double, whatever the locale.
+std::string number_text(double value);
 
 /// The view's name where one of `image_folders` (relative to `folder`) holds its image by that
 /// name, else the path of its image relative to `folder`; generic, with forward slashes.

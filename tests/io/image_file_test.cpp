@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <thread>
 
 #include "scene_fixture.h"
 
@@ -217,6 +218,20 @@ TEST_F(ImageFile, AbsurdSizesAreRefused) {
   EXPECT_THAT(error_of([&] { read_image(path); }),
               testing::AllOf(HasSubstr("bomb.pgm"), HasSubstr("60000 x 60000")));
   EXPECT_THAT(error_of([&] { read_mask(path); }), HasSubstr("60000 x 60000"));
+}
+
+TEST_F(ImageFile, ThreadsDecodeSideBySide) {
+  std::vector<std::uint16_t> values(64 * 64 * 3);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::uint16_t(i * 5);
+  write_raw(folder_ / "16.png", spec_of(64, 64, 3, OIIO::TypeDesc::UINT16), values);
+  std::vector<ColourImage> images(8);
+  {
+    std::vector<std::jthread> threads;
+    for (ColourImage& image : images)
+      threads.emplace_back([&] { image = read_image(folder_ / "16.png"); });
+  }
+  for (const ColourImage& image : images) EXPECT_EQ(image.bytes, images[0].bytes);
+  EXPECT_EQ(images[0].bytes.size(), 64u * 64 * 8);
 }
 
 TEST_F(ImageFile, PngsAppearWholeOrNotAtAll) {

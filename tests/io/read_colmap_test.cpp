@@ -113,6 +113,12 @@ TEST_F(ReadColmap, BadImagesAreNamed) {
               AllOf(HasSubstr("c.png was not found"), HasSubstr((folder_ / "images").string())));
 }
 
+// Every other image would be lost in silence.
+TEST_F(ReadColmap, MissingLinesOfPointsAreNamed) {
+  EXPECT_THAT(error_with_image("1 1 0 0 0 0 0 5 1 a.png\n2 1 0 0 0 0 0 5 1 b.png\n"),
+              AllOf(HasSubstr("images.txt line 2"), HasSubstr("empty line")));
+}
+
 TEST_F(ReadColmap, NamesInSubfoldersStayUnique) {
   put_image("images/left/x.png");
   put_image("images/right/x.png");

@@ -160,5 +160,23 @@ TEST_F(ReadMiddlebury, ImagesWithoutUsableSilhouettesAreReported) {
   EXPECT_THAT(load(std::string("2\n") + kFirst + kSecond).warnings, ElementsAre());
 }
 
+// The real thing: every camera must see the box that the README states, most of it on its image.
+TEST(MiddleburyDataset, TempleCamerasSeeTheirBox) {
+  const std::filesystem::path folder =
+      std::filesystem::path(PHOTOHULL_DATASETS) / "templeSparseRing";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there";
+  const Scene scene = load_scene(folder);
+  ASSERT_EQ(scene.views.size(), 16u);
+  EXPECT_EQ(scene.box_source, "README.txt");
+  ASSERT_TRUE(scene.box.has_value());
+  for (const SourceView& view : scene.views) {
+    EXPECT_EQ(view.camera.intrinsics.width, 640);
+    EXPECT_EQ(view.camera.intrinsics.height, 480);
+    const auto pixel = view.camera.project(scene.box->center());
+    ASSERT_TRUE(pixel.has_value());
+    EXPECT_LT(glm::distance(*pixel, glm::dvec2(320, 240)), 100.0) << view.name;
+  }
+}
+
 }  // namespace
 }  // namespace photohull::io
