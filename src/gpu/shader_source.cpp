@@ -25,8 +25,9 @@ void append_file(std::string_view path, std::set<int>& seen, std::string& out) {
     const std::size_t end = std::min(text.find('\n'), text.size() - 1) + 1;
     const std::string_view row = text.substr(0, end);
     text.remove_prefix(end);
-    // The entry point's own #version and include extension are for the linter; ours come first.
-    if (row.starts_with("#version") || row.starts_with("#extension GL_GOOGLE_include_directive")) {
+    // The entry point's own #version and include extension are for the linter, <headers> for C++.
+    if (row.starts_with("#version") || row.starts_with("#include <") ||
+        row.starts_with("#extension GL_GOOGLE_include_directive")) {
       out += "\n";
     } else if (row.starts_with("#include")) {
       const std::size_t open = row.find('"'), close = row.rfind('"');

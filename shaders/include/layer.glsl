@@ -1,0 +1,34 @@
+// Addresses on a layer of the sweep, and who stands there.
+#include "shared/sweep.h"
+
+layout(std140, binding = 0) uniform Parameters { SweepParameters parameters; };
+layout(std430, binding = 1) readonly buffer Items { LayerItem items[]; };
+
+// Voxel coordinates (they may be fractional) of a position on a layer.
+vec3 layer_point(vec2 uv, float layer) {
+  vec3 p;
+  float last = float(parameters.bricks[parameters.axes.z] * 8 - 1);
+  p[parameters.axes.x] = uv.x;
+  p[parameters.axes.y] = uv.y;
+  p[parameters.axes.z] = parameters.axes.w > 0 ? layer : last - layer;
+  return p;
+}
+
+ivec3 layer_voxel(ivec2 uv, int layer) {
+  ivec3 p;
+  p[parameters.axes.x] = uv.x;
+  p[parameters.axes.y] = uv.y;
+  p[parameters.axes.z] =
+      parameters.axes.w > 0 ? layer : parameters.bricks[parameters.axes.z] * 8 - 1 - layer;
+  return p;
+}
+
+// In-plane coordinates of the first column of an item.
+ivec2 item_origin(uint item) {
+  ivec4 brick = items[item].brick;
+  return ivec2(brick[parameters.axes.x], brick[parameters.axes.y]) * 8;
+}
+
+uint column_index(ivec2 uv) {
+  return uint(uv.y * parameters.bricks[parameters.axes.x] * 8 + uv.x);
+}

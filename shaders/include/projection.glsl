@@ -1,0 +1,19 @@
+// Projective texture mapping of one point (Segal et al. 1992).
+#include "shared/view.h"
+
+layout(std430, binding = 0) readonly buffer Views { GpuView views[]; };
+
+// Homogeneous texture coordinates (s, t, q) of a point in voxel coordinates.
+vec3 project(GpuView view, vec3 voxel) {
+  vec4 p = vec4(voxel, 1.0);
+  return vec3(dot(view.row_s, p), dot(view.row_t, p), dot(view.row_q, p));
+}
+
+// Is the pixel position on the image? Pixel centres are integers.
+bool on_image(GpuView view, vec2 pixel) {
+  return all(greaterThanEqual(pixel, vec2(-0.5))) &&
+         all(lessThanEqual(pixel, view.size.xy - 0.5));
+}
+
+// Normalised coordinates in the array texture of a pixel position.
+vec2 texture_coordinate(GpuView view, vec2 pixel) { return (pixel + 0.5) * view.size.zw; }

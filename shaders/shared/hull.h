@@ -1,0 +1,31 @@
+// Contract of the visual-hull kernels.
+#ifndef PHOTOHULL_SHADERS_HULL_H
+#define PHOTOHULL_SHADERS_HULL_H
+
+#ifdef __cplusplus
+#include <glm/glm.hpp>
+namespace photohull::shaders {
+using glm::ivec4;
+using glm::uint;
+using glm::vec4;
+#elif !defined(constexpr)
+#define constexpr const
+#endif
+
+constexpr uint kNodeOutside = 0u;
+constexpr uint kNodeInside = 1u;
+constexpr uint kNodeSurface = 2u;
+
+struct HullParameters {
+  vec4 box_min;   // region of interest in voxel coordinates (w unused)
+  vec4 box_max;
+  ivec4 counts;   // x: items, y: views, z: words of a view bit set, w: views that must see a point
+  vec4 pyramid;   // x: pixels of a cell at level 0, y: levels, z: margin in voxels, w: band in voxels
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(HullParameters) == 64);
+}  // namespace photohull::shaders
+#endif
+
+#endif  // PHOTOHULL_SHADERS_HULL_H

@@ -1,0 +1,25 @@
+// A camera as the shaders see it; the same text is compiled as C++ and as GLSL.
+// All lengths are in voxels of the grid, so that shaders never meet the scene's scale or offset.
+#ifndef PHOTOHULL_SHADERS_VIEW_H
+#define PHOTOHULL_SHADERS_VIEW_H
+
+#ifdef __cplusplus
+#include <glm/glm.hpp>
+namespace photohull::shaders {
+using glm::vec4;
+#endif
+
+struct GpuView {
+  vec4 row_s;   // homogeneous texture coordinates: (s, t, q) = rows . (voxel coordinate, 1);
+  vec4 row_t;   //   pixel = (s / q, t / q), q = depth along the optical axis
+  vec4 row_q;
+  vec4 centre;  // xyz: optical centre; w: focal length in pixels (geometric mean of fx and fy)
+  vec4 size;    // xy: image size in pixels; zw: reciprocal size of the array texture in pixels
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(GpuView) == 80);
+}  // namespace photohull::shaders
+#endif
+
+#endif  // PHOTOHULL_SHADERS_VIEW_H

@@ -1,0 +1,28 @@
+#version 450 core
+#extension GL_GOOGLE_include_directive : require
+// Depth maps of voxels: each voxel of a list lowers the depth of every texel that its bounding square
+// touches, in all maps. x: voxel; y: map. Reference: visibility::reference::splat_voxel.
+#include "include/projection.glsl"
+#include "include/depth_map.glsl"
+
+layout(local_size_x = 64) in;
+layout(std430, binding = 6) readonly buffer Occluders { uint occluder_count; uint pad3, pad4, pad5; ivec4 occluders[]; };
+
+const float kHalfVoxel = 0.5;
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i >= occluder_count) return;
+  DepthMapInfo info = depth_map_infos[gl_WorkGroupID.y];
+  GpuView view = views[gl_WorkGroupID.y];
+  vec3 p = project(view, vec3(occluders[i].xyz));
+  if (p.z <= 1.0) return;
+  vec2 centre = (p.xy / p.z + 0.5) * info.scale.x;
+  float radius = kHalfVoxel * view.centre.w / p.z * info.scale.x;
+  ivec2 low = max(ivec2(floor(centre - radius)), ivec2(0));
+  ivec2 high = min(ivec2(floor(centre + radius)), info.size.xy - 1);
+  uint bits = floatBitsToUint(p.z);
+  for (int y = low.y; y <= high.y; ++y)
+    for (int x = low.x; x <= high.x; ++x)
+      atomicMin(depth_maps[info.size.z + y * info.size.x + x], bits);
+}

@@ -1,0 +1,60 @@
+#include "carving/fit_grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/error.h"
+
+namespace photohull::carving {
+namespace {
+
+constexpr double kMargin = 3.0;  // voxels around the box: room for the narrow band
+constexpr double kMaxBricks = 64.0 * 1024 * 1024;  // a table of 256 MiB; 4096^3 voxels fit
+constexpr double kBytesPerSurfaceBrick = 12e3;     // measured: distances, mesh, VDB copy
+
+}  // namespace
+
+double pixel_footprint(const Box& box, std::span<const Camera> cameras) {
+  std::vector<double> sizes;
+  for (const Camera& camera : cameras) {
+    const double depth = camera.to_camera(box.center()).z;
+    const double focal = std::sqrt(std::abs(camera.intrinsics.fx * camera.intrinsics.fy));
+    if (depth > 0 && focal > 0) sizes.push_back(depth / focal);
+  }
+  if (sizes.empty()) return 0;
+  std::nth_element(sizes.begin(), sizes.begin() + long(sizes.size() / 2), sizes.end());
+  return sizes[sizes.size() / 2];
+}
+
+double voxel_size_for(const Box& box, int resolution) {
+  if (resolution < 2) throw UsageError(concat("--resolution ", resolution, ": at least 2"));
+  const glm::dvec3 size = box.size();
+  return std::max({size.x, size.y, size.z}) / resolution;
+}
+
+GridSpec fit_grid(const Box& box, double voxel_size) {
+  if (!(std::isfinite(voxel_size) && voxel_size > 0))
+    throw UsageError(concat("voxel size ", voxel_size, ": must be finite and positive"));
+  const glm::dvec3 bricks = glm::ceil((box.size() / voxel_size + 2.0 * kMargin) / double(kBrickEdge));
+  const double count = bricks.x * bricks.y * bricks.z;
+  if (!(count <= kMaxBricks))
+    throw Error(concat("voxel size ", voxel_size, " makes a lattice of ", bricks.x * kBrickEdge, " x ",
+                       bricks.y * kBrickEdge, " x ", bricks.z * kBrickEdge, " voxels, whose index alone takes ",
+                       std::ceil(count * 4 / 1048576), " MiB; choose a lower --resolution, a larger "
+                       "--voxel-size or a smaller --box"));
+  GridSpec grid;
+  grid.voxel_size = voxel_size;
+  grid.bricks = glm::ivec3(bricks);
+  // Centre the voxels on the box, so that the margin is even.
+  grid.origin = box.center() - 0.5 * voxel_size * glm::dvec3(grid.voxels() - 1);
+  return grid;
+}
+
+std::int64_t estimate_memory(const GridSpec& grid) {
+  const glm::dvec3 b(grid.bricks);
+  const double faces = 2.0 * (b.x * b.y + b.y * b.z + b.z * b.x);
+  return std::int64_t(4.0 * double(grid.brick_count()) + faces * kBytesPerSurfaceBrick);
+}
+
+}  // namespace photohull::carving

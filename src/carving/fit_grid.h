@@ -1,0 +1,29 @@
+// From box and images to a voxel lattice.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "core/box.h"
+#include "core/camera.h"
+#include "core/grid.h"
+
+namespace photohull::carving {
+
+/// World size of a pixel's footprint at the box's centre, the median over the views that have the
+/// centre in front of them: depth / focal length. 0 when no view has.
+double pixel_footprint(const Box& box, std::span<const Camera> cameras);
+
+/// A lattice over the box, grown by a margin of `kMargin` voxels on each side.
+/// Throws UsageError for a voxel size that is not finite and positive, and Error when the lattice
+/// would need more than `max_bricks` bricks (the message says how much memory that is).
+GridSpec fit_grid(const Box& box, double voxel_size);
+
+/// Voxel size for an effective resolution of `resolution`^3: the box's longest side has that many.
+double voxel_size_for(const Box& box, int resolution);
+
+/// Bytes that a reconstruction on this grid is expected to take at its peak, images not counted:
+/// the brick table, and bricks, bits and mesh of a surface of `kSurfaceFactor` box-face areas.
+std::int64_t estimate_memory(const GridSpec& grid);
+
+}  // namespace photohull::carving

@@ -1,0 +1,250 @@
+// Based on: A. Laurentini, "The visual hull concept", PAMI 1994; the coarse-to-fine sweep is that of
+// R. Szeliski, "Rapid octree construction from image sequences", CVGIP 1993, on bricks.
+#include "carving/hull.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "carving/mask_pyramid.h"
+#include "core/error.h"
+#include "gpu/buffer.h"
+#include "gpu/program.h"
+#include "gpu/texture.h"
+#include "projtex/gpu_views.h"
+#include "shared/hull.h"
+
+namespace photohull::carving {
+namespace {
+
+using gpu::Buffer;
+using glm::ivec3;
+using glm::ivec4;
+
+constexpr float kSplitMargin = 1.0f;        // voxels: keeps both ends of every sign change stored
+constexpr std::size_t kBatchBricks = 16384;  // 32 MiB of distances a dispatch
+
+/// Everything the kernels need of the silhouettes, on the device.
+struct DeviceSilhouettes {
+  gpu::TextureArray pyramid;
+  gpu::TextureArray distances;
+  Buffer views;
+  int levels = 0;
+};
+
+DeviceSilhouettes upload(const GridSpec& grid, std::span<const Camera> cameras,
+                         std::span<const Silhouette> silhouettes) {
+  const glm::ivec2 size = projtex::array_size(cameras);
+  DeviceSilhouettes out;
+  out.distances = gpu::TextureArray(gpu::TextureFormat::kR16f, size.x, size.y, int(cameras.size()));
+  std::vector<shaders::GpuView> views;
+  std::vector<float> padded;
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    const Intrinsics& k = cameras[i].intrinsics;
+    Mask whole;
+    const Mask* mask = silhouettes[i].mask;
+    if (!mask || mask->empty()) {
+      whole = {k.width, k.height, std::vector<std::uint8_t>(std::size_t(k.width) * k.height, 255)};
+      mask = &whole;
+    }
+    const MaskPyramid pyramid = build_mask_pyramid(*mask, size.x, size.y);
+    if (i == 0) {
+      out.levels = int(pyramid.levels.size());
+      out.pyramid = gpu::TextureArray(gpu::TextureFormat::kRg8, pyramid.width, pyramid.height,
+                                      int(cameras.size()), 0);
+    }
+    for (int level = 0; level < out.levels; ++level)
+      out.pyramid.upload(int(i), std::max(pyramid.width >> level, 1),
+                         std::max(pyramid.height >> level, 1), pyramid.levels[level].data(), level);
+    const SilhouetteDistance* d = silhouettes[i].distance;
+    if (d) {
+      PHOTOHULL_CHECK(d->width == k.width && d->height == k.height);
+      out.distances.upload(int(i), d->width, d->height, d->pixels.data());
+    } else {
+      padded.assign(std::size_t(k.width) * k.height, -SilhouetteDistance::kNoContour);
+      out.distances.upload(int(i), k.width, k.height, padded.data());
+    }
+    views.push_back(projtex::to_gpu_view(projtex::to_grid(cameras[i], grid), size));
+  }
+  out.views = Buffer::of(views);
+  return out;
+}
+
+struct Classified {
+  std::vector<ivec4> surface;            ///< nodes to split or, at level 0, bricks to evaluate
+  std::vector<std::uint32_t> relevant;   ///< view bit sets of `surface`
+  std::vector<ivec4> inside;
+};
+
+class HullCarver {
+ public:
+  HullCarver(gpu::Context& context, const GridSpec& grid, const Box& box,
+             std::span<const Camera> cameras, std::span<const Silhouette> silhouettes,
+             const HullOptions& options)
+      : context_(context),
+        grid_(grid),
+        views_(int(cameras.size())),
+        words_((views_ + 31) / 32),
+        device_(upload(grid, cameras, silhouettes)),
+        classify_(gpu::Program::compute("carving_classify_nodes.comp.glsl")),
+        distance_(gpu::Program::compute("carving_hull_distance.comp.glsl")) {
+    const auto to_voxels = [&](const glm::dvec3& p) {
+      return glm::vec4(glm::vec3((p - grid.origin) / grid.voxel_size), 0);
+    };
+    parameters_.box_min = to_voxels(box.min);
+    parameters_.box_max = to_voxels(box.max);
+    parameters_.counts = {0, views_, words_, options.min_views};
+    parameters_.pyramid = {MaskPyramid::kBlock, device_.levels, kSplitMargin, SparseVolume::kBand};
+  }
+
+  /// Nodes of the coarsest level whose 8 voxels times 2^level cover the grid a few times a side.
+  std::vector<ivec4> root_nodes() const {
+    const int longest = std::max({grid_.bricks.x, grid_.bricks.y, grid_.bricks.z});
+    const int level = std::max(0, int(std::bit_width(unsigned(longest))) - 3);
+    std::vector<ivec4> nodes;
+    const ivec3 count = (grid_.bricks + (1 << level) - 1) / (1 << level);
+    for (int z = 0; z < count.z; ++z)
+      for (int y = 0; y < count.y; ++y)
+        for (int x = 0; x < count.x; ++x) nodes.push_back({x, y, z, level});
+    return nodes;
+  }
+
+  Classified classify(const std::vector<ivec4>& nodes) {
+    Buffer node_buffer = Buffer::of(nodes);
+    Buffer classes(nodes.size() * 4), relevant(nodes.size() * 4 * words_);
+    parameters_.counts.x = int(nodes.size());
+    Buffer parameters(sizeof parameters_, &parameters_);
+    bind(parameters);
+    device_.pyramid.bind(0);
+    device_.distances.bind(1);
+    node_buffer.bind_storage(1);
+    classes.bind_storage(2);
+    relevant.bind_storage(3);
+    classify_.dispatch(context_, "carving_classify_nodes", gpu::group_count(nodes.size(), 64));
+    const auto kinds = classes.download<std::uint32_t>(nodes.size());
+    const auto bits = relevant.download<std::uint32_t>(nodes.size() * words_);
+    Classified out;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      if (kinds[i] == shaders::kNodeInside) out.inside.push_back(nodes[i]);
+      if (kinds[i] != shaders::kNodeSurface) continue;
+      out.surface.push_back(nodes[i]);
+      out.relevant.insert(out.relevant.end(), bits.begin() + long(i * words_),
+                          bits.begin() + long((i + 1) * words_));
+    }
+    return out;
+  }
+
+  /// The children that lie on the grid.
+  std::vector<ivec4> split(const std::vector<ivec4>& nodes) const {
+    std::vector<ivec4> children;
+    children.reserve(nodes.size() * 8);
+    for (const ivec4& n : nodes)
+      for (int i = 0; i < 8; ++i) {
+        const ivec3 child = ivec3(n) * 2 + ivec3(i & 1, (i >> 1) & 1, i >> 2);
+        const ivec3 low = child << (n.w - 1);
+        if (low.x < grid_.bricks.x && low.y < grid_.bricks.y && low.z < grid_.bricks.z)
+          children.emplace_back(child, n.w - 1);
+      }
+    return children;
+  }
+
+  /// Distances of the bricks [first, first + count) of the last level.
+  std::vector<float> evaluate(const Classified& leaves, std::size_t first, std::size_t count) {
+    Buffer bricks(count * sizeof(ivec4), &leaves.surface[first]);
+    Buffer relevant(count * words_ * 4, &leaves.relevant[first * words_]);
+    Buffer distances(count * kBrickVoxels * 4);
+    parameters_.counts.x = int(count);
+    Buffer parameters(sizeof parameters_, &parameters_);
+    bind(parameters);
+    device_.distances.bind(0);
+    bricks.bind_storage(1);
+    distances.bind_storage(2);
+    relevant.bind_storage(3);
+    distance_.dispatch(context_, "carving_hull_distance", count);
+    return distances.download<float>(count * kBrickVoxels);
+  }
+
+ private:
+  void bind(const Buffer& parameters) const {
+    parameters.bind_uniform(0);
+    device_.views.bind_storage(0);
+  }
+
+  gpu::Context& context_;
+  GridSpec grid_;
+  int views_, words_;
+  DeviceSilhouettes device_;
+  gpu::Program classify_, distance_;
+  shaders::HullParameters parameters_;
+};
+
+void mark_inside(SparseVolume& volume, const ivec4& node) {
+  const ivec3 low = ivec3(node) << node.w;
+  const ivec3 high = glm::min(low + (1 << node.w), volume.grid.bricks);
+  for (int z = low.z; z < high.z; ++z)
+    for (int y = low.y; y < high.y; ++y)
+      for (int x = low.x; x < high.x; ++x)
+        volume.table[volume.grid.brick_index({x, y, z})] = SparseVolume::kInside;
+}
+
+/// Stores a brick unless all of it lies on one side, beyond the reach of interpolation.
+void store_brick(SparseVolume& volume, const ivec3& brick, const float* distances) {
+  const auto [low, high] = std::minmax_element(distances, distances + kBrickVoxels);
+  std::uint32_t& slot = volume.table[volume.grid.brick_index(brick)];
+  if (*low > kSplitMargin || *high < -kSplitMargin) {
+    slot = *low > 0 ? SparseVolume::kOutside : SparseVolume::kInside;
+    return;
+  }
+  slot = std::uint32_t(volume.bricks.size());
+  volume.bricks.push_back(brick);
+  volume.distance.insert(volume.distance.end(), distances, distances + kBrickVoxels);
+  for (std::size_t i = volume.distance.size() - kBrickVoxels; i < volume.distance.size(); ++i)
+    volume.distance[i] = std::clamp(volume.distance[i], -SparseVolume::kBand, SparseVolume::kBand);
+}
+
+std::int64_t count_bits(const std::vector<std::uint32_t>& words) {
+  std::int64_t count = 0;
+  for (const std::uint32_t w : words) count += std::popcount(w);
+  return count;
+}
+
+}  // namespace
+
+SparseVolume carve_silhouette(gpu::Context& context, const GridSpec& grid, const Box& box,
+                              std::span<const Camera> cameras,
+                              std::span<const Silhouette> silhouettes, const HullOptions& options,
+                              Progress& progress, HullReport* report) {
+  PHOTOHULL_CHECK(!cameras.empty());
+  PHOTOHULL_CHECK_OP(cameras.size(), ==, silhouettes.size());
+  HullCarver carver(context, grid, box, cameras, silhouettes, options);
+  SparseVolume volume;
+  volume.grid = grid;
+  volume.table.assign(grid.brick_count(), SparseVolume::kOutside);
+  HullReport counts;
+
+  std::vector<ivec4> nodes = carver.root_nodes();
+  Classified found;
+  for (;;) {
+    progress.check_cancelled();
+    counts.nodes_tested += std::int64_t(nodes.size());
+    found = carver.classify(nodes);
+    for (const ivec4& node : found.inside) mark_inside(volume, node);
+    if (nodes.empty() || nodes.front().w == 0) break;
+    nodes = carver.split(found.surface);
+    if (nodes.empty()) break;
+  }
+  if (nodes.empty()) found.surface.clear();
+  counts.bricks_evaluated = std::int64_t(found.surface.size());
+  counts.samples = count_bits(found.relevant) * kBrickVoxels;
+  for (std::size_t first = 0; first < found.surface.size(); first += kBatchBricks) {
+    progress.check_cancelled();
+    const std::size_t count = std::min(kBatchBricks, found.surface.size() - first);
+    const std::vector<float> distances = carver.evaluate(found, first, count);
+    for (std::size_t i = 0; i < count; ++i)
+      store_brick(volume, ivec3(found.surface[first + i]), &distances[i * kBrickVoxels]);
+    progress.update(double(first + count) / double(found.surface.size()));
+  }
+  if (report) *report = counts;
+  return volume;
+}
+
+}  // namespace photohull::carving

@@ -1,0 +1,60 @@
+// The visual hull from silhouettes, coarse to fine on sparse bricks [Laurentini94].
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/grid.h"
+#include "core/image.h"
+#include "core/progress.h"
+#include "core/silhouette.h"
+#include "gpu/context.h"
+
+namespace photohull::carving {
+
+/// What a view's silhouette says. Views without a mask have empty parts: they bound the volume by
+/// their frustum only.
+struct Silhouette {
+  const Mask* mask = nullptr;
+  const SilhouetteDistance* distance = nullptr;
+};
+
+struct HullOptions {
+  /// Cameras that must have a point on their image for it to stand (>= 1). With silhouettes one is
+  /// enough; without, space seen by fewer than two cameras can never be judged and is dropped.
+  int min_views = 1;
+};
+
+struct HullReport {
+  std::int64_t nodes_tested = 0;
+  std::int64_t bricks_evaluated = 0;
+  std::int64_t samples = 0;  ///< upper bound of silhouette look-ups
+};
+
+/// Truncated signed distance to the intersection of box, silhouette cones and (for min_views > 1)
+/// frusta. `box` in world coordinates lies inside the grid. Throws Error when nothing is left; the
+/// message names the views that removed the most.
+SparseVolume carve_silhouette(gpu::Context& context, const GridSpec& grid, const Box& box,
+                              std::span<const Camera> cameras,
+                              std::span<const Silhouette> silhouettes, const HullOptions& options,
+                              Progress& progress, HullReport* report = nullptr);
+
+namespace reference {
+
+enum class NodeClass { kOutside, kInside, kSurface };
+
+/// What the node's cube of `edge` voxels from corner `low` (voxel coordinates, grown by `margin`) is,
+/// by looking at every pixel that its projection touches; double precision.
+NodeClass classify_node(const GridSpec& grid, const Box& box, std::span<const Camera> cameras,
+                        std::span<const Silhouette> silhouettes, const HullOptions& options,
+                        const glm::ivec3& low, int edge, double margin);
+
+/// Signed distance in voxels at one voxel, clamped to the band; double precision.
+double hull_distance(const GridSpec& grid, const Box& box, std::span<const Camera> cameras,
+                     std::span<const Silhouette> silhouettes, const HullOptions& options,
+                     const glm::ivec3& voxel);
+
+}  // namespace reference
+}  // namespace photohull::carving

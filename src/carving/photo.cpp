@@ -1,0 +1,299 @@
+// Based on: S. Seitz, C. Dyer, "Photorealistic scene reconstruction by voxel coloring", CVPR 1997;
+// K. Kutulakos, S. Seitz, "A theory of shape by space carving", IJCV 2000; and, for the evaluation on
+// reference planes by projective texture mapping, A. Montenegro's thesis, chapter 3.
+#include "carving/photo.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "carving/bit_volume.h"
+#include "carving/decisions.h"
+#include "core/error.h"
+#include "gpu/buffer.h"
+#include "gpu/program.h"
+#include "shared/sweep.h"
+#include "visibility/depth_maps.h"
+
+namespace photohull::carving {
+namespace {
+
+using glm::ivec3;
+using gpu::Buffer;
+using gpu::Program;
+
+constexpr double kLeastCosine = 0.35;      // between a camera's direction and the sweep
+constexpr std::size_t kChunk = 1024;       // bricks whose samples are held at once
+constexpr double kNegligible = 1e-4;       // carved in a round / judged: the sweeps have converged
+
+struct Direction {
+  int axis, sign;
+};
+
+/// A list with a header of four words, the first being its length.
+struct DeviceList {
+  Buffer buffer;
+  explicit DeviceList(std::size_t capacity) : buffer(16 + capacity * 16) { clear(); }
+  void clear() {
+    const std::uint32_t zeros[4] = {};
+    buffer.write(0, 16, zeros);
+  }
+  std::size_t count() const { return buffer.download<std::uint32_t>(1)[0]; }
+};
+
+class Sweeper {
+ public:
+  Sweeper(gpu::Context& context, const SparseVolume& hull, const projtex::ImageSet& images,
+          std::span<const Camera> cameras, const PhotoOptions& options)
+      : context_(context),
+        images_(images),
+        options_(options),
+        bits_(to_bits(hull)),
+        select_(Program::compute("carving_select_columns.comp.glsl")),
+        project_(Program::compute("projtex_project_layer.comp.glsl")),
+        score_(Program::compute("carving_score_columns.comp.glsl")),
+        update_(Program::compute("carving_update_columns.comp.glsl")) {
+    for (const Camera& camera : cameras) cameras_.push_back(projtex::to_grid(camera, hull.grid));
+    const glm::ivec2 size(images.texture().width(), images.texture().height());
+    std::vector<shaders::GpuView> views;
+    for (const auto& camera : cameras_) views.push_back(projtex::to_gpu_view(camera, size));
+    views_ = Buffer::of(views);
+    maps_ = std::make_unique<visibility::DepthMaps>(cameras_, hull.grid);
+    table_ = Buffer::of(bits_.table);
+    occupancy_ = Buffer::of(bits_.words);
+    std::vector<std::uint32_t> active(hull.table.size());
+    for (std::size_t i = 0; i < active.size(); ++i)
+      active[i] = hull.table[i] < SparseVolume::kInside;
+    active_ = Buffer::of(active);
+    samples_ = Buffer(kChunk * shaders::kMaxLayerViews * shaders::kApronArea * 16);
+    parameters_.noise = {float(options.noise_sigma * options.noise_sigma),
+                         float(std::pow(options.min_texture * options.noise_sigma, 2)), 0, 0};
+    parameters_.thresholds = {float(options.keep_score), float(options.better_by),
+                              float(options.min_views), float(options.depth_bias)};
+  }
+
+  /// Cameras that look along the direction from outside the grid's far half.
+  int cameras_along(const Direction& d) const {
+    const glm::dvec3 centre = 0.5 * glm::dvec3(bits_.grid.voxels());
+    int count = 0;
+    for (const auto& camera : cameras_)
+      count += cosine(camera, centre, d) > kLeastCosine;
+    return count;
+  }
+
+  /// One sweep; returns the number of voxels carved.
+  std::int64_t sweep(const Direction& direction, Progress& progress) {
+    direction_ = direction;
+    const ivec3 grid = bits_.grid.bricks;
+    const int u = (direction.axis + 1) % 3, v = (direction.axis + 2) % 3;
+    parameters_.axes = {u, v, direction.axis, direction.sign};
+    parameters_.layer = {0, options_.supersample, int(cameras_.size()), options_.front_face};
+    const shaders::Column fresh{{-1, -1, 0, 0}, {0, 0, 0, 0}};
+    columns_ = Buffer::of(
+        std::vector<shaders::Column>(std::size_t(grid[u]) * grid[v] * 64, fresh));
+    maps_->clear();
+    std::vector<shaders::Decision> decisions;
+    for (int slab = 0; slab < grid[direction.axis]; ++slab) {
+      progress.check_cancelled();
+      const std::vector<shaders::LayerItem> items = items_of(slab);
+      if (items.empty()) continue;
+      items_ = Buffer::of(items);
+      parameters_.bricks = glm::ivec4(grid, int(items.size()));
+      DeviceList selected(items.size()), occluders(items.size() * 128);
+      Buffer scores(items.size() * 64 * 16);
+      DeviceList decided(items.size() * kBrickVoxels * 2);
+      for (int layer = slab * kBrickEdge; layer < (slab + 1) * kBrickEdge; ++layer)
+        sweep_layer(layer, items.size(), selected, occluders, scores, decided);
+      const auto header = decided.buffer.download<std::uint32_t>(2);
+      counts_.judged += header[1];
+      const std::size_t first = decisions.size();
+      decisions.resize(first + header[0]);
+      decided.buffer.read(16, header[0] * sizeof(shaders::Decision), decisions.data() + first);
+    }
+    return apply(decisions);
+  }
+
+  const PhotoReport& counts() const { return counts_; }
+  BitVolume result() { return std::move(bits_); }
+
+ private:
+  std::int64_t apply(const std::vector<shaders::Decision>& decisions) {
+    const std::vector<ivec3> carved =
+        apply_decisions(bits_, direction_.axis, direction_.sign, decisions);
+    for (const shaders::Decision& d : decisions) {
+      counts_.undecided += d.scores.z == shaders::kUnseen;
+      counts_.reverted += d.scores.z == shaders::kUndecided;
+    }
+    counts_.carved += std::int64_t(carved.size());
+    occupancy_ = Buffer::of(bits_.words);
+    auto active = active_.download<std::uint32_t>(bits_.table.size());
+    for (const ivec3& voxel : carved)
+      for (int axis = 0; axis < 3; ++axis)
+        for (const int side : {-1, 1}) {
+          ivec3 neighbour = voxel;
+          neighbour[axis] = std::clamp(voxel[axis] + side, 0, bits_.grid.voxels()[axis] - 1);
+          active[bits_.grid.brick_index(neighbour / kBrickEdge)] = 1;
+        }
+    active_ = Buffer::of(active);
+    return std::int64_t(carved.size());
+  }
+
+  static double cosine(const projtex::GridCamera& camera, const glm::dvec3& point,
+                       const Direction& d) {
+    const glm::dvec3 ray = point - camera.centre;
+    return ray[d.axis] * d.sign / std::max(glm::length(ray), 1e-9);
+  }
+
+  /// The active bricks of a slab, each with the most frontal views that have it on their image.
+  std::vector<shaders::LayerItem> items_of(int slab) const {
+    const ivec3 grid = bits_.grid.bricks;
+    const int along = direction_.sign > 0 ? slab : grid[direction_.axis] - 1 - slab;
+    const auto active = active_.download<std::uint32_t>(bits_.table.size());
+    std::vector<shaders::LayerItem> items;
+    const int u = (direction_.axis + 1) % 3, v = (direction_.axis + 2) % 3;
+    ivec3 brick;
+    brick[direction_.axis] = along;
+    for (brick[v] = 0; brick[v] < grid[v]; ++brick[v])
+      for (brick[u] = 0; brick[u] < grid[u]; ++brick[u]) {
+        const std::size_t index = bits_.grid.brick_index(brick);
+        if (active[index] && bits_.table[index] != SparseVolume::kOutside)
+          items.push_back(choose_views(brick));
+      }
+    return items;
+  }
+
+  shaders::LayerItem choose_views(const ivec3& brick) const {
+    const glm::dvec3 centre = glm::dvec3(brick * kBrickEdge) + 0.5 * (kBrickEdge - 1);
+    std::vector<std::pair<double, std::uint32_t>> ranked;
+    for (std::size_t i = 0; i < cameras_.size(); ++i) {
+      const auto& camera = cameras_[i];
+      const double frontal = cosine(camera, centre, direction_);
+      const glm::dvec3 p = camera.projection * glm::dvec4(centre, 1);
+      if (frontal <= kLeastCosine || p.z <= kBrickEdge) continue;
+      const glm::dvec2 pixel(p.x / p.z, p.y / p.z);
+      const double reach = kBrickEdge * camera.focal / p.z;
+      if (pixel.x < -reach || pixel.y < -reach || pixel.x > camera.width + reach ||
+          pixel.y > camera.height + reach)
+        continue;
+      ranked.emplace_back(-frontal, std::uint32_t(i));
+    }
+    std::sort(ranked.begin(), ranked.end());
+    ranked.resize(std::min<std::size_t>(ranked.size(), shaders::kMaxLayerViews));
+    shaders::LayerItem item{};
+    item.brick = glm::ivec4(brick, int(ranked.size()));
+    for (std::size_t i = 0; i < ranked.size(); ++i)
+      item.views[i / 4][int(i % 4)] = ranked[i].second;
+    return item;
+  }
+
+  void bind(const Buffer& parameters, const DeviceList& selected, const Buffer& block6,
+            const Buffer& scores, const DeviceList& decided) const {
+    parameters.bind_uniform(0);
+    views_.bind_storage(0);
+    items_.bind_storage(1);
+    table_.bind_storage(2);
+    occupancy_.bind_storage(3);
+    columns_.bind_storage(4);
+    selected.buffer.bind_storage(5);
+    block6.bind_storage(6);
+    scores.bind_storage(7);
+    maps_->bind();
+    active_.bind_storage(10);
+    decided.buffer.bind_storage(11);
+  }
+
+  void sweep_layer(int layer, std::size_t items, DeviceList& selected, DeviceList& occluders,
+                   const Buffer& scores, const DeviceList& decided) {
+    parameters_.layer.x = layer;
+    parameters_.chunk = {0, options_.max_path, 0, 0};
+    Buffer parameters(sizeof parameters_, &parameters_);
+    selected.clear();
+    occluders.clear();
+    bind(parameters, selected, occluders.buffer, scores, decided);
+    select_.dispatch(context_, "carving_select_columns", items);
+    const std::size_t count = selected.count();
+    for (std::size_t first = 0; first < count; first += kChunk) {
+      const std::size_t chunk = std::min(kChunk, count - first);
+      parameters_.chunk.x = int(first);
+      Buffer chunk_parameters(sizeof parameters_, &parameters_);
+      bind(chunk_parameters, selected, samples_, scores, decided);
+      images_.texture().bind(0);
+      project_.dispatch(context_, "projtex_project_layer", chunk, shaders::kMaxLayerViews);
+      score_.dispatch(context_, "carving_score_columns", chunk);
+      counts_.samples += std::int64_t(chunk) * shaders::kMaxLayerViews * shaders::kApronArea *
+                       options_.supersample * options_.supersample;
+    }
+    bind(parameters, selected, occluders.buffer, scores, decided);
+    update_.dispatch(context_, "carving_update_columns", count);
+    maps_->splat(context_, occluders.buffer, occluders.count());
+  }
+
+  gpu::Context& context_;
+  const projtex::ImageSet& images_;
+  PhotoOptions options_;
+  BitVolume bits_;
+  std::vector<projtex::GridCamera> cameras_;
+  Program select_, project_, score_, update_;
+  std::unique_ptr<visibility::DepthMaps> maps_;
+  Buffer views_, table_, occupancy_, active_, samples_, columns_, items_;
+  Direction direction_{};
+  shaders::SweepParameters parameters_{};
+  PhotoReport counts_;
+};
+
+std::vector<Direction> directions_of(const PhotoOptions& options, const Sweeper& sweeper) {
+  std::vector<Direction> all;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int sign : {1, -1}) all.push_back({axis, sign});
+  if (options.method == PhotoMethod::kSpaceCarving) return all;
+  return {*std::max_element(all.begin(), all.end(), [&](const Direction& a, const Direction& b) {
+    return sweeper.cameras_along(a) < sweeper.cameras_along(b);
+  })};
+}
+
+}  // namespace
+
+void PhotoOptions::validate() const {
+  const auto require = [](bool ok, const char* what) {
+    if (!ok) throw UsageError(what);
+  };
+  require(keep_score > 0 && keep_score < 1, "keep_score must lie in (0, 1)");
+  require(better_by >= 0 && better_by <= 1, "better_by must lie in [0, 1]");
+  require(min_views >= 2, "min_views must be at least 2");
+  require(noise_sigma > 0 && std::isfinite(noise_sigma), "noise_sigma must be positive");
+  require(min_texture >= 0, "min_texture must not be negative");
+  require(supersample >= 1 && supersample <= 4, "supersample must be 1 to 4");
+  require(depth_bias >= 0, "depth_bias must not be negative");
+  require(max_rounds >= 1, "max_rounds must be at least 1");
+}
+
+SparseVolume carve_photo(gpu::Context& context, const SparseVolume& hull,
+                         const projtex::ImageSet& images, std::span<const Camera> cameras,
+                         const PhotoOptions& options, Progress& progress, PhotoReport* report) {
+  options.validate();
+  PHOTOHULL_CHECK_OP(int(cameras.size()), ==, images.layers());
+  Sweeper sweeper(context, hull, images, cameras, options);
+  const std::vector<Direction> directions = directions_of(options, sweeper);
+  const int rounds = options.method == PhotoMethod::kSpaceCarving ? options.max_rounds : 1;
+  int round = 0, sweeps = 0;
+  for (std::int64_t judged = 0; round < rounds;) {
+    std::int64_t carved = 0;
+    for (const Direction& direction : directions) {
+      carved += sweeper.sweep(direction, progress);
+      progress.update(double(++sweeps) / double(rounds * int(directions.size())));
+    }
+    ++round;
+    const std::int64_t judged_now = sweeper.counts().judged - judged;
+    judged += judged_now;
+    if (double(carved) <= kNegligible * double(judged_now)) break;
+  }
+  if (report) {
+    *report = sweeper.counts();
+    report->rounds = round;
+    report->sweeps = sweeps;
+    report->sampling_seconds = context.statistics()["projtex_project_layer"].seconds;
+  }
+  return carved_distance(hull, sweeper.result());
+}
+
+}  // namespace photohull::carving

@@ -1,0 +1,65 @@
+// Carving by photo-consistency: plane sweeps through what stands [SeitzDyer97; KutulakosSeitz00;
+// Montenegro03].
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "core/grid.h"
+#include "core/progress.h"
+#include "gpu/context.h"
+#include "projtex/gpu_views.h"
+#include "projtex/image_set.h"
+
+namespace photohull::carving {
+
+enum class PhotoMethod {
+  kVoxelColoring,  ///< one sweep, along the axis that has the most cameras on one side
+  kSpaceCarving    ///< sweeps along +-x, +-y, +-z until nothing is left to carve
+};
+
+struct PhotoOptions {
+  PhotoMethod method = PhotoMethod::kSpaceCarving;
+  /// Correlation in (0, 1) from which a voxel counts as consistent.
+  double keep_score = 0.6;
+  /// A voxel is carved only if one behind it correlates better by this much. In [0, 1].
+  double better_by = 0.15;
+  /// Cameras that must see a voxel before its consistency means anything (>= 2).
+  int min_views = 3;
+  /// Standard deviation of the images' noise, in square-root-encoded units of full scale (> 0).
+  double noise_sigma = 0.01;
+  /// Texture below this many noise standard deviations tells nothing (>= 0).
+  double min_texture = 1.5;
+  /// n x n samples a voxel on top of mip-mapping (1 to 4).
+  int supersample = 1;
+  /// Reference planes through the voxels' front faces instead of their centres.
+  bool front_face = false;
+  /// Constant bias of the visibility test, voxels (>= 0).
+  double depth_bias = 2.5;
+  /// Layers behind an inconsistent voxel that are searched for a better explanation (>= 1).
+  int max_path = 64;
+  /// Rounds of six sweeps at most (>= 1).
+  int max_rounds = 4;
+
+  void validate() const;  ///< throws UsageError naming the field
+};
+
+struct PhotoReport {
+  int sweeps = 0;
+  int rounds = 0;
+  std::int64_t judged = 0;     ///< voxels whose consistency was computed
+  std::int64_t carved = 0;
+  std::int64_t undecided = 0;  ///< too few cameras, or too little texture: kept
+  std::int64_t reverted = 0;   ///< inconsistent, but nothing behind explained the images better
+  std::int64_t samples = 0;    ///< texture samples
+  double sampling_seconds = 0; ///< spent in the kernel that takes them
+};
+
+/// Carves `hull` and returns the result with a sub-voxel distance where something was carved; what
+/// was not touched keeps the hull's distance. `cameras` and `images` are in the same order.
+SparseVolume carve_photo(gpu::Context& context, const SparseVolume& hull,
+                         const projtex::ImageSet& images, std::span<const Camera> cameras,
+                         const PhotoOptions& options, Progress& progress,
+                         PhotoReport* report = nullptr);
+
+}  // namespace photohull::carving

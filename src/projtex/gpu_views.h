@@ -1,0 +1,33 @@
+// Cameras in the GPU's frame: voxel coordinates of a grid.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/grid.h"
+#include "core/image.h"
+#include "shared/view.h"
+
+namespace photohull::projtex {
+
+/// Camera as seen from the grid's voxel coordinates (double precision; the CPU references use it).
+struct GridCamera {
+  glm::dmat4x3 projection{1.0};  ///< (s, t, q) = projection * (voxel, 1); q in voxels, pixel = s/q
+  glm::dvec3 centre{0.0};        ///< voxel coordinates
+  double focal = 0;              ///< pixels
+  int width = 0, height = 0;     ///< pixels
+};
+
+GridCamera to_grid(const Camera& camera, const GridSpec& grid);
+
+/// The same in single precision for images that sit at the origin of layers of an array texture of
+/// `array_size` pixels.
+shaders::GpuView to_gpu_view(const GridCamera& camera, const glm::ivec2& array_size);
+
+/// Smallest array texture that holds images of all the sizes.
+glm::ivec2 array_size(std::span<const Camera> cameras);
+
+std::vector<Camera> cameras_of(std::span<const View> views);
+
+}  // namespace photohull::projtex

@@ -1,0 +1,51 @@
+// Depth maps of voxels from the input cameras [Williams78].
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/grid.h"
+#include "gpu/buffer.h"
+#include "gpu/context.h"
+#include "gpu/program.h"
+#include "projtex/gpu_views.h"
+#include "shared/sweep.h"
+
+namespace photohull::visibility {
+
+/// One depth map per camera, with texels about as large as a voxel looks from there.
+class DepthMaps {
+ public:
+  /// Maps for `cameras` (in the grid's frame) that look at `grid`. Nothing hides anything yet.
+  DepthMaps(std::span<const projtex::GridCamera> cameras, const GridSpec& grid);
+
+  /// Forgets all that was drawn.
+  void clear();
+  /// Storage blocks 8 (infos) and 9 (depths) of include/depth_map.glsl.
+  void bind() const;
+  /// Draws the first `count` voxels of `voxels` (ivec4, preceded by a header of 16 bytes whose first
+  /// word is the count) into all maps. Cameras must be bound to storage block 0.
+  void splat(gpu::Context& context, const gpu::Buffer& voxels, std::size_t count);
+
+  const std::vector<shaders::DepthMapInfo>& infos() const { return infos_; }
+  /// Depths in voxels of one map, row-major; +infinity where nothing was drawn.
+  std::vector<float> download(std::size_t map) const;
+
+ private:
+  std::vector<shaders::DepthMapInfo> infos_;
+  gpu::Buffer info_buffer_, depths_;
+  gpu::Program splat_;
+};
+
+namespace reference {
+
+/// Draws a voxel into a map of `info` (row-major depths), as DepthMaps::splat does; double precision.
+void splat_voxel(const projtex::GridCamera& camera, const shaders::DepthMapInfo& info,
+                 const glm::ivec3& voxel, std::vector<double>& depths);
+
+/// Is a point (voxel coordinates) not hidden in the map, with a constant bias in voxels?
+bool visible(const projtex::GridCamera& camera, const shaders::DepthMapInfo& info,
+             const glm::dvec3& point, double bias, std::span<const double> depths);
+
+}  // namespace reference
+}  // namespace photohull::visibility
