@@ -1,0 +1,24 @@
+// From pictures with lens distortion to ideal pinhole pictures.
+#pragma once
+
+#include "core/camera.h"
+#include "core/image.h"
+
+namespace photohull {
+
+/// Where a lens images the ray (x, y, 1): both in the image plane at z = 1 of the camera frame.
+/// Formulas and order of coefficients are those of OpenCV's calib3d and its fisheye module.
+glm::dvec2 distort(const Distortion& distortion, const glm::dvec2& ideal);
+
+/// Pinhole intrinsics for the undistorted picture: the same focal lengths and skew, the principal
+/// point moved by whole pixels, and the smallest frame that shows all of the photograph within
+/// `max_growth` times the photograph's extent from the principal point to each side.
+Intrinsics undistorted_intrinsics(const Intrinsics& source, const Distortion& distortion,
+                                  double max_growth);
+
+/// Resamples the image (bicubic, in linear light) and its mask (bilinear) to
+/// undistorted_intrinsics() and sets view.camera to them. Pixels that the photograph does not
+/// show get alpha 0 and coverage 255: they are unknown. Without distortion nothing happens.
+void undistort(const Distortion& distortion, double max_growth, View& view);
+
+}  // namespace photohull
