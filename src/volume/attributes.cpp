@@ -24,6 +24,9 @@ std::size_t stored_index(const SparseVolume& volume, const glm::ivec3& voxel) {
   return std::size_t(slot) * kBrickVoxels + voxel_offset(voxel % kBrickEdge);
 }
 
+/// A voxel is not known by less than this: a mean over such weights is rounding noise.
+constexpr float kLeastWeight = 1e-4f;
+
 struct Point {
   glm::dvec3 voxel{0.0};
   glm::vec3 colour{0};
@@ -76,6 +79,7 @@ void Splatter::splat(const Point& p) {
     if (i == kNotStored) continue;
     const glm::vec3 share = glm::mix(1.0f - at, at, glm::vec3(step));
     const float weight = share.x * share.y * share.z;
+    if (weight < kLeastWeight) continue;
     weight_[i] += weight;
     if (!sums_.colour.empty()) sums_.colour[i] += weight * p.colour;
     if (!sums_.confidence.empty()) sums_.confidence[i] += weight * p.confidence;

@@ -20,38 +20,46 @@ TriMesh painted(TriMesh mesh) {
   return mesh;
 }
 
-constexpr double kTolerance = 3.0 / 64;  // what the colour changes over 3 voxels
+constexpr double kTolerance = 3.5 / 64;  // a splat and a fill reach at most 2 sqrt(3) voxels
 
-/// Every stored voxel near the surface knows the value there but for the distance from the surface
-/// and the spread, the others know nothing.
-void expect_painted(const SparseVolume& volume, const VolumeAttributes& attributes) {
-  ASSERT_EQ(attributes.colour.size(), volume.distance.size());
-  ASSERT_EQ(attributes.confidence.size(), volume.distance.size());
-  for (std::size_t slot = 0; slot < volume.bricks.size(); ++slot)
-    for (int i = 0; i < kBrickVoxels; ++i) {
-      const std::size_t index = slot * kBrickVoxels + i;
-      const glm::dvec3 p(volume.bricks[slot] * kBrickEdge +
-                         glm::ivec3(i >> 6, (i >> 3) & 7, i & 7));
-      if (std::abs(volume.distance[index]) < VolumeAttributes::kReach) {
-        ASSERT_LT(glm::distance(attributes.colour[index], colour_at(p)), kTolerance);
-        ASSERT_NEAR(attributes.confidence[index], confidence_at(p), kTolerance);
-      } else {
-        ASSERT_EQ(attributes.colour[index].r, VolumeAttributes::kUnknown);
-        ASSERT_EQ(attributes.confidence[index], VolumeAttributes::kUnknown);
-      }
+/// Checks that the voxels near the surface know the value there but for the spread, and that the
+/// others know nothing. Returns how many near the surface know nothing either.
+std::size_t count_unknown(const SparseVolume& volume, const VolumeAttributes& attributes) {
+  EXPECT_EQ(attributes.colour.size(), volume.distance.size());
+  EXPECT_EQ(attributes.confidence.size(), volume.distance.size());
+  std::size_t unknown = 0;
+  for (std::size_t index = 0; index < volume.distance.size(); ++index) {
+    const glm::vec3 colour = attributes.colour.at(index);
+    const float confidence = attributes.confidence.at(index);
+    const bool near = std::abs(volume.distance[index]) < VolumeAttributes::kReach;
+    EXPECT_EQ(colour.r == VolumeAttributes::kUnknown, confidence == VolumeAttributes::kUnknown);
+    if (confidence == VolumeAttributes::kUnknown) {
+      unknown += near;
+      continue;
     }
+    const int i = int(index % kBrickVoxels);
+    const glm::dvec3 p(volume.bricks[index / kBrickVoxels] * kBrickEdge +
+                       glm::ivec3(i >> 6, (i >> 3) & 7, i & 7));
+    EXPECT_TRUE(near);
+    EXPECT_LT(glm::distance(colour, colour_at(p)), kTolerance);
+    EXPECT_NEAR(confidence, confidence_at(p), kTolerance);
+  }
+  return unknown;
 }
 
 TEST(Attributes, FollowTheMesh) {
   const SparseVolume volume = sample_volume(glm::ivec3(8), sphere({31.3, 32.1, 30.7}, 20));
-  expect_painted(volume, attributes_from_mesh(volume, painted(extract_mesh(volume))));
+  const TriMesh mesh = painted(extract_mesh(volume));
+  EXPECT_EQ(count_unknown(volume, attributes_from_mesh(volume, mesh)), 0u);
 }
 
 TEST(Attributes, FollowLargeTriangles) {
   const SparseVolume volume = sample_volume(glm::ivec3(8), box({10, 10, 10}, {50, 51, 52}));
-  const TriMesh mesh = extract_mesh(volume, 0.5);
+  const TriMesh mesh = painted(extract_mesh(volume, 0.5));
   ASSERT_LT(mesh.positions.size(), 2000u);
-  expect_painted(volume, attributes_from_mesh(volume, painted(mesh)));
+  // The coarse mesh passes the box's edges by: some voxels there have no mesh near them.
+  EXPECT_LT(count_unknown(volume, attributes_from_mesh(volume, mesh)),
+            volume.distance.size() / 500);
 }
 
 TEST(Attributes, OfAMeshWithoutAny) {
