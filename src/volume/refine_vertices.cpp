@@ -2,6 +2,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -39,14 +40,42 @@ struct Sample {
   glm::vec3 gradient{0};
 };
 
-/// False when a part of the neighbourhood is outside the grid: distances there are made up.
+/// The values of a brick of the table, kBrickVoxels of them whether it is stored or not.
+const float* brick_values(const SparseVolume& volume, const glm::ivec3& brick) {
+  using Brick = std::array<float, kBrickVoxels>;
+  const auto filled = [](float value) {
+    Brick all;
+    all.fill(value);
+    return all;
+  };
+  static const Brick inside = filled(-SparseVolume::kBand), outside = filled(SparseVolume::kBand);
+  const std::uint32_t slot = volume.table[volume.grid.brick_index(brick)];
+  if (slot == SparseVolume::kInside) return inside.data();
+  if (slot == SparseVolume::kOutside) return outside.data();
+  return volume.distance.data() + std::size_t(slot) * kBrickVoxels;
+}
+
+/// Copies the 4^3 voxels from `low` on, which lie in at most two bricks along each axis. False when
+/// a part of them is outside the grid: distances there are made up.
 bool gather(const SparseVolume& volume, const glm::ivec3& low, Neighbourhood& out) {
+  const glm::ivec3 high = low + 3;
   if (glm::any(glm::lessThan(low, glm::ivec3(0))) ||
-      glm::any(glm::greaterThan(low + 4, volume.grid.voxels())))
+      glm::any(glm::greaterThanEqual(high, volume.grid.voxels())))
     return false;
-  for (int x = 0; x < 4; ++x)
-    for (int y = 0; y < 4; ++y)
-      for (int z = 0; z < 4; ++z) out[x][y][z] = volume.at(low + glm::ivec3(x, y, z));
+  const glm::ivec3 first = low / kBrickEdge, last = high / kBrickEdge;
+  for (int bx = first.x; bx <= last.x; ++bx)
+    for (int by = first.y; by <= last.y; ++by)
+      for (int bz = first.z; bz <= last.z; ++bz) {
+        const glm::ivec3 corner = glm::ivec3(bx, by, bz) * kBrickEdge;
+        const float* values = brick_values(volume, {bx, by, bz});
+        const glm::ivec3 from = glm::max(low, corner);
+        const glm::ivec3 to = glm::min(high, corner + kBrickEdge - 1);
+        for (int x = from.x; x <= to.x; ++x)
+          for (int y = from.y; y <= to.y; ++y)
+            for (int z = from.z; z <= to.z; ++z)
+              out[x - low.x][y - low.y][z - low.z] =
+                  values[voxel_offset(glm::ivec3(x, y, z) - corner)];
+      }
   return true;
 }
 
