@@ -1,0 +1,52 @@
+#include "core/error.h"
+
+#include <gtest/gtest.h>
+
+#include "core/progress.h"
+#include "core/scene.h"
+
+namespace photohull {
+namespace {
+
+TEST(Error, CarriesTheProcessExitCode) {
+  EXPECT_EQ(int(Error("x").code()), 1);
+  EXPECT_EQ(int(UsageError("x").code()), 2);
+  EXPECT_EQ(int(Cancelled().code()), 130);
+  EXPECT_STREQ(UsageError("--device: no").what(), "--device: no");
+}
+
+TEST(Error, ConcatJoinsValuesOfAllKinds) {
+  EXPECT_EQ(concat("view ", 3, ": ", 0.5, ' ', std::string("px")), "view 3: 0.5 px");
+}
+
+TEST(CheckDeathTest, PrintsBothOperands) {
+  EXPECT_DEATH(PHOTOHULL_CHECK_OP(1 + 1, ==, 3), "1 \\+ 1 == 3 \\(2 vs 3\\)");
+  EXPECT_DEATH(PHOTOHULL_CHECK(1 > 2), "check failed: 1 > 2");
+}
+
+TEST(Check, EvaluatesItsOperandsOnce) {
+  int calls = 0;
+  PHOTOHULL_CHECK_OP(++calls, ==, 1);
+  PHOTOHULL_CHECK(++calls == 2);
+  EXPECT_EQ(calls, 2);
+}
+
+TEST(Progress, ThrowsOnceCancellationWasAskedFor) {
+  Progress progress;
+  reset_cancellation();
+  EXPECT_NO_THROW(progress.check_cancelled());
+  request_cancellation();
+  EXPECT_THROW(progress.check_cancelled(), Cancelled);
+  reset_cancellation();
+  EXPECT_NO_THROW(progress.check_cancelled());
+}
+
+TEST(SceneFormat, HasANameOfItsOwn) {
+  EXPECT_STREQ(to_string(SceneFormat::kMiddlebury), "middlebury");
+  EXPECT_STREQ(to_string(SceneFormat::kColmapText), "colmap-text");
+  EXPECT_STREQ(to_string(SceneFormat::kColmapBinary), "colmap-binary");
+  EXPECT_STREQ(to_string(SceneFormat::kTransforms), "transforms");
+}
+
+}  // namespace
+}  // namespace photohull

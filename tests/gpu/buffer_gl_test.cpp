@@ -1,0 +1,84 @@
+#include "gpu/buffer.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <numeric>
+
+#include "core/error.h"
+#include "support/gl_context.h"
+
+namespace photohull::gpu {
+namespace {
+
+class BufferTest : public ::testing::Test {
+ protected:
+  void TearDown() override { context_.check_errors("buffer test"); }
+  Context& context_ = test::gl_context();
+};
+
+TEST_F(BufferTest, KeepsWhatItWasMadeFrom) {
+  // Shorter than, equal to and longer than the least store of 16 bytes.
+  for (const std::size_t count : {1u, 3u, 4u, 5u, 1000u}) {
+    std::vector<std::uint32_t> values(count);
+    std::iota(values.begin(), values.end(), 7u);
+    const Buffer buffer = Buffer::of(values);
+    EXPECT_EQ(buffer.bytes(), 4 * count);
+    EXPECT_EQ(buffer.download<std::uint32_t>(count), values);
+  }
+}
+
+TEST_F(BufferTest, WritesAndReadsRanges) {
+  Buffer buffer(40);
+  buffer.fill(0xffffffffu);
+  const std::uint32_t two[2] = {11, 22};
+  buffer.write(8, sizeof two, two);
+  const std::vector<std::uint32_t> expected{0xffffffffu, 0xffffffffu, 11, 22, 0xffffffffu};
+  EXPECT_EQ(buffer.download<std::uint32_t>(5), expected);
+  EXPECT_EQ(buffer.download<std::uint32_t>(2, 2), std::vector<std::uint32_t>({11, 22}));
+}
+
+TEST_F(BufferTest, FillReachesTheLastWord) {
+  Buffer buffer(1000 * 4);
+  buffer.fill(5);
+  EXPECT_EQ(buffer.download<std::uint32_t>(1000), std::vector<std::uint32_t>(1000, 5));
+}
+
+TEST_F(BufferTest, MayBeEmpty) {
+  Buffer buffer(0);
+  EXPECT_NE(buffer.id(), 0u);
+  EXPECT_EQ(buffer.bytes(), 0u);
+  buffer.fill(1);
+  buffer.write(0, 0, nullptr);
+  buffer.bind_storage(0);
+  EXPECT_TRUE(buffer.download<int>(0).empty());
+  EXPECT_EQ(Buffer::of(std::vector<int>()).bytes(), 0u);
+}
+
+TEST_F(BufferTest, MovesItsHandle) {
+  Buffer a = Buffer::of(std::vector<int>{1, 2, 3, 4});
+  const unsigned id = a.id();
+  Buffer b = std::move(a);
+  EXPECT_EQ(b.id(), id);
+  Buffer c;
+  c = std::move(b);
+  EXPECT_EQ(c.id(), id);
+  EXPECT_EQ(c.download<int>(4), std::vector<int>({1, 2, 3, 4}));
+}
+
+TEST_F(BufferTest, AnImpossibleSizeIsAUserError) {
+  EXPECT_THROW(Buffer(std::size_t(1) << 60), Error);
+}
+
+using BufferDeathTest = BufferTest;
+
+TEST_F(BufferDeathTest, RangesAreChecked) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  Buffer buffer(16);
+  int value = 0;
+  EXPECT_DEATH(buffer.write(16, 4, &value), "20 vs 16");
+  EXPECT_DEATH(buffer.read(0, 20, &value), "20 vs 16");
+}
+
+}  // namespace
+}  // namespace photohull::gpu

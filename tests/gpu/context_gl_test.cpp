@@ -1,0 +1,44 @@
+#include "gpu/context.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "gpu/gl.h"
+#include "support/gl_context.h"
+
+namespace photohull::gpu {
+namespace {
+
+TEST(Context, OffersWhatTheKernelsNeed) {
+  const Context& context = test::gl_context();
+  EXPECT_GE(context.limits().ssbo_bytes, 16 << 20);
+  EXPECT_GE(context.limits().texture_size, 8192);
+  EXPECT_GE(context.limits().texture_layers, 256);
+  EXPECT_GE(context.limits().groups_x, 65535);
+  EXPECT_FALSE(context.device().renderer.empty());
+  EXPECT_TRUE(context.device().problem.empty());
+}
+
+TEST(Context, PendingErrorsAreReportedOnceWithTheirPlace) {
+  const Context& context = test::gl_context();
+  glEnable(GL_TEXTURE_2D_ARRAY);  // not a capability
+  try {
+    context.check_errors("the test");
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_THAT(e.what(), ::testing::HasSubstr("the test"));
+    EXPECT_THAT(e.what(), ::testing::HasSubstr("invalid enum"));
+  }
+  EXPECT_NO_THROW(context.check_errors("the test"));
+}
+
+TEST(Context, LaunchesAreCountedByName) {
+  Context& context = test::gl_context();
+  for (int i = 0; i < 3; ++i) Launch launch(context, "counted");
+  EXPECT_EQ(context.statistics()["counted"].launches, 3);
+  EXPECT_GE(context.statistics()["counted"].seconds, 0);
+}
+
+}  // namespace
+}  // namespace photohull::gpu
