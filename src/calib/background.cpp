@@ -61,14 +61,15 @@ ColourCounts count_colours(const std::vector<const ColourImage*>& images) {
   return counts;
 }
 
-/// Shares of the cells, each averaged over 3^3 cells.
+/// Shares of the cells, each averaged over 3^3 cells; the cube's faces reflect, so that black and
+/// white keep their share.
 Counts density(Counts counts) {
   for (const std::size_t stride : {1, kCells, kCells * kCells}) {
     Counts out = counts;
     for (std::size_t i = 0; i < kCellCount; ++i) {
       const std::size_t k = i / stride % kCells;
-      if (k > 0) out[i] += counts[i - stride];
-      if (k + 1 < kCells) out[i] += counts[i + stride];
+      out[i] += counts[k > 0 ? i - stride : i];
+      out[i] += counts[k + 1 < kCells ? i + stride : i];
     }
     counts.swap(out);
   }

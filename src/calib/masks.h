@@ -8,8 +8,7 @@ namespace photohull {
 enum class MaskOrigin { kNone, kFile, kAlpha, kBackground };
 
 /// Fills view.mask from the file that the scene names, else from an alpha channel that varies, in
-/// pixels of `view.image`. Throws Error for a mask of the
-/// wrong size and what the loader throws.
+/// pixels of `view.image`. Throws Error for a mask of the wrong size and what the loader throws.
 MaskOrigin take_given_mask(const SourceView& source, const ViewLoader& loader, View& view);
 
 /// Sets the alpha of an image that has such a channel to 1: from here on it tells what is known.
@@ -20,8 +19,9 @@ void make_opaque(ColourImage& image);
 void describe_masks(const std::vector<MaskOrigin>& origins, double model_confidence,
                     PreparedViews& views);
 
-/// Warns of views whose mask is all background or all foreground. Throws Error when all masks are
-/// empty, or when most show foreground along the frame and background in the middle.
+/// Checks masks that were given. Warns of views whose mask is all background or all foreground.
+/// Throws Error when all masks are empty, or when most show foreground along the frame and
+/// background in the middle.
 void check_masks(PreparedViews& views);
 
 }  // namespace photohull

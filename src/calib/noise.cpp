@@ -14,8 +14,9 @@ namespace {
 constexpr int kBlock = 12;          ///< pixels along a block's edge
 constexpr int kInner = kBlock - 2;  ///< those with all eight neighbours
 constexpr int kBlocksAcross = 24;   ///< at most, along each side
-constexpr float kDarkest = 0.08f;   ///< square roots; below, quantisation and clipping rule
-constexpr float kBrightest = 0.97f;
+// Square roots; below, quantisation and clipping rule, and unknown pixels are black.
+constexpr float kDarkest = 0.08f;
+constexpr float kBrightest = 0.97f;  // square root; above, clipping rules
 constexpr double kFlattest = 0.2;  ///< share of the blocks that count
 
 struct Block {
@@ -85,8 +86,6 @@ double estimate_image_noise(const ColourImage& image) {
       const auto values = load_block(image, x0, y0);
       const auto [low, high] = std::minmax_element(values.begin(), values.end());
       if (*low < kDarkest || *high > kBrightest) continue;
-      if (image.has_alpha && image.linear(x0, y0).a * image.linear(x0 + kBlock - 1, y0).a == 0)
-        continue;
       blocks.push_back({structure_of(values), sigma_of(values)});
     }
   if (blocks.empty()) return 0;

@@ -117,10 +117,9 @@ PreparedViews prepare_views(const Scene& scene, const ViewLoader& loader,
     make_opaque(view.image);
   });
 
-  double separation = 0;
-  if (use_masks) separation = add_background_masks(result, origins);
-  describe_masks(origins, separation, result);
   check_masks(result);
+  const double separation = use_masks ? add_background_masks(result, origins) : 0;
+  describe_masks(origins, separation, result);
 
   for_each_view(count, kDecodeShare, 1.0, progress, [&](std::size_t i) {
     undistort(scene.views[i].distortion, options.max_frame_growth, result.views[i]);

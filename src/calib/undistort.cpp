@@ -184,19 +184,12 @@ std::uint8_t sample_coverage(const Mask& mask, const glm::dvec2& position) {
   return std::uint8_t(std::lround(std::lerp(upper, lower, y - y0)));
 }
 
-/// Calls known(u, v, position) for the pixels that the photograph shows.
-template <typename Known>
-bool for_each_known(const LensMap& map, const Intrinsics& k, const Known& known) {
-  bool all = true;
-  for (int v = 0; v < k.height; ++v)
-    for (int u = 0; u < k.width; ++u) {
-      glm::dvec2 position;
-      if (map.look_up(ideal_point(k, u, v), position))
-        known(u, v, position);
-      else
-        all = false;
-    }
-  return all;
+/// Is every ray imaged where a pinhole would image it?
+bool is_pinhole(const Distortion& d) {
+  const auto is_zero = [](double k) { return k == 0; };
+  return d.model == DistortionModel::kNone ||
+         (d.model == DistortionModel::kBrown &&
+          std::all_of(d.coefficients.begin(), d.coefficients.end(), is_zero));
 }
 
 }  // namespace
@@ -241,30 +234,30 @@ Intrinsics undistorted_intrinsics(const Intrinsics& source, const Distortion& di
 }
 
 void undistort(const Distortion& distortion, double max_growth, View& view) {
-  if (distortion.model == DistortionModel::kNone) return;
+  if (is_pinhole(distortion)) return;
   const LensMap map(view.camera.intrinsics, distortion, max_growth);
   const Intrinsics k = undistorted_intrinsics(view.camera.intrinsics, distortion, max_growth);
   const std::size_t size = view.image.bytes_per_pixel();
   const std::size_t pixels = std::size_t(k.width) * k.height;
   ColourImage image{k.width, k.height, view.image.encoding, false, {}};
   image.bytes.assign(pixels * size, 0);
-  const bool is_srgb = image.encoding == ColourImage::Encoding::kSrgb8;
-  image.has_alpha = !for_each_known(map, k, [&](int u, int v, const glm::dvec2& position) {
-    std::uint8_t* out = &image.bytes[(std::size_t(v) * k.width + std::size_t(u)) * size];
-    if (is_srgb)
-      sample_colour<Srgb8>(view.image, position, out);
-    else
-      sample_colour<LinearHalf>(view.image, position, out);
-  });
-  if (!view.mask.empty()) {
-    Mask mask{k.width, k.height, std::vector<std::uint8_t>(pixels, 255)};
-    for_each_known(map, k, [&](int u, int v, const glm::dvec2& position) {
-      mask.coverage[std::size_t(v) * k.width + std::size_t(u)] =
-          sample_coverage(view.mask, position);
-    });
-    view.mask = std::move(mask);
-  }
+  Mask mask;
+  if (!view.mask.empty()) mask = {k.width, k.height, std::vector<std::uint8_t>(pixels, 255)};
+  const auto sample = image.encoding == ColourImage::Encoding::kSrgb8 ? sample_colour<Srgb8>
+                                                                      : sample_colour<LinearHalf>;
+  for (int v = 0; v < k.height; ++v)
+    for (int u = 0; u < k.width; ++u) {
+      const std::size_t i = std::size_t(v) * k.width + std::size_t(u);
+      glm::dvec2 position;
+      if (!map.look_up(ideal_point(k, u, v), position)) {
+        image.has_alpha = true;
+        continue;
+      }
+      sample(view.image, position, &image.bytes[i * size]);
+      if (!mask.empty()) mask.coverage[i] = sample_coverage(view.mask, position);
+    }
   view.image = std::move(image);
+  view.mask = std::move(mask);
   view.camera.intrinsics = k;
 }
 
