@@ -1,0 +1,29 @@
+# What `cmake --install` puts where, and the Debian package of `cpack -G DEB`.
+include(GNUInstallDirs)
+
+if(TARGET photohull)
+  install(TARGETS photohull RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
+install(FILES README.md CHANGELOG.md BIBLIOGRAPHY.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME photohull)
+set(CPACK_PACKAGE_VENDOR "The photohull authors")
+set(CPACK_PACKAGE_CONTACT "The photohull authors <photohull@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_PACKAGE_DESCRIPTION
+"photohull reconstructs an object from photographs whose cameras are known: it carves away all
+space that contradicts the silhouettes and the colours in the images, on the GPU or on Mesa's
+software rasterizer, and writes an OpenVDB volume, a coloured mesh, a preview and a report.")
+set(CPACK_STRIP_FILES ON)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+# Loaded at run time, so that shlibdeps cannot see it: an OpenGL driver behind EGL.
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "libegl1, libegl-mesa0, libgl1-mesa-dri")
+include(CPack)

@@ -1,0 +1,80 @@
+#!/usr/bin/env bash
+# Usage: scripts/setup.sh [--preset NAME] [--no-install]
+#
+# Installs what photohull needs and this machine lacks (Debian packages, through apt as root or
+# with sudo), then configures and builds it to build/NAME/photohull. Run again, it only builds
+# what changed.
+#
+#   --preset NAME   release (default), debug, asan or coverage; see CMakePresets.json
+#   --no-install    build with what is there; install nothing
+#   --help          print this text
+
+# shellcheck source=scripts/common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+packages=(
+  # Tools: compiler, build, shader check.
+  g++ cmake ninja-build ccache git glslang-tools
+  # OpenGL through EGL, and Mesa's software rasterizer for machines without a GPU.
+  libegl-dev libopengl-dev libegl1 libegl-mesa0 libgl1-mesa-dri
+  # Volumes; OpenVDB's CMake module asks for Boost.
+  libopenvdb-dev libopenvdb-tools libtbb-dev libboost-iostreams-dev
+  # Images; OpenImageIO's CMake files ask for its tools.
+  libopenimageio-dev openimageio-tools libopencv-dev
+  libglm-dev libcli11-dev nlohmann-json3-dev libspdlog-dev
+  libgtest-dev libgmock-dev
+)
+
+preset=release
+install=yes
+while [ $# -gt 0 ]; do
+  case $1 in
+    --preset)
+      [ $# -ge 2 ] || die "--preset needs a name: release, debug, asan or coverage."
+      preset=$2
+      shift
+      ;;
+    --no-install) install=no ;;
+    -h | --help)
+      print_help "${BASH_SOURCE[0]}"
+      exit 0
+      ;;
+    *) die "Unknown option '$1'. See scripts/setup.sh --help." ;;
+  esac
+  shift
+done
+
+cd "$root"
+case $preset in
+  release | debug | asan | coverage) ;;
+  *) die "There is no preset '$preset'; use release, debug, asan or coverage." ;;
+esac
+if [ $install = yes ]; then
+  install_missing "${packages[@]}"
+fi
+
+# A compiler at work on OpenVDB's templates takes 1.5 GB: fewer jobs than cores where memory is short.
+available_kb=$(awk '/^MemAvailable:/ {print $2}' /proc/meminfo 2>/dev/null || echo 0)
+fitting=$((available_kb / 1500000))
+if [ "$fitting" -lt "$jobs" ]; then
+  jobs=$((fitting > 1 ? fitting : 1))
+fi
+
+build=build/$preset
+mkdir -p "$build" || die "The folder $build cannot be made; is this checkout writable?"
+say "Configuring $build"
+if ! cmake --preset "$preset" >"$build/configure.log" 2>&1; then
+  tail -n 25 "$build/configure.log" >&2
+  die "CMake could not configure the project (the whole log: $build/configure.log).
+If a package is missing, run scripts/setup.sh without --no-install. If this checkout was moved or
+its packages were upgraded, delete the folder $build and run this script again."
+fi
+
+say "Building $build with $jobs jobs"
+quiet=()
+[ -t 1 ] || quiet=(-- --quiet) # one line a file is for terminals
+if ! cmake --build "$build" --parallel "$jobs" "${quiet[@]}"; then
+  die "The build failed; the first error above is the cause. If the compiler was killed, memory ran
+short: close other programs and run this script again, it goes on where it stopped."
+fi
+say "Ready: $build/photohull"

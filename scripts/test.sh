@@ -1,0 +1,125 @@
+#!/usr/bin/env bash
+# Usage: scripts/test.sh [--asan]
+#
+# Sets photohull up (see scripts/setup.sh), runs all its tests, and then checks what tests cannot:
+# formatting, static analysis, scripts, citations, installation and the Debian package.
+#
+#   --asan   run the tests once more under the address and undefined-behaviour sanitizers
+#   --help   print this text
+
+# shellcheck source=scripts/common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+with_asan=no
+while [ $# -gt 0 ]; do
+  case $1 in
+    --asan) with_asan=yes ;;
+    -h | --help)
+      print_help "${BASH_SOURCE[0]}"
+      exit 0
+      ;;
+    *) die "Unknown option '$1'. See scripts/test.sh --help." ;;
+  esac
+  shift
+done
+
+cd "$root"
+build=build/release
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+passed=0
+failed=()
+
+# check NAME COMMAND...: runs the command; its output is shown when it fails.
+check() {
+  local name=$1 start=$SECONDS status
+  shift
+  set +e
+  (set -e; "$@") >"$scratch/log" 2>&1
+  status=$?
+  set -e
+  if [ $status -eq 0 ]; then
+    say "ok      $name ($((SECONDS - start)) s)"
+    passed=$((passed + 1))
+  else
+    tail -n 60 "$scratch/log"
+    say "FAILED  $name"
+    failed+=("$name")
+  fi
+}
+
+# The same for a command whose output people want to follow.
+check_aloud() {
+  local name=$1
+  shift
+  if "$@"; then passed=$((passed + 1)); else failed+=("$name"); fi
+}
+
+# Our C++; shaders/ is read by the GLSL compiler too and keeps its own layout.
+cpp_files() { find src cli tests \( -name '*.cpp' -o -name '*.h' \) -print | sort; }
+
+run_tests() { ctest --preset "$1" --parallel "$jobs" --no-tests=error; }
+
+formatting() { cpp_files | xargs clang-format --dry-run -Werror; }
+
+static_analysis() {
+  cpp_files | grep '\.cpp$' | xargs -P "$jobs" -n 1 clang-tidy -p $build --quiet 2>&1 |
+    { grep -vE '^[0-9]+ warnings? generated\.$' || true; }
+}
+
+shell_scripts() { shellcheck -x scripts/*.sh .ci/run; }
+
+# Prints the [Key] and [Key; Key] that comments cite, once each. A citation may span lines.
+cited_keys() {
+  # shellcheck disable=SC2016
+  find src shaders cli tests -type f -print0 | xargs -0 perl -0777 -ne '
+    s{\s*\n\s*//[/ ]*}{ }g;
+    my $key = qr/[A-Z][A-Za-z]+\d\d[a-z]?/;
+    while (/\[($key(?:[;,] ?$key)*)\]/g) { print "$_\n" for split /[;,] ?/, $1 }' | sort -u
+}
+
+citations() {
+  local key status=0
+  for key in $(cited_keys); do
+    grep -qF "[$key]" BIBLIOGRAPHY.md && continue
+    say "BIBLIOGRAPHY.md has no entry [$key], which is cited in:"
+    grep -rlw "$key" src shaders cli tests
+    status=1
+  done
+  return $status
+}
+
+installation() {
+  cmake --install $build --prefix "$scratch/prefix"
+  "$scratch/prefix/bin/photohull" --version | grep -F "$(project_version)"
+}
+
+project_version() { sed -n 's/^project(photohull VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt; }
+
+debian_package() {
+  (cd $build && cpack -G DEB -B "$scratch/package")
+  dpkg -I "$scratch"/package/photohull_*.deb
+  dpkg -c "$scratch"/package/photohull_*.deb | grep -F ./usr/bin/photohull
+  dpkg-deb -f "$scratch"/package/photohull_*.deb Depends | grep -F libopenvdb
+}
+
+scripts/setup.sh
+install_missing clang-format clang-tidy shellcheck dpkg-dev file
+started=$SECONDS
+
+check_aloud "tests" run_tests release
+check "clang-format" formatting
+check "clang-tidy" static_analysis
+check "shellcheck" shell_scripts
+check "citations" citations
+check "cmake --install" installation
+check "cpack -G DEB" debian_package
+if [ $with_asan = yes ]; then
+  check_aloud "build with sanitizers" scripts/setup.sh --preset asan
+  check_aloud "tests with sanitizers" run_tests asan
+fi
+
+say "" "Took $((SECONDS - started)) s after the build."
+for name in "${failed[@]}"; do say "FAILED  $name"; done
+say "Checks: $passed passed, ${#failed[@]} failed"
+[ ${#failed[@]} -eq 0 ]
