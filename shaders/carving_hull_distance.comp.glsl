@@ -2,7 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 // Truncated signed distance to the visual hull for every voxel of a brick: the greatest, over the
 // views that see the voxel, of its distance to the silhouette, brought from pixels to voxels by
-// depth / focal length. One work group a brick, one thread a run of 8 voxels along z.
+// depth / focal length. One work group a brick, one thread a block of 2^3 voxels: a look at the
+// block's centre tells which few views can be the greatest anywhere in it.
 // Reference: carving::reference::hull_distance.
 #include "include/projection.glsl"
 #include "shared/hull.h"
@@ -11,42 +12,87 @@ layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform Parameters { HullParameters parameters; };
 layout(std430, binding = 1) readonly buffer Bricks { ivec4 bricks[]; };
 layout(std430, binding = 2) writeonly buffer Distances { float distances[]; };
-layout(std430, binding = 3) readonly buffer Relevant { uint relevant[]; };
+// Where each brick's list of views begins in this buffer (one more for the end), then the lists.
+layout(std430, binding = 3) readonly buffer Relevant { uint first_and_views[]; };
 layout(binding = 0) uniform sampler2DArray silhouettes;  // signed pixels, positive outside
 
+const float kNothing = -1e30;
+// Voxels by which a view's distance can differ between a block's centre and its voxels: half the
+// block's diagonal between voxel centres, 0.87, with room for the perspective.
+const float kReach = 1.2;
+const int kMaxCandidates = 64;
+
+// Distance in voxels that one view gives a point; kNothing where it is not on the image.
+float view_distance(int v, GpuView view, vec3 p) {
+  vec2 pixel = p.xy / p.z;
+  float d = textureLod(silhouettes, vec3(texture_coordinate(view, pixel), float(v)), 0.0).r;
+  return p.z > 0.0 && on_image(view, pixel) ? d * p.z / view.centre.w : kNothing;
+}
+
+// Near a frame's border the centre of a block can miss the image when its voxels do not.
+bool near_border(GpuView view, vec3 p) {
+  vec2 pixel = p.xy / p.z;
+  float margin = 2.0 * view.centre.w / p.z;
+  return p.z < 4.0 || any(lessThan(pixel, vec2(margin))) ||
+         any(greaterThan(pixel, view.size.xy - 1.0 - margin));
+}
+
+// Software devices run a masked branch in full, so work is skipped by shorter loops, not by `if`.
 void main() {
-  uint brick = gl_WorkGroupID.x;
-  uint run = gl_LocalInvocationID.x;
-  vec3 base = vec3(bricks[brick].xyz * 8 + ivec3(run >> 3u, run & 7u, 0));
+  uint brick = gl_WorkGroupID.x, block = gl_LocalInvocationID.x;
+  ivec3 corner = 2 * ivec3(block >> 4u, (block >> 2u) & 3u, block & 3u);
+  vec3 base = vec3(bricks[brick].xyz * 8 + corner);
   float band = parameters.pyramid.w;
-  float value[8];
-  int seen[8];
-  for (int i = 0; i < 8; ++i) {
-    vec3 p = base + vec3(0.0, 0.0, float(i));
-    vec3 beyond = max(parameters.box_min.xyz - p, p - parameters.box_max.xyz);
-    value[i] = clamp(max(beyond.x, max(beyond.y, beyond.z)), -band, band);
-    seen[i] = 0;
-  }
-  int words = parameters.counts.z;
-  bool count_views = parameters.counts.w > 1;
-  for (int v = 0; v < parameters.counts.y; ++v) {
-    bool silhouette_matters =
-        (relevant[brick * uint(words) + uint(v >> 5)] & (1u << uint(v & 31))) != 0u;
-    if (!silhouette_matters && !count_views) continue;
+  uint first = first_and_views[brick], end = first_and_views[brick + 1u];
+
+  float greatest = kNothing;
+  float centre[kMaxCandidates];
+  int relevant_count = int(end - first);
+  for (int i = 0; i < relevant_count; ++i) {
+    int v = int(first_and_views[first + uint(i)]);
     GpuView view = views[v];
-    vec3 p = project(view, base);
-    vec3 dz = vec3(view.row_s.z, view.row_t.z, view.row_q.z);
-    for (int i = 0; i < 8; ++i, p += dz) {
-      vec2 pixel = p.xy / p.z;
-      if (p.z <= 0.0 || !on_image(view, pixel)) continue;
-      ++seen[i];
-      if (!silhouette_matters) continue;
-      float d = textureLod(silhouettes, vec3(texture_coordinate(view, pixel), float(v)), 0.0).r;
-      value[i] = max(value[i], d * p.z / view.centre.w);
+    vec3 p = project(view, base + 0.5);
+    float d = near_border(view, p) ? -kNothing : view_distance(v, view, p);
+    greatest = d == -kNothing ? greatest : max(greatest, d);
+    centre[min(i, kMaxCandidates - 1)] = i < kMaxCandidates - 1 ? d : -kNothing;
+  }
+  // Beyond the band the block's centre answers for all of it, unless a frame's border interferes.
+  float least = abs(greatest) > band + kReach && greatest != kNothing ? 1e29 : greatest - 2.0 * kReach;
+  int candidates[kMaxCandidates];
+  int count = 0;
+  for (int i = 0; i < min(relevant_count, kMaxCandidates); ++i) {
+    candidates[count] = i;
+    count += centre[i] >= least ? 1 : 0;
+  }
+
+  float value[8];
+  for (int i = 0; i < 8; ++i) {
+    vec3 p = base + vec3(i >> 2, (i >> 1) & 1, i & 1);
+    vec3 beyond = max(parameters.box_min.xyz - p, p - parameters.box_max.xyz);
+    value[i] = max(max(beyond.x, max(beyond.y, beyond.z)), least == 1e29 ? greatest : kNothing);
+  }
+  for (int c = 0; c < count; ++c) {
+    // The last candidate stands for all views beyond the list's length.
+    int last = candidates[c] == kMaxCandidates - 1 ? relevant_count : candidates[c] + 1;
+    for (int i = candidates[c]; i < last; ++i) {
+      int v = int(first_and_views[first + uint(i)]);
+      GpuView view = views[v];
+      for (int j = 0; j < 8; ++j)
+        value[j] = max(value[j], view_distance(v, view, project(view, base + vec3(j >> 2, (j >> 1) & 1, j & 1))));
     }
   }
-  for (int i = 0; i < 8; ++i) {
-    bool unseen = count_views && seen[i] < parameters.counts.w;
-    distances[brick * 512u + run * 8u + uint(i)] = unseen ? band : min(value[i], band);
+  // Without silhouettes a point must be on the images of enough cameras.
+  int seen[8] = int[8](0, 0, 0, 0, 0, 0, 0, 0);
+  int counted = parameters.counts.w > 1 ? parameters.counts.y : 0;
+  for (int v = 0; v < counted; ++v)
+    for (int j = 0; j < 8; ++j) {
+      vec3 p = project(views[v], base + vec3(j >> 2, (j >> 1) & 1, j & 1));
+      seen[j] += p.z > 0.0 && on_image(views[v], p.xy / p.z) ? 1 : 0;
+    }
+  for (int j = 0; j < 8; ++j) {
+    ivec3 local = corner + ivec3(j >> 2, (j >> 1) & 1, j & 1);
+    bool unseen = counted > 0 && seen[j] < parameters.counts.w;
+    distances[brick * 512u + uint((local.x << 6) | (local.y << 3) | local.z)] =
+        unseen ? band : clamp(value[j], -band, band);
   }
 }

@@ -8,10 +8,10 @@
 // Reference: carving::reference::ColumnJudge.
 #include "include/layer.glsl"
 #include "include/occupancy.glsl"
+#include "include/selection.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 64) in;
 layout(std430, binding = 4) buffer Columns { Column columns[]; };
-layout(std430, binding = 5) readonly buffer Selected { uint selected_count; uint pad0, pad1, pad2; uvec4 selected[]; };
 layout(std430, binding = 6) buffer Occluders { uint occluder_count; uint pad3, pad4, pad5; ivec4 occluders[]; };
 layout(std430, binding = 7) readonly buffer Scores { vec4 scores[]; };
 layout(std430, binding = 10) buffer Active { uint active_bricks[]; };
@@ -35,14 +35,12 @@ void close_path(ivec2 uv, inout Column column) {
 }
 
 void main() {
-  uint entry = gl_WorkGroupID.x;
-  uint id = gl_LocalInvocationIndex;
-  uvec4 work = selected[entry];
-  if ((work[1u + (id >> 5u)] & (1u << (id & 31u))) == 0u) return;
-  ivec2 uv = item_origin(work.x) + ivec2(gl_LocalInvocationID.xy);
+  uint index = gl_GlobalInvocationID.x;
+  if (index >= uint(parameters.chunk.w)) return;
+  ivec2 uv = selection_of(index).uv;
   int layer = parameters.layer.x;
   Column column = columns[column_index(uv)];
-  vec4 score = scores[entry * 64u + id];
+  vec4 score = scores[index];
   bool enough = score.w >= parameters.thresholds.z && score.z >= parameters.noise.y;
   atomicAdd(judged, 1u);
 

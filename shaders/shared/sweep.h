@@ -14,7 +14,7 @@ using glm::vec4;
 #define constexpr const
 #endif
 
-constexpr int kMaxLayerViews = 8;   // views projected onto one brick's part of a layer
+constexpr int kMaxLayerViews = 8;  // views projected onto one brick's part of a layer
 constexpr int kPatchRadius = 2;     // voxels: patches of 5 x 5 on the reference plane
 constexpr int kApronEdge = 12;      // 8 + 2 * kPatchRadius
 constexpr int kApronArea = 144;
@@ -28,7 +28,7 @@ struct SweepParameters {
                      // w: bias of the depth test in voxels
   vec4 noise;        // x: variance of image noise (square-root encoding); y: least texture variance
   ivec4 chunk;       // x: first selected brick of this dispatch, whose samples start at 0;
-                     // y: longest path in layers
+                     // y: longest path in layers; z, w: first and number of its columns
 };
 
 struct LayerItem {

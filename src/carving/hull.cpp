@@ -147,10 +147,24 @@ class HullCarver {
     return children;
   }
 
+  /// Offsets of `count` + 1 lists, then the lists of the views that matter to each brick.
+  std::vector<std::uint32_t> view_lists(const Classified& leaves, std::size_t first,
+                                        std::size_t count) const {
+    std::vector<std::uint32_t> out(count + 1);
+    for (std::size_t i = 0; i < count; ++i) {
+      out[i] = std::uint32_t(out.size());
+      for (int v = 0; v < views_; ++v)
+        if (leaves.relevant[(first + i) * words_ + v / 32] >> (v % 32) & 1)
+          out.push_back(std::uint32_t(v));
+    }
+    out[count] = std::uint32_t(out.size());
+    return out;
+  }
+
   /// Distances of the bricks [first, first + count) of the last level.
   std::vector<float> evaluate(const Classified& leaves, std::size_t first, std::size_t count) {
     Buffer bricks(count * sizeof(ivec4), &leaves.surface[first]);
-    Buffer relevant(count * words_ * 4, &leaves.relevant[first * words_]);
+    Buffer relevant = Buffer::of(view_lists(leaves, first, count));
     Buffer distances(count * kBrickVoxels * 4);
     parameters_.counts.x = int(count);
     Buffer parameters(sizeof parameters_, &parameters_);

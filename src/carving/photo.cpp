@@ -186,9 +186,12 @@ class Sweeper {
     return item;
   }
 
-  void bind(const Buffer& parameters, const DeviceList& selected, const Buffer& block6,
-            const Buffer& scores, const DeviceList& decided) const {
-    parameters.bind_uniform(0);
+  void bind(std::size_t first_entry, std::size_t first_column, const DeviceList& selected,
+            const Buffer& block6, const Buffer& scores, const DeviceList& decided,
+            std::size_t columns = 0) {
+    parameters_.chunk = {int(first_entry), options_.max_path, int(first_column), int(columns)};
+    uniforms_.write(0, sizeof parameters_, &parameters_);
+    uniforms_.bind_uniform(0);
     views_.bind_storage(0);
     items_.bind_storage(1);
     table_.bind_storage(2);
@@ -200,32 +203,51 @@ class Sweeper {
     maps_->bind();
     active_.bind_storage(10);
     decided.buffer.bind_storage(11);
+    packed_.bind_storage(12);
   }
 
   void sweep_layer(int layer, std::size_t items, DeviceList& selected, DeviceList& occluders,
                    const Buffer& scores, const DeviceList& decided) {
     parameters_.layer.x = layer;
-    parameters_.chunk = {0, options_.max_path, 0, 0};
-    Buffer parameters(sizeof parameters_, &parameters_);
     selected.clear();
     occluders.clear();
-    bind(parameters, selected, occluders.buffer, scores, decided);
+    columns_of_layer_.clear();
+    bind(0, 0, selected, occluders.buffer, scores, decided);
     select_.dispatch(context_, "carving_select_columns", items);
-    const std::size_t count = selected.count();
+    const std::size_t count = pack_columns(selected);
+    std::size_t column = 0;
     for (std::size_t first = 0; first < count; first += kChunk) {
-      const std::size_t chunk = std::min(kChunk, count - first);
-      parameters_.chunk.x = int(first);
-      Buffer chunk_parameters(sizeof parameters_, &parameters_);
-      bind(chunk_parameters, selected, samples_, scores, decided);
+      const std::size_t end = std::min(first + kChunk, count), first_column = column;
+      while (column < columns_of_layer_.size() && columns_of_layer_[column] >> 6 < end) ++column;
+      bind(first, first_column, selected, samples_, scores, decided, column - first_column);
       images_.texture().bind(0);
-      project_.dispatch(context_, "projtex_project_layer", chunk, shaders::kMaxLayerViews);
-      score_.dispatch(context_, "carving_score_columns", chunk);
-      counts_.samples += std::int64_t(chunk) * shaders::kMaxLayerViews * shaders::kApronArea *
-                       options_.supersample * options_.supersample;
+      project_.dispatch(context_, "projtex_project_layer", end - first, shaders::kMaxLayerViews);
+      score_.dispatch(context_, "carving_score_columns",
+                      gpu::group_count(column - first_column, 64));
+      counts_.samples += std::int64_t(end - first) * shaders::kMaxLayerViews *
+                         shaders::kApronArea * options_.supersample * options_.supersample;
     }
-    bind(parameters, selected, occluders.buffer, scores, decided);
-    update_.dispatch(context_, "carving_update_columns", count);
+    bind(0, 0, selected, occluders.buffer, scores, decided, columns_of_layer_.size());
+    update_.dispatch(context_, "carving_update_columns",
+                     gpu::group_count(columns_of_layer_.size(), 64));
     maps_->splat(context_, occluders.buffer, occluders.count());
+  }
+
+  /// Puts the selected bricks in the order of their items, so that a run never depends on the
+  /// device's scheduling, and lists their columns. Returns the number of bricks.
+  std::size_t pack_columns(DeviceList& selected) {
+    const std::size_t count = selected.count();
+    auto entries = std::vector<glm::uvec4>(count);
+    selected.buffer.read(16, count * 16, entries.data());
+    std::sort(entries.begin(), entries.end(),
+              [](const glm::uvec4& a, const glm::uvec4& b) { return a.x < b.x; });
+    selected.buffer.write(16, count * 16, entries.data());
+    for (std::size_t entry = 0; entry < count; ++entry)
+      for (std::uint32_t column = 0; column < 64; ++column)
+        if (entries[entry][1 + int(column / 32)] >> (column % 32) & 1)
+          columns_of_layer_.push_back(std::uint32_t(entry * 64) + column);
+    packed_ = Buffer::of(columns_of_layer_);
+    return count;
   }
 
   gpu::Context& context_;
@@ -235,7 +257,9 @@ class Sweeper {
   std::vector<projtex::GridCamera> cameras_;
   Program select_, project_, score_, update_;
   std::unique_ptr<visibility::DepthMaps> maps_;
-  Buffer views_, table_, occupancy_, active_, samples_, columns_, items_;
+  Buffer views_, table_, occupancy_, active_, samples_, columns_, items_, packed_;
+  Buffer uniforms_{sizeof(shaders::SweepParameters)};
+  std::vector<std::uint32_t> columns_of_layer_;
   Direction direction_{};
   shaders::SweepParameters parameters_{};
   PhotoReport counts_;
