@@ -1,0 +1,125 @@
+#version 450 core
+#extension GL_GOOGLE_include_directive : require
+// Colour and confidence of mesh vertices from the photographs that see them best; the formulas are
+// in render/bake_colour.h. One thread a vertex. Reference: render::reference::bake_vertex.
+#include "include/projection.glsl"
+#include "include/depth_map.glsl"
+#include "shared/bake.h"
+
+layout(local_size_x = 64) in;
+layout(std140, binding = 0) uniform Parameters { BakeParameters parameters; };
+layout(std430, binding = 1) readonly buffer Vertices { BakeVertex vertices[]; };
+layout(std430, binding = 2) writeonly buffer Baked { vec4 baked[]; };  // rgb: linear; a: confidence
+layout(binding = 0) uniform sampler2DArray images;
+
+// The best views in falling order of weight; 0 where there are fewer.
+float best_weight[kMaxBakeViews];
+int best_view[kMaxBakeViews];
+vec3 direction_sum;
+float direction_count;
+
+void insert(int view, float weight) {
+  for (int k = 0; k < kMaxBakeViews; ++k) {
+    bool better = weight > best_weight[k];
+    float other_weight = better ? best_weight[k] : weight;
+    int other_view = better ? best_view[k] : view;
+    best_weight[k] = better ? weight : best_weight[k];
+    best_view[k] = better ? view : best_view[k];
+    weight = other_weight;
+    view = other_view;
+  }
+}
+
+void choose_views(vec3 position, vec3 normal) {
+  for (int k = 0; k < kMaxBakeViews; ++k) best_weight[k] = 0.0;
+  for (int k = 0; k < kMaxBakeViews; ++k) best_view[k] = 0;
+  direction_sum = vec3(0.0);
+  direction_count = 0.0;
+  vec3 receiver = position + kBakeShift * normal;
+  for (int v = 0; v < parameters.counts.y; ++v) {
+    GpuView view = views[v];
+    vec3 to_camera = view.centre.xyz - position;
+    float reciprocal = inversesqrt(dot(to_camera, to_camera));
+    float cosine = dot(to_camera, normal) * reciprocal;
+    if (!(cosine > kBakeMinCosine)) continue;
+    vec3 p = project(view, receiver);
+    vec2 pixel = p.xy / p.z;
+    if (p.z <= 1.0 || !on_image(view, pixel)) continue;
+    if (!visible(uint(v), pixel, p.z, kBakeDepthBias)) continue;
+    direction_sum += to_camera * reciprocal;
+    direction_count += 1.0;
+    float density = view.centre.w / p.z;
+    insert(v, cosine * cosine * cosine * density * density);
+  }
+}
+
+// Colours of the chosen views in linear light; views that know nothing there lose their weight.
+void fetch(vec3 position, out vec3 colours[kMaxBakeViews]) {
+  for (int k = 0; k < kMaxBakeViews; ++k) {
+    GpuView view = views[best_view[k]];
+    vec3 p = project(view, position);
+    vec2 pixel = p.xy / p.z;
+    float level = floor(max(log2(view.centre.w / p.z), 0.0) + 0.5);
+    vec4 texel =
+        textureLod(images, vec3(texture_coordinate(view, pixel), float(best_view[k])), level);
+    bool known = p.z > 0.0 && on_image(view, pixel) && texel.a >= kBakeMinAlpha;
+    best_weight[k] = known ? best_weight[k] : 0.0;
+    colours[k] = known ? max(texel.rgb, 0.0) : vec3(0.0);
+  }
+}
+
+// Weighted mean after one step of reweighting about the medoid.
+vec3 robust_mean(vec3 colours[kMaxBakeViews], vec3 encoded[kMaxBakeViews], float total) {
+  vec3 medoid = encoded[0];
+  float least = 1e30;
+  for (int i = 0; i < kMaxBakeViews; ++i) {
+    float cost = 0.0;
+    for (int j = 0; j < kMaxBakeViews; ++j)
+      cost += best_weight[j] * distance(encoded[i], encoded[j]);
+    bool better = best_weight[i] > 0.0 && cost < least;
+    medoid = better ? encoded[i] : medoid;
+    least = better ? cost : least;
+  }
+  float scale = 2.0 * parameters.noise.x + least / total;
+  vec4 sum = vec4(0.0);
+  for (int i = 0; i < kMaxBakeViews; ++i) {
+    vec3 d = (encoded[i] - medoid) / scale;
+    float inlier = 1.0 / (1.0 + dot(d, d));
+    sum += best_weight[i] * inlier * inlier * vec4(colours[i], 1.0);
+  }
+  return sum.rgb / sum.a;
+}
+
+float agreement(vec3 colour, vec3 encoded[kMaxBakeViews], float total) {
+  float half_at = kBakeAgreementNoise * parameters.noise.x;
+  float sum = 0.0;
+  for (int i = 0; i < kMaxBakeViews; ++i) {
+    vec3 d = (encoded[i] - sqrt(colour)) / half_at;
+    sum += best_weight[i] / (1.0 + dot(d, d) / 3.0);
+  }
+  return sum / total;
+}
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i >= uint(parameters.counts.x)) return;
+  vec3 position = vertices[i].position.xyz;
+  choose_views(position, vertices[i].normal.xyz);
+  vec3 colours[kMaxBakeViews];
+  fetch(position, colours);
+  float total = 0.0;
+  vec3 encoded[kMaxBakeViews];
+  for (int k = 0; k < kMaxBakeViews; ++k) {
+    total += best_weight[k];
+    encoded[k] = sqrt(colours[k]);
+  }
+  if (!(total > 0.0)) {
+    baked[i] = vec4(0.0);
+    return;
+  }
+  vec3 colour = robust_mean(colours, encoded, total);
+  float scatter = direction_count - dot(direction_sum, direction_sum) / direction_count;
+  float spread = 1.0 - exp(-kBakeScatterGain * max(scatter, 0.0));
+  float support = kBakeLoneConfidence + (1.0 - kBakeLoneConfidence) * spread;
+  baked[i] = vec4(colour, support * agreement(colour, encoded, total));
+}

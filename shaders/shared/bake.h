@@ -1,0 +1,39 @@
+// Contract of the kernel that bakes colour onto a mesh's vertices. Lengths are in voxels.
+#ifndef PHOTOHULL_SHADERS_BAKE_H
+#define PHOTOHULL_SHADERS_BAKE_H
+
+#ifdef __cplusplus
+#include <glm/glm.hpp>
+namespace photohull::shaders {
+using glm::ivec4;
+using glm::vec4;
+#elif !defined(constexpr)
+#define constexpr const
+#endif
+
+constexpr int kMaxBakeViews = 6;            // views whose colours are mixed, the best ones
+constexpr float kBakeMinCosine = 0.2f;      // views flatter than this to the surface say nothing
+constexpr float kBakeShift = 1.5f;          // voxels along the normal, to where visibility is tested
+constexpr float kBakeDepthBias = 2.5f;      // voxels
+constexpr float kBakeMinAlpha = 0.5f;       // below: the image knows nothing there
+constexpr float kBakeAgreementNoise = 4.0f;  // noise deviations at which a view half agrees
+constexpr float kBakeScatterGain = 2.0f;    // per unit of scatter of the viewing directions
+constexpr float kBakeLoneConfidence = 0.05f;  // of a vertex that one view sees
+
+struct BakeParameters {
+  ivec4 counts;  // x: vertices, y: views
+  vec4 noise;    // x: standard deviation of the image noise, square-root encoding
+};
+
+struct BakeVertex {
+  vec4 position;  // xyz: voxel coordinates
+  vec4 normal;    // xyz: unit and outward, or zero where unknown
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(BakeParameters) == 32);
+static_assert(sizeof(BakeVertex) == 32);
+}  // namespace photohull::shaders
+#endif
+
+#endif  // PHOTOHULL_SHADERS_BAKE_H

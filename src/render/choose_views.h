@@ -1,0 +1,32 @@
+// Private to module render: from where a preview shows the mesh.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/image.h"
+#include "core/mesh.h"
+
+namespace photohull::render {
+
+/// The view that sees most of the surface: sum over a sample of the vertices of their projected
+/// areas, times the share of them that lies on the image, squared. Hidden surface counts too.
+int choose_main_view(const TriMesh& mesh, std::span<const View> views);
+
+/// Up to `count` further views, each as far in direction (seen from the mesh's centre) from those
+/// before it as there is; views closer than 15 degrees to one of them add nothing and are left out.
+std::vector<int> choose_other_views(const TriMesh& mesh, std::span<const View> views, int main,
+                                    int count);
+
+/// What of a camera's image plane a picture shows, and the depths in it.
+struct Window {
+  double x = 0, y = 0;           ///< top-left corner, pixels; pixel (0, 0) covers [-0.5, 0.5]
+  double width = 0, height = 0;  ///< pixels
+  double near = 0, far = 0;      ///< depths of the mesh, world units
+};
+
+/// Window around the mesh's projection, grown on each side by `margin` of its longer side. The
+/// whole image when the mesh reaches behind the camera.
+Window frame_mesh(const TriMesh& mesh, const Camera& camera, double margin);
+
+}  // namespace photohull::render

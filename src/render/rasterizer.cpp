@@ -1,0 +1,156 @@
+#include "render/rasterizer.h"
+
+#include <algorithm>
+#include <array>
+
+#include "core/error.h"
+#include "gpu/gl.h"
+#include "render/photograph.h"
+
+namespace photohull::render {
+namespace {
+
+constexpr int kSupersample = 2;  // samples along each side of a pixel
+constexpr float kClayGrey = 0.45f;
+
+/// Colour (two attachments) and depth to draw into.
+class Target {
+ public:
+  Target(int width, int height) : width_(width), height_(height) {
+    glCreateFramebuffers(1, &framebuffer_);
+    glCreateRenderbuffers(3, buffers_.data());
+    for (int i = 0; i < 2; ++i) {
+      glNamedRenderbufferStorage(buffers_[i], GL_RGBA8, width, height);
+      glNamedFramebufferRenderbuffer(framebuffer_, GLenum(GL_COLOR_ATTACHMENT0 + i),
+                                     GL_RENDERBUFFER, buffers_[i]);
+    }
+    glNamedRenderbufferStorage(buffers_[2], GL_DEPTH_COMPONENT32F, width, height);
+    glNamedFramebufferRenderbuffer(framebuffer_, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, buffers_[2]);
+    const GLenum attachments[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+    glNamedFramebufferDrawBuffers(framebuffer_, 2, attachments);
+    if (glCheckNamedFramebufferStatus(framebuffer_, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+      release();
+      throw Error(concat("the device cannot draw a picture of ", width, "x", height, " pixels"));
+    }
+    constexpr float kGrey = float(kBackground) / 255.0f;
+    const float background[] = {kGrey, kGrey, kGrey, 1}, farthest = 1;
+    for (int i = 0; i < 2; ++i) glClearNamedFramebufferfv(framebuffer_, GL_COLOR, i, background);
+    glClearNamedFramebufferfv(framebuffer_, GL_DEPTH, 0, &farthest);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+    glViewport(0, 0, width, height);
+  }
+  ~Target() { release(); }
+  Target(const Target&) = delete;
+  Target& operator=(const Target&) = delete;
+
+  std::vector<std::uint8_t> read(int attachment) const {
+    std::vector<std::uint8_t> rgba(std::size_t(width_) * height_ * 4);
+    glReadBuffer(GLenum(GL_COLOR_ATTACHMENT0 + attachment));
+    glReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+    return rgba;
+  }
+
+ private:
+  void release() {
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glDeleteFramebuffers(1, &framebuffer_);
+    glDeleteRenderbuffers(3, buffers_.data());
+  }
+  int width_, height_;
+  unsigned framebuffer_ = 0;
+  std::array<unsigned, 3> buffers_{};
+};
+
+/// Mean over kSupersample^2 samples in linear light.
+PreviewImage resolve(const std::vector<std::uint8_t>& rgba, int width, int height) {
+  PreviewImage out{width, height, std::vector<std::uint8_t>(std::size_t(width) * height * 3)};
+  const std::size_t stride = std::size_t(width) * kSupersample * 4;
+  std::uint8_t* target = out.rgb.data();
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x, target += 3) {
+      const std::uint8_t* corner = &rgba[y * kSupersample * stride + x * kSupersample * 4];
+      for (int c = 0; c < 3; ++c) {
+        float sum = 0;
+        for (int j = 0; j < kSupersample; ++j)
+          for (int i = 0; i < kSupersample; ++i) sum += decode_srgb(corner[j * stride + i * 4 + c]);
+        target[c] = encode_srgb(sum / float(kSupersample * kSupersample));
+      }
+    }
+  return out;
+}
+
+/// Clip coordinates from positions relative to `origin`. Rows run downwards as in images, so that
+/// pictures are read back the right way up and front faces turn clockwise.
+glm::mat4 clip_from_mesh(const Camera& camera, const glm::dvec3& origin, const Window& window) {
+  const glm::dmat4x3 p = camera.projection();
+  const double slack = 1e-3 * window.far;
+  const double near = std::max(window.near - slack, 0.5 * window.near), far = window.far + slack;
+  glm::dmat4 out(0.0);
+  for (int column = 0; column < 4; ++column) {
+    const glm::dvec3 h = column < 3 ? p[column] : p * glm::dvec4(origin, 1);
+    out[column] = {2 * (h.x - window.x * h.z) / window.width - h.z,
+                   2 * (h.y - window.y * h.z) / window.height - h.z,
+                   (far + near) / (far - near) * h.z, h.z};
+  }
+  out[3].z -= 2 * far * near / (far - near);
+  return glm::mat4(out);
+}
+
+std::vector<std::array<std::uint8_t, 4>> encode_colours(const TriMesh& mesh) {
+  std::vector<std::array<std::uint8_t, 4>> out;
+  out.reserve(mesh.positions.size());
+  const std::uint8_t clay = encode_srgb(kClayGrey);
+  for (const glm::vec3& c : mesh.colours)
+    out.push_back({encode_srgb(c.r), encode_srgb(c.g), encode_srgb(c.b), 255});
+  out.resize(mesh.positions.size(), {clay, clay, clay, 255});
+  return out;
+}
+
+}  // namespace
+
+Rasterizer::Rasterizer(gpu::Context& context, const TriMesh& mesh)
+    : context_(context),
+      origin_(mesh.origin),
+      indices_(mesh.triangles.size() * 3),
+      positions_(gpu::Buffer::of(mesh.positions)),
+      normals_(gpu::Buffer::of(mesh.normals)),
+      colours_(gpu::Buffer::of(encode_colours(mesh))),
+      triangles_(gpu::Buffer::of(mesh.triangles)),
+      program_(gpu::Program::raster("render_mesh.vert.glsl", "render_mesh.frag.glsl")) {
+  glCreateVertexArrays(1, &vertex_array_);
+  glVertexArrayVertexBuffer(vertex_array_, 0, positions_.id(), 0, sizeof(glm::vec3));
+  glVertexArrayVertexBuffer(vertex_array_, 1, normals_.id(), 0, sizeof(glm::vec3));
+  glVertexArrayVertexBuffer(vertex_array_, 2, colours_.id(), 0, 4);
+  glVertexArrayAttribFormat(vertex_array_, 0, 3, GL_FLOAT, GL_FALSE, 0);
+  glVertexArrayAttribFormat(vertex_array_, 1, 3, GL_FLOAT, GL_FALSE, 0);
+  glVertexArrayAttribFormat(vertex_array_, 2, 4, GL_UNSIGNED_BYTE, GL_TRUE, 0);
+  for (unsigned i = 0; i < 3; ++i) {
+    glVertexArrayAttribBinding(vertex_array_, i, i);
+    glEnableVertexArrayAttrib(vertex_array_, i);
+  }
+  glVertexArrayElementBuffer(vertex_array_, triangles_.id());
+}
+
+Rasterizer::~Rasterizer() { glDeleteVertexArrays(1, &vertex_array_); }
+
+Rendering Rasterizer::draw(const Camera& camera, const Window& window, int width, int height) {
+  const Target target(width * kSupersample, height * kSupersample);
+  program_.set("clip_from_mesh", clip_from_mesh(camera, origin_, window));
+  program_.set("camera_from_mesh", glm::mat4(glm::dmat4(camera.cam_from_world.rotation)));
+  glEnable(GL_DEPTH_TEST);
+  glEnable(GL_CULL_FACE);
+  glFrontFace(GL_CW);
+  program_.use();
+  glBindVertexArray(vertex_array_);
+  {
+    gpu::Launch launch(context_, "render_mesh");
+    glDrawElements(GL_TRIANGLES, GLsizei(indices_), GL_UNSIGNED_INT, nullptr);
+  }
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_DEPTH_TEST);
+  glBindVertexArray(0);
+  context_.check_errors("render_mesh");
+  return {resolve(target.read(0), width, height), resolve(target.read(1), width, height)};
+}
+
+}  // namespace photohull::render
