@@ -7,7 +7,7 @@ jobs=$(nproc 2>/dev/null || echo 2)
 interactive=no # may a password be asked for?
 if [ -t 0 ]; then interactive=yes; fi
 
-say() { printf '%s\n' "$*"; }
+say() { printf '%s\n' "$@"; } # one line an argument
 
 die() {
   printf '\n%s\n' "$*" >&2
@@ -36,9 +36,11 @@ can_be_root() {
 # Installs those of the named packages that are not there yet. Needs no network when all are.
 install_missing() {
   local package missing=()
-  command -v apt-get >/dev/null || die "This system has no apt. Install the counterparts of these Debian packages, then run
-scripts/setup.sh --no-install:
-  $*"
+  if ! command -v apt-get >/dev/null; then
+    say "This system has no apt, so nothing is installed. Needed are the counterparts of these" \
+      "Debian packages: $*"
+    return 0
+  fi
   for package in "$@"; do
     is_installed "$package" || missing+=("$package")
   done
