@@ -17,7 +17,7 @@ constexpr int kBlocksAcross = 24;   ///< at most, along each side
 // Square roots; below, quantisation and clipping rule, and unknown pixels are black.
 constexpr float kDarkest = 0.08f;
 constexpr float kBrightest = 0.97f;  // square root; above, clipping rules
-constexpr double kFlattest = 0.2;  ///< share of the blocks that count
+constexpr double kFlattest = 0.2;    ///< share of the blocks that count
 
 struct Block {
   double structure;  ///< how much the block's quadrants differ
@@ -85,7 +85,8 @@ double estimate_image_noise(const ColourImage& image) {
       const int y0 = int(std::int64_t(image.height - kBlock) * j / std::max(ny - 1, 1));
       const auto values = load_block(image, x0, y0);
       const auto [low, high] = std::minmax_element(values.begin(), values.end());
-      if (*low < kDarkest || *high > kBrightest) continue;
+      // A block without any difference was painted or clipped; it tells nothing.
+      if (*low < kDarkest || *high > kBrightest || *low == *high) continue;
       blocks.push_back({structure_of(values), sigma_of(values)});
     }
   if (blocks.empty()) return 0;

@@ -95,9 +95,9 @@ class LensMap {
 /// convolution interpolation for digital image processing", 1981 [Keys1981]).
 struct CubicTaps {
   CubicTaps(double position, int size) {
-    const double base = std::floor(position);
+    const int base = int(position + 1) - 1;  // the floor, as positions are -0.5 at least
     const auto t = float(position - base);
-    for (int i = 0; i < 4; ++i) index[i] = std::clamp(int(base) - 1 + i, 0, size - 1);
+    for (int i = 0; i < 4; ++i) index[i] = std::clamp(base - 1 + i, 0, size - 1);
     weight[0] = t * (-0.5f + t * (1.0f - 0.5f * t));
     weight[1] = 1.0f + t * t * (-2.5f + 1.5f * t);
     weight[2] = t * (0.5f + t * (2.0f - 1.5f * t));
@@ -129,26 +129,25 @@ const std::vector<std::uint8_t>& srgb_table() {
 
 /// Opaque 8-bit sRGB pixels as linear light.
 struct Srgb8 {
-  static glm::vec3 load(const std::uint8_t* p) {
-    const auto& linear = linear_table();
-    return {linear[p[0]], linear[p[1]], linear[p[2]]};
-  }
-  static void store(const glm::vec3& colour, std::uint8_t* p) {
-    const auto& srgb = srgb_table();
+  glm::vec3 load(const std::uint8_t* p) const { return {linear[p[0]], linear[p[1]], linear[p[2]]}; }
+  void store(const glm::vec3& colour, std::uint8_t* p) const {
     for (int c = 0; c < 3; ++c)
       p[c] = srgb[std::size_t(std::clamp(colour[c], 0.0f, 1.0f) * 65535.0f + 0.5f)];
     p[3] = 255;
   }
+
+  const float* linear = linear_table().data();
+  const std::uint8_t* srgb = srgb_table().data();
 };
 
 /// Opaque half-float pixels.
 struct LinearHalf {
-  static glm::vec3 load(const std::uint8_t* p) {
+  glm::vec3 load(const std::uint8_t* p) const {
     std::uint64_t packed;
     std::memcpy(&packed, p, sizeof packed);
     return glm::vec3(glm::unpackHalf4x16(packed));
   }
-  static void store(const glm::vec3& colour, std::uint8_t* p) {
+  void store(const glm::vec3& colour, std::uint8_t* p) const {
     constexpr float kLargestHalf = 65504.0f;
     const std::uint64_t packed =
         glm::packHalf4x16(glm::vec4(glm::clamp(colour, 0.0f, kLargestHalf), 1.0f));
@@ -157,7 +156,8 @@ struct LinearHalf {
 };
 
 template <typename Format>
-void sample_colour(const ColourImage& source, const glm::dvec2& position, std::uint8_t* out) {
+void sample_colour(const Format& format, const ColourImage& source, const glm::dvec2& position,
+                   std::uint8_t* out) {
   const CubicTaps x(position.x, source.width), y(position.y, source.height);
   const std::size_t size = source.bytes_per_pixel();
   glm::vec3 sum(0.0f);
@@ -165,10 +165,10 @@ void sample_colour(const ColourImage& source, const glm::dvec2& position, std::u
     const std::uint8_t* row = &source.bytes[std::size_t(y.index[j]) * source.width * size];
     glm::vec3 line(0.0f);
     for (int i = 0; i < 4; ++i)
-      line += x.weight[i] * Format::load(row + std::size_t(x.index[i]) * size);
+      line += x.weight[i] * format.load(row + std::size_t(x.index[i]) * size);
     sum += y.weight[j] * line;
   }
-  Format::store(sum, out);
+  format.store(sum, out);
 }
 
 std::uint8_t sample_coverage(const Mask& mask, const glm::dvec2& position) {
@@ -182,6 +182,30 @@ std::uint8_t sample_coverage(const Mask& mask, const glm::dvec2& position) {
   const double upper = std::lerp(at(x0, y0), at(x1, y0), x - x0);
   const double lower = std::lerp(at(x0, y1), at(x1, y1), x - x0);
   return std::uint8_t(std::lround(std::lerp(upper, lower, y - y0)));
+}
+
+/// Replaces the view's image and mask by those of a pinhole camera.
+template <typename Format>
+void resample(const Format& format, const LensMap& map, const Intrinsics& k, View& view) {
+  const std::size_t size = view.image.bytes_per_pixel();
+  const std::size_t pixels = std::size_t(k.width) * k.height;
+  ColourImage image{k.width, k.height, view.image.encoding, false, {}};
+  image.bytes.assign(pixels * size, 0);
+  Mask mask;
+  if (!view.mask.empty()) mask = {k.width, k.height, std::vector<std::uint8_t>(pixels, 255)};
+  for (int v = 0; v < k.height; ++v)
+    for (int u = 0; u < k.width; ++u) {
+      const std::size_t i = std::size_t(v) * k.width + std::size_t(u);
+      glm::dvec2 position;
+      if (!map.look_up(ideal_point(k, u, v), position)) {
+        image.has_alpha = true;
+        continue;
+      }
+      sample_colour(format, view.image, position, &image.bytes[i * size]);
+      if (!mask.empty()) mask.coverage[i] = sample_coverage(view.mask, position);
+    }
+  view.image = std::move(image);
+  view.mask = std::move(mask);
 }
 
 /// Is every ray imaged where a pinhole would image it?
@@ -237,27 +261,10 @@ void undistort(const Distortion& distortion, double max_growth, View& view) {
   if (is_pinhole(distortion)) return;
   const LensMap map(view.camera.intrinsics, distortion, max_growth);
   const Intrinsics k = undistorted_intrinsics(view.camera.intrinsics, distortion, max_growth);
-  const std::size_t size = view.image.bytes_per_pixel();
-  const std::size_t pixels = std::size_t(k.width) * k.height;
-  ColourImage image{k.width, k.height, view.image.encoding, false, {}};
-  image.bytes.assign(pixels * size, 0);
-  Mask mask;
-  if (!view.mask.empty()) mask = {k.width, k.height, std::vector<std::uint8_t>(pixels, 255)};
-  const auto sample = image.encoding == ColourImage::Encoding::kSrgb8 ? sample_colour<Srgb8>
-                                                                      : sample_colour<LinearHalf>;
-  for (int v = 0; v < k.height; ++v)
-    for (int u = 0; u < k.width; ++u) {
-      const std::size_t i = std::size_t(v) * k.width + std::size_t(u);
-      glm::dvec2 position;
-      if (!map.look_up(ideal_point(k, u, v), position)) {
-        image.has_alpha = true;
-        continue;
-      }
-      sample(view.image, position, &image.bytes[i * size]);
-      if (!mask.empty()) mask.coverage[i] = sample_coverage(view.mask, position);
-    }
-  view.image = std::move(image);
-  view.mask = std::move(mask);
+  if (view.image.encoding == ColourImage::Encoding::kSrgb8)
+    resample(Srgb8(), map, k, view);
+  else
+    resample(LinearHalf(), map, k, view);
   view.camera.intrinsics = k;
 }
 
