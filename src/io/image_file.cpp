@@ -12,7 +12,7 @@
 #include <new>
 
 #include "core/error.h"
-#include "io/atomic_file.h"
+#include "core/atomic_file.h"
 #include "io/text_file.h"
 
 namespace photohull::io {
@@ -298,19 +298,19 @@ void write_png(const fs::path& path, int width, int height, int channels,
   PHOTOHULL_CHECK(width > 0 && height > 0 && channels >= 1 && channels <= 4);
   PHOTOHULL_CHECK_OP(bytes.size(), ==, std::size_t(width) * height * channels);
   keep_to_one_thread();
-  write_atomically(path, [&](const fs::path& temporary) {
-    OIIO::ImageSpec spec(width, height, channels, OIIO::TypeDesc::UINT8);
-    if (channels == 2) spec.channelnames = {"Y", "A"};
-    spec.alpha_channel = channels % 2 == 0 ? channels - 1 : -1;
-    spec.attribute("oiio:UnassociatedAlpha", 1);
-    const auto output = OIIO::ImageOutput::create("png");
-    if (!output) throw Error("PNG files cannot be written: OpenImageIO lacks its PNG plug-in");
-    output->threads(1);
-    if (!output->open(temporary.string(), spec) ||
-        !output->write_image(OIIO::TypeDesc::UINT8, bytes.data()) || !output->close())
-      throw Error(concat(path.string(), ": cannot be written (", output->geterror(),
-                         "); choose a folder that exists, is writable and has space"));
-  });
+  OIIO::ImageSpec spec(width, height, channels, OIIO::TypeDesc::UINT8);
+  if (channels == 2) spec.channelnames = {"Y", "A"};
+  spec.alpha_channel = channels % 2 == 0 ? channels - 1 : -1;
+  spec.attribute("oiio:UnassociatedAlpha", 1);
+  const auto output = OIIO::ImageOutput::create("png");
+  if (!output) throw Error("PNG files cannot be written: OpenImageIO lacks its PNG plug-in");
+  output->threads(1);
+  AtomicFile file(path);
+  if (!output->open(file.temporary().string(), spec) ||
+      !output->write_image(OIIO::TypeDesc::UINT8, bytes.data()) || !output->close())
+    throw Error(concat(path.string(), ": cannot be written (", output->geterror(),
+                       "); choose a folder that exists, is writable and has space"));
+  file.commit();
 }
 
 }  // namespace photohull::io

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "io/atomic_file.h"
+#include "core/atomic_file.h"
 #include "io/colmap_model.h"
 #include "io/write_scene.h"
 #include "io/write_scene_parts.h"

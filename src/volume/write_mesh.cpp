@@ -12,7 +12,7 @@
 
 #include "core/error.h"
 #include "core/image.h"
-#include "volume/atomic_file.h"
+#include "core/atomic_file.h"
 
 namespace photohull {
 namespace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "volume/atomic_file.h"
+#include "core/atomic_file.h"
 #include "volume/fill_tree.h"
 
 namespace photohull {

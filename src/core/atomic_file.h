@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <string_view>
 
 namespace photohull {
 
@@ -41,5 +42,8 @@ class AtomicFile {
   std::filesystem::path temporary_;
   int descriptor_ = -1;
 };
+
+/// Contents at hand, written by an AtomicFile.
+void write_atomically(const std::filesystem::path& path, std::string_view contents);
 
 }  // namespace photohull

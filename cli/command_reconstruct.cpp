@@ -1,0 +1,103 @@
+#include <cstdio>
+#include <memory>
+
+#include "commands.h"
+#include "core/error.h"
+#include "pipeline/reconstruct.h"
+#include "scene_arguments.h"
+#include "terminal_progress.h"
+
+namespace photohull::cli {
+namespace {
+
+struct Arguments {
+  SceneArguments scene;
+  std::string out, quality = "normal", method, device = "auto";
+  int resolution = 0, threads = 0;
+  double voxel_size = 0;
+  bool json = false;
+};
+
+template <typename Enum>
+Enum parse(const std::string& option, const std::string& text, std::initializer_list<Enum> values) {
+  std::string legal;
+  for (const Enum value : values) {
+    if (text == pipeline::to_string(value)) return value;
+    legal += std::string(legal.empty() ? "" : ", ") + pipeline::to_string(value);
+  }
+  throw UsageError(option + " " + text + ": expected one of " + legal);
+}
+
+pipeline::ReconstructOptions to_options(const Arguments& a, const CLI::App& command) {
+  using pipeline::Method;
+  using pipeline::Quality;
+  pipeline::ReconstructOptions o;
+  o.scene = a.scene.scene;
+  o.output = a.out;
+  o.load = a.scene.options();
+  o.quality = parse("--quality", a.quality, {Quality::kDraft, Quality::kNormal, Quality::kHigh});
+  if (!a.method.empty())
+    o.method = parse("--method", a.method,
+                     {Method::kHull, Method::kVoxelColoring, Method::kSpaceCarving});
+  if (command.count("--resolution")) o.resolution = a.resolution;
+  if (command.count("--voxel-size")) o.voxel_size = a.voxel_size;
+  o.device = a.device;
+  o.threads = a.threads;
+  o.validate();
+  return o;
+}
+
+void print_summary(const pipeline::Report& report, const std::string& out) {
+  const glm::ivec3 n = report.grid.voxels();
+  std::printf("%d views, %d x %d x %d voxels of %g, %lld triangles\n", report.views, n.x, n.y, n.z,
+              report.grid.voxel_size, static_cast<long long>(report.triangles));
+  if (report.voxels_judged)
+    std::printf("judged %lld voxels in %d sweeps, carved %lld\n",
+                static_cast<long long>(report.voxels_judged), report.sweeps,
+                static_cast<long long>(report.voxels_carved));
+  std::printf("%.2f s (%.2f CPU s), peak memory %lld MiB, on %s\n", report.wall_seconds,
+              report.cpu_seconds, static_cast<long long>(report.peak_memory_bytes >> 20),
+              report.device.c_str());
+  for (const std::string& file : report.files) std::printf("  %s/%s\n", out.c_str(), file.c_str());
+}
+
+void run(const Arguments& a, const CLI::App& command) {
+  const pipeline::ReconstructOptions options = to_options(a, command);
+  TerminalProgress progress(pipeline::total_weight(options));
+  const pipeline::Report report = pipeline::reconstruct(options, progress);
+  progress.finish();
+  if (a.json)
+    std::fputs(report.to_json().c_str(), stdout);
+  else
+    print_summary(report, a.out);
+}
+
+}  // namespace
+
+void add_reconstruct(CLI::App& app) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* c = app.add_subcommand("reconstruct", "carve a volume and a mesh from photographs");
+  a->scene.add_to(*c);
+  c->add_option("--out", a->out, "folder for the results; made when it does not exist")->required();
+  c->add_option("--resolution", a->resolution, "voxels along the box's longest side");
+  c->add_option("--voxel-size", a->voxel_size, "voxel size in world units");
+  c->add_option("--quality", a->quality, "draft, normal or high: voxel size from the images' pixels")
+      ->capture_default_str();
+  c->add_option("--method", a->method,
+                "hull, voxel-coloring or space-carving (default: hull for draft, else space-carving)");
+  c->add_option("--device", a->device, "auto, software, or an index from 'photohull devices'")
+      ->capture_default_str();
+  c->add_option("--threads", a->threads, "threads to use (0: one a core)")->capture_default_str();
+  c->add_flag("--json", a->json, "print report.json on standard output instead of a summary");
+  c->footer(
+      "Writes volume.vdb, mesh.ply, preview.png and report.json into the output folder.\n\n"
+      "Examples:\n"
+      "  photohull reconstruct datasets/templeSparseRing --out out/temple\n"
+      "  photohull reconstruct scan --out out/scan --quality draft\n"
+      "  photohull reconstruct scan --out out/scan --resolution 512 --method hull\n"
+      "  photohull reconstruct colmap/sparse/0 --out out/plant --box \"-1 -1 0 1 1 2\"\n"
+      "  photohull reconstruct transforms.json --out out/x --masks my_masks --views 0-23 --json");
+  c->callback([a, c] { run(*a, *c); });
+}
+
+}  // namespace photohull::cli

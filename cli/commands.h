@@ -1,0 +1,12 @@
+// The subcommands: each adds its arguments to the parser and runs when it was chosen.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace photohull::cli {
+
+void add_reconstruct(CLI::App& app);
+void add_info(CLI::App& app);
+void add_devices(CLI::App& app);
+
+}  // namespace photohull::cli

@@ -1,0 +1,65 @@
+#include "scene_arguments.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include "core/error.h"
+
+namespace photohull::cli {
+namespace {
+
+Box parse_box(const std::string& text) {
+  std::string spaced = text;
+  std::replace(spaced.begin(), spaced.end(), ',', ' ');
+  std::istringstream in(spaced);
+  double v[6];
+  for (double& x : v)
+    if (!(in >> x))
+      throw UsageError("--box: expected six numbers \"x0 y0 z0 x1 y1 z1\", found '" + text + "'");
+  std::string rest;
+  if (in >> rest) throw UsageError("--box: '" + rest + "' follows the six numbers");
+  const glm::dvec3 a(v[0], v[1], v[2]), b(v[3], v[4], v[5]);
+  return {glm::min(a, b), glm::max(a, b)};
+}
+
+SceneFormat parse_format(const std::string& text) {
+  for (const SceneFormat f : {SceneFormat::kMiddlebury, SceneFormat::kColmapText,
+                              SceneFormat::kColmapBinary, SceneFormat::kTransforms})
+    if (text == to_string(f)) return f;
+  throw UsageError("--format " + text +
+                   ": expected middlebury, colmap-text, colmap-binary or transforms");
+}
+
+}  // namespace
+
+void SceneArguments::add_to(CLI::App& command) {
+  command.add_option("SCENE", scene, "folder or file of the scene")->required();
+  command.add_option("--format", format,
+                     "middlebury, colmap-text, colmap-binary or transforms (default: detected)");
+  command.add_option("--box", box, "region of interest \"x0 y0 z0 x1 y1 z1\" in world units");
+  command.add_option("--masks", masks,
+                     "auto (files, alpha, else a background model), none, or a folder of masks")
+      ->capture_default_str();
+  command.add_option("--views", views, "views to use, e.g. \"0-10,15,img_*.png\" (default: all)");
+  command.add_option("--pixel-center", pixel_center,
+                     "coordinate of the top-left pixel's centre in the scene file, 0 or 0.5 "
+                     "(default: the format's)");
+}
+
+io::LoadSceneOptions SceneArguments::options() const {
+  io::LoadSceneOptions out;
+  if (!format.empty()) out.format = parse_format(format);
+  if (pixel_center != -1) out.pixel_center = pixel_center;
+  if (!box.empty()) out.box = parse_box(box);
+  out.views = views;
+  if (masks == "none") {
+    out.masks = io::MaskSource::kNone;
+  } else if (masks != "auto") {
+    out.masks = io::MaskSource::kDirectory;
+    out.mask_directory = masks;
+  }
+  out.validate();
+  return out;
+}
+
+}  // namespace photohull::cli

@@ -1,0 +1,90 @@
+#include "pipeline/checks.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+
+namespace photohull::pipeline {
+namespace {
+
+constexpr int kProbes = 12;  // probe points along each side of the box
+
+template <typename F>
+void for_each_probe(const Box& box, F&& f) {
+  for (int i = 0; i < kProbes; ++i)
+    for (int j = 0; j < kProbes; ++j)
+      for (int k = 0; k < kProbes; ++k)
+        f(box.min + box.size() * (glm::dvec3(i, j, k) + 0.5) / double(kProbes));
+}
+
+bool sees(const Camera& camera, const Box& box) {
+  bool seen = false;
+  for_each_probe(box, [&](const glm::dvec3& p) {
+    if (seen) return;
+    const auto pixel = camera.project(p);
+    seen = pixel && camera.on_image(*pixel);
+  });
+  return seen;
+}
+
+double share_removed(const View& view, const Box& box) {
+  int removed = 0;
+  for_each_probe(box, [&](const glm::dvec3& p) {
+    const auto pixel = view.camera.project(p);
+    if (view.mask.empty() || !pixel || !view.camera.on_image(*pixel)) return;
+    const int x = std::clamp(int(std::lround(pixel->x)), 0, view.mask.width - 1);
+    const int y = std::clamp(int(std::lround(pixel->y)), 0, view.mask.height - 1);
+    removed += view.mask.coverage[std::size_t(y) * view.mask.width + x] < 128;
+  });
+  return removed / std::pow(kProbes, 3);
+}
+
+}  // namespace
+
+std::vector<std::string> check_box(const Box& box, const std::string& source,
+                                   std::span<const SourceView> views) {
+  const glm::dvec3 size = box.size();
+  if (!(size.x > 0 && size.y > 0 && size.z > 0))
+    throw Error(concat("the box from ", source, " has no volume: its sides are ", size.x, ", ", size.y,
+                       ", ", size.z, "; give --box \"x0 y0 z0 x1 y1 z1\""));
+  std::vector<std::string> blind;
+  for (const SourceView& view : views) {
+    if (box.contains(view.camera.center()))
+      throw Error(concat("camera ", view.name, " stands inside the box from ", source,
+                         ": make --box smaller, or check that the poses are world-to-camera"));
+    if (!sees(view.camera, box)) blind.push_back(view.name);
+  }
+  if (blind.size() == views.size())
+    throw Error(concat("no camera has the box from ", source,
+                       " on its image: check the box's units and the poses' direction "
+                       "(photohull info shows both)"));
+  if (blind.empty()) return {};
+  return {concat(blind.size(), " of ", views.size(), " cameras do not have the box on their image: ",
+                 blind.front(), blind.size() > 1 ? ", ..." : "")};
+}
+
+void check_memory(std::int64_t bytes, const GridSpec& grid) {
+  const std::int64_t physical =
+      std::int64_t(sysconf(_SC_PHYS_PAGES)) * std::int64_t(sysconf(_SC_PAGE_SIZE));
+  if (bytes <= physical) return;
+  const glm::ivec3 n = grid.voxels();
+  throw Error(concat("a grid of ", n.x, " x ", n.y, " x ", n.z, " voxels would take about ",
+                     bytes >> 20, " MiB, but this machine has ", physical >> 20,
+                     " MiB; lower --resolution"));
+}
+
+std::string explain_empty_hull(const Box& box, std::span<const View> views) {
+  std::vector<std::pair<double, std::string>> removed;
+  for (const View& view : views) removed.emplace_back(-share_removed(view, box), view.name);
+  std::sort(removed.begin(), removed.end());
+  std::string text = "nothing is left of the box: the silhouettes have no common space. ";
+  for (std::size_t i = 0; i < std::min<std::size_t>(3, removed.size()); ++i)
+    text += concat(i ? ", " : "Alone, ", removed[i].second, " removes ",
+                   std::lround(-100 * removed[i].first), " %");
+  return text + ". Check the masks (white is the object), the box and the cameras";
+}
+
+}  // namespace photohull::pipeline

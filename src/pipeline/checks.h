@@ -1,0 +1,24 @@
+// What must be true of a scene before and after carving, said in the user's words.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "carving/hull.h"
+#include "core/scene.h"
+
+namespace photohull::pipeline {
+
+/// Throws Error when the scene has no usable box, a camera stands inside it or none has it on its
+/// image; returns warnings about cameras that miss it.
+std::vector<std::string> check_box(const Box& box, const std::string& source,
+                                   std::span<const SourceView> views);
+
+/// Throws Error when `bytes` exceed the machine's memory.
+void check_memory(std::int64_t bytes, const GridSpec& grid);
+
+/// Why nothing of the box is left: the views whose silhouettes alone remove the most of it.
+std::string explain_empty_hull(const Box& box, std::span<const View> views);
+
+}  // namespace photohull::pipeline

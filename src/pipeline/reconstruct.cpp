@@ -1,0 +1,332 @@
+#include "pipeline/reconstruct.h"
+
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "calib/noise.h"
+#include "calib/prepare_views.h"
+#include "calib/silhouette.h"
+#include "carving/fit_grid.h"
+#include "carving/hull.h"
+#include "carving/photo.h"
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "io/image_file.h"
+#include "pipeline/checks.h"
+#include "pipeline/stage_clock.h"
+#include "projtex/image_set.h"
+#include "render/bake_colour.h"
+#include "render/preview.h"
+#include "volume/attributes.h"
+#include "volume/components.h"
+#include "volume/extract_mesh.h"
+#include "volume/write_mesh.h"
+#include "volume/write_vdb.h"
+
+namespace photohull::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kDebrisFraction = 5e-4;  // of the largest part's voxels
+constexpr double kBoxSlack = 0.5;         // voxels that the surface may stand out of the box
+
+/// Shares of a job's time, measured on the scenes of docs/benchmarks.md; they only drive the time left.
+struct Weights {
+  static constexpr double kScene = 0.1, kViews = 5, kDevice = 1, kHull = 5, kImages = 1, kPhoto = 120,
+                          kClean = 0.2, kMesh = 2, kColour = 4, kPreview = 1, kFiles = 2;
+};
+
+std::string number(double value) {
+  std::ostringstream out;
+  out.precision(9);
+  out << value;
+  return out.str();
+}
+
+void make_output_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder))
+    throw Error(concat("--out ", folder.string(), ": cannot make this folder (",
+                       error ? error.message() : "a file of that name exists", ")"));
+}
+
+double voxel_size_of(const ReconstructOptions& options, const Box& box,
+                     std::span<const Camera> cameras) {
+  if (options.voxel_size) return *options.voxel_size;
+  if (options.resolution) return carving::voxel_size_for(box, *options.resolution);
+  const double footprint = carving::pixel_footprint(box, cameras);
+  if (!(footprint > 0)) throw Error("no camera has the box's centre in front of it");
+  return footprint * footprint_factor(options.quality);
+}
+
+double median_noise(std::span<const View> views) {
+  std::vector<double> values(views.size());
+  tbb::parallel_for(std::size_t(0), views.size(),
+                    [&](std::size_t i) { values[i] = estimate_image_noise(views[i].image); });
+  std::nth_element(values.begin(), values.begin() + long(values.size() / 2), values.end());
+  // Quantisation to 8 bits alone leaves about this much.
+  return std::max(values[values.size() / 2], 1.0 / 255 / std::sqrt(12.0));
+}
+
+class Job {
+ public:
+  Job(const ReconstructOptions& options, Progress& progress)
+      : options_(options), progress_(progress), clock_(report_, progress) {}
+
+  Report run() {
+    const auto start = std::chrono::steady_clock::now();
+    make_output_folder(options_.output);
+    clock_.run("scene", Weights::kScene, [&] { load(); });
+    clock_.run("views", Weights::kViews, [&] { prepare(); });
+    clock_.run("device", Weights::kDevice, [&] { open_device(); });
+    SparseVolume volume = clock_.run("hull", Weights::kHull, [&] { return carve_hull(); });
+    images_ = clock_.run("images", Weights::kImages, [&] {
+      return std::make_unique<projtex::ImageSet>(views_);
+    });
+    if (options_.effective_method() != Method::kHull)
+      volume = clock_.run("photo", Weights::kPhoto, [&] { return carve_photo(volume); });
+    clock_.run("clean", Weights::kClean, [&] { remove_small_components(volume, kDebrisFraction); });
+    TriMesh mesh = clock_.run("mesh", Weights::kMesh, [&] { return extract_mesh(volume); });
+    clock_.run("colour", Weights::kColour, [&] { colour(mesh); });
+    const auto preview = clock_.run("preview", Weights::kPreview, [&] {
+      return render_preview(*context_, mesh, views_);
+    });
+    clock_.run("files", Weights::kFiles, [&] { write(volume, mesh, preview); });
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    finish(volume, mesh, elapsed.count());
+    return report_;
+  }
+
+ private:
+  void warn(const std::string& text) {
+    report_.warnings.push_back(text);
+    progress_.warn(text);
+  }
+
+  void load() {
+    scene_ = io::load_scene(options_.scene, options_.load);
+    report_.scene = scene_.path.string();
+    report_.format = to_string(scene_.format);
+    report_.views = int(scene_.views.size());
+    for (const std::string& text : scene_.warnings) warn(text);
+    if (!scene_.box)
+      throw Error(concat(scene_.path.string(), ": nothing tells where the object is: give --box "
+                         "\"x0 y0 z0 x1 y1 z1\" or a bbox.txt beside the scene"));
+    report_.box = *scene_.box;
+    report_.box_source = scene_.box_source;
+    for (const std::string& text : check_box(*scene_.box, scene_.box_source, scene_.views)) warn(text);
+    for (const SourceView& view : scene_.views) cameras_.push_back(view.camera);
+    grid_ = carving::fit_grid(*scene_.box, voxel_size_of(options_, *scene_.box, cameras_));
+    check_memory(carving::estimate_memory(grid_), grid_);
+    report_.grid = grid_;
+  }
+
+  void prepare() {
+    const ViewLoader loader{[](const fs::path& path) { return io::read_image(path); },
+                            [](const fs::path& path) { return io::read_mask(path); }};
+    PrepareOptions prepare_options;
+    if (options_.load.masks == io::MaskSource::kNone) prepare_options.masks = MaskPolicy::kNone;
+    PreparedViews prepared = prepare_views(scene_, loader, prepare_options, progress_);
+    views_ = std::move(prepared.views);
+    cameras_ = projtex::cameras_of(views_);
+    report_.mask_source = prepared.mask_source;
+    report_.mask_confidence = prepared.mask_confidence;
+    for (const std::string& text : prepared.warnings) warn(text);
+    report_.noise_sigma = median_noise(views_);
+  }
+
+  void open_device() {
+    context_ = gpu::Context::create(options_.device, options_.threads);
+    report_.device = context_->device().renderer;
+  }
+
+  SparseVolume carve_hull() {
+    std::vector<SilhouetteDistance> distances(views_.size());
+    tbb::parallel_for(std::size_t(0), views_.size(), [&](std::size_t i) {
+      if (!views_[i].mask.empty()) distances[i] = silhouette_distance(views_[i].mask);
+    });
+    std::vector<carving::Silhouette> silhouettes;
+    bool any_mask = false;
+    for (std::size_t i = 0; i < views_.size(); ++i) {
+      const bool masked = !views_[i].mask.empty();
+      any_mask = any_mask || masked;
+      silhouettes.push_back({&views_[i].mask, masked ? &distances[i] : nullptr});
+    }
+    if (!any_mask && options_.effective_method() == Method::kHull)
+      warn("without masks the hull is the box clipped by the frusta: give masks or use "
+           "--method space-carving");
+    carving::HullOptions hull_options;
+    hull_options.min_views = any_mask ? 1 : 2;
+    Box box = *scene_.box;
+    box.min -= kBoxSlack * grid_.voxel_size;
+    box.max += kBoxSlack * grid_.voxel_size;
+    carving::HullReport counts;
+    SparseVolume volume = carving::carve_silhouette(*context_, grid_, box, cameras_, silhouettes,
+                                                    hull_options, progress_, &counts);
+    if (volume.inside_voxels() == 0) throw Error(explain_empty_hull(*scene_.box, views_));
+    report_.nodes_tested = counts.nodes_tested;
+    report_.bricks_evaluated = counts.bricks_evaluated;
+    hull_samples_ = counts.samples;
+    return volume;
+  }
+
+  SparseVolume carve_photo(const SparseVolume& hull) {
+    carving::PhotoOptions photo;
+    photo.method = options_.effective_method() == Method::kVoxelColoring
+                       ? carving::PhotoMethod::kVoxelColoring
+                       : carving::PhotoMethod::kSpaceCarving;
+    photo.noise_sigma = report_.noise_sigma;
+    carving::PhotoReport counts;
+    SparseVolume volume =
+        carving::carve_photo(*context_, hull, *images_, cameras_, photo, progress_, &counts);
+    report_.sweeps = counts.sweeps;
+    report_.voxels_judged = counts.judged;
+    report_.voxels_carved = counts.carved;
+    report_.voxels_undecided = counts.undecided + counts.reverted;
+    photo_samples_ = counts.samples;
+    if (volume.inside_voxels() == 0)
+      throw Error("photo-consistency carved everything away: the photographs disagree everywhere; "
+                  "check the cameras (photohull info) or use --method hull");
+    if (counts.judged == 0)
+      warn("no voxel was seen by enough cameras to be judged: the result is the hull");
+    return volume;
+  }
+
+  void colour(TriMesh& mesh) {
+    if (mesh.triangles.empty()) throw Error("the volume holds no surface: every part is thinner than a voxel; raise --resolution");
+    photohull::bake_colour(*context_, grid_, *images_, cameras_, report_.noise_sigma, mesh, progress_);
+    const auto unseen = std::count(mesh.confidence.begin(), mesh.confidence.end(), 0.0f);
+    report_.unseen_share = double(unseen) / double(mesh.confidence.size());
+    if (report_.unseen_share > 0.5)
+      warn(concat(std::lround(100 * report_.unseen_share),
+                  " % of the surface is seen by no camera: it is the hull's guess"));
+  }
+
+  void write(const SparseVolume& volume, const TriMesh& mesh, const PreviewImage& preview) {
+    VdbMetadata metadata{{"photohull_options", option_line()}};
+    const fs::path& out = options_.output;
+    write_vdb(out / "volume.vdb", volume, attributes_from_mesh(volume, mesh), metadata);
+    write_ply(out / "mesh.ply", mesh);
+    io::write_png(out / "preview.png", preview.width, preview.height, 3, preview.rgb);
+    report_.files = {"volume.vdb", "mesh.ply", "preview.png", "report.json"};
+  }
+
+  std::string option_line() const {
+    std::string line;
+    for (const auto& [name, value] : report_.options) line += name + "=" + value + " ";
+    return line;
+  }
+
+  void finish(const SparseVolume& volume, const TriMesh& mesh, double wall_seconds) {
+    for (StageReport& stage : report_.stages) {
+      if (stage.name == "hull") stage.samples = hull_samples_;
+      if (stage.name == "photo") stage.samples = photo_samples_;
+    }
+    report_.voxels_kept = std::int64_t(volume.inside_voxels());
+    report_.bricks_stored = std::int64_t(volume.bricks.size());
+    report_.vertices = std::int64_t(mesh.positions.size());
+    report_.triangles = std::int64_t(mesh.triangles.size());
+    report_.wall_seconds = wall_seconds;
+    report_.cpu_seconds = process_cpu_seconds();
+    report_.peak_memory_bytes = process_peak_memory();
+    write_atomically(options_.output / "report.json", report_.to_json());
+  }
+
+ public:
+  /// Notes the options as they took effect.
+  void note_options() {
+    auto& list = report_.options;
+    report_.version = PHOTOHULL_VERSION;
+    list.emplace_back("quality", to_string(options_.quality));
+    list.emplace_back("method", to_string(options_.effective_method()));
+    if (options_.resolution) list.emplace_back("resolution", std::to_string(*options_.resolution));
+    if (options_.voxel_size) list.emplace_back("voxel_size", number(*options_.voxel_size));
+    if (!options_.load.views.empty()) list.emplace_back("views", options_.load.views);
+    list.emplace_back("device", options_.device);
+    list.emplace_back("threads", std::to_string(options_.threads));
+  }
+
+ private:
+  const ReconstructOptions& options_;
+  Progress& progress_;
+  Report report_;
+  StageClock clock_;
+  Scene scene_;
+  GridSpec grid_;
+  std::vector<View> views_;
+  std::vector<Camera> cameras_;
+  std::unique_ptr<gpu::Context> context_;
+  std::unique_ptr<projtex::ImageSet> images_;
+  std::int64_t hull_samples_ = 0, photo_samples_ = 0;
+};
+
+}  // namespace
+
+const char* to_string(Quality quality) {
+  switch (quality) {
+    case Quality::kDraft: return "draft";
+    case Quality::kNormal: return "normal";
+    case Quality::kHigh: return "high";
+  }
+  return "?";
+}
+
+const char* to_string(Method method) {
+  switch (method) {
+    case Method::kHull: return "hull";
+    case Method::kVoxelColoring: return "voxel-coloring";
+    case Method::kSpaceCarving: return "space-carving";
+  }
+  return "?";
+}
+
+double footprint_factor(Quality quality) {
+  switch (quality) {
+    case Quality::kDraft: return 4.0;
+    case Quality::kNormal: return 1.5;
+    case Quality::kHigh: return 0.75;
+  }
+  return 1.5;
+}
+
+void ReconstructOptions::validate() const {
+  load.validate();
+  if (resolution && voxel_size)
+    throw UsageError("--resolution and --voxel-size exclude each other: give one");
+  if (resolution && *resolution < 2)
+    throw UsageError(concat("--resolution ", *resolution, ": at least 2"));
+  if (voxel_size && !(std::isfinite(*voxel_size) && *voxel_size > 0))
+    throw UsageError("--voxel-size must be finite and positive");
+  if (threads < 0) throw UsageError(concat("--threads ", threads, ": 0 (one a core) or more"));
+}
+
+Method ReconstructOptions::effective_method() const {
+  if (method) return *method;
+  return quality == Quality::kDraft ? Method::kHull : Method::kSpaceCarving;
+}
+
+double total_weight(const ReconstructOptions& options) {
+  const bool photo = options.effective_method() != Method::kHull;
+  return Weights::kScene + Weights::kViews + Weights::kDevice + Weights::kHull + Weights::kImages +
+         (photo ? Weights::kPhoto : 0) + Weights::kClean + Weights::kMesh + Weights::kColour +
+         Weights::kPreview + Weights::kFiles;
+}
+
+Report reconstruct(const ReconstructOptions& options, Progress& progress) {
+  options.validate();
+  std::unique_ptr<tbb::global_control> limit;
+  if (options.threads > 0)
+    limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                  std::size_t(options.threads));
+  Job job(options, progress);
+  job.note_options();
+  return job.run();
+}
+
+}  // namespace photohull::pipeline

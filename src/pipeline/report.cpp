@@ -1,0 +1,65 @@
+#include "pipeline/report.h"
+
+#include <sys/resource.h>
+
+#include <nlohmann/json.hpp>
+
+namespace photohull::pipeline {
+
+using nlohmann::ordered_json;
+
+namespace {
+
+ordered_json to_json_array(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+ordered_json to_json_array(const glm::ivec3& v) { return {v.x, v.y, v.z}; }
+
+}  // namespace
+
+std::string Report::to_json() const {
+  ordered_json j;
+  j["photohull"] = version;
+  j["scene"] = {{"path", scene}, {"format", format}, {"views", views}};
+  j["device"] = device;
+  for (const auto& [name, value] : options) j["options"][name] = value;
+  j["box"] = {{"min", to_json_array(box.min)}, {"max", to_json_array(box.max)}, {"source", box_source}};
+  j["masks"] = {{"source", mask_source}, {"confidence", mask_confidence}};
+  j["noise_sigma"] = noise_sigma;
+  j["grid"] = {{"origin", to_json_array(grid.origin)},
+               {"voxel_size", grid.voxel_size},
+               {"voxels", to_json_array(grid.voxels())},
+               {"bricks_stored", bricks_stored}};
+  j["stages"] = ordered_json::array();
+  for (const StageReport& s : stages)
+    j["stages"].push_back({{"name", s.name},
+                           {"wall_seconds", s.wall_seconds},
+                           {"cpu_seconds", s.cpu_seconds},
+                           {"samples", s.samples}});
+  j["hull"] = {{"nodes_tested", nodes_tested}, {"bricks_evaluated", bricks_evaluated}};
+  j["photo"] = {{"sweeps", sweeps},
+                {"voxels_judged", voxels_judged},
+                {"voxels_carved", voxels_carved},
+                {"voxels_undecided", voxels_undecided}};
+  j["voxels_kept"] = voxels_kept;
+  j["mesh"] = {{"vertices", vertices}, {"triangles", triangles}, {"unseen_share", unseen_share}};
+  j["wall_seconds"] = wall_seconds;
+  j["cpu_seconds"] = cpu_seconds;
+  j["peak_memory_bytes"] = peak_memory_bytes;
+  j["warnings"] = warnings;
+  j["files"] = files;
+  return j.dump(2) + "\n";
+}
+
+double process_cpu_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+std::int64_t process_peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return std::int64_t(usage.ru_maxrss) * 1024;
+}
+
+}  // namespace photohull::pipeline

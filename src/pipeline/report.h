@@ -1,0 +1,52 @@
+// What a reconstruction did, as report.json tells it (docs/report.md).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/box.h"
+#include "core/grid.h"
+
+namespace photohull::pipeline {
+
+struct StageReport {
+  std::string name;
+  double wall_seconds = 0;
+  double cpu_seconds = 0;      ///< user + system, all threads
+  std::int64_t samples = 0;    ///< texture samples, where the stage takes any
+};
+
+struct Report {
+  std::string version;
+  std::string scene, format, device;
+  std::vector<std::pair<std::string, std::string>> options;
+  int views = 0;
+  Box box;
+  std::string box_source;
+  std::string mask_source;
+  double mask_confidence = 0;
+  double noise_sigma = 0;           ///< square-root-encoded units of full scale
+  GridSpec grid;
+  std::vector<StageReport> stages;
+  std::int64_t nodes_tested = 0, bricks_evaluated = 0;
+  std::int64_t voxels_judged = 0, voxels_carved = 0, voxels_kept = 0, voxels_undecided = 0;
+  std::int64_t bricks_stored = 0;
+  int sweeps = 0;
+  std::int64_t vertices = 0, triangles = 0;
+  double unseen_share = 0;          ///< of the mesh's vertices
+  std::int64_t peak_memory_bytes = 0;
+  double wall_seconds = 0, cpu_seconds = 0;
+  std::vector<std::string> warnings;
+  std::vector<std::string> files;
+
+  std::string to_json() const;
+};
+
+/// User + system seconds of the process so far, all threads.
+double process_cpu_seconds();
+/// Largest resident set of the process so far.
+std::int64_t process_peak_memory();
+
+}  // namespace photohull::pipeline
