@@ -24,7 +24,8 @@ using gpu::Program;
 
 constexpr double kLeastCosine = 0.35;      // between a camera's direction and the sweep
 constexpr std::size_t kChunk = 1024;       // bricks whose samples are held at once
-constexpr double kNegligible = 1e-4;       // carved in a round / judged: the sweeps have converged
+// Voxels carved in a round per voxel judged below which another round changes nothing measurable.
+constexpr double kNegligible = 0.1;
 
 struct Direction {
   int axis, sign;
