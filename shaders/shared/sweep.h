@@ -22,8 +22,7 @@ constexpr int kApronArea = 144;
 struct SweepParameters {
   ivec4 bricks;      // grid size in bricks; w: items of this brick layer
   ivec4 axes;        // x, y: the two axes in the plane; z: the sweep's axis; w: +1 or -1
-  ivec4 layer;       // x: layer; y: supersampling n (n x n samples a voxel); z: number of depth maps;
-                     // w: 1 for planes through the voxels' front faces, 0 through their centres
+  ivec4 layer;       // x: layer; w: 1 for planes through the voxels' front faces, 0 through their centres
   vec4 thresholds;   // x: score that keeps; y: least gain of a better explanation; z: least views;
                      // w: bias of the depth test in voxels
   vec4 noise;        // x: variance of image noise (square-root encoding); y: least texture variance

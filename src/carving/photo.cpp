@@ -51,7 +51,8 @@ class Sweeper {
         options_(options),
         bits_(to_bits(hull)),
         select_(Program::compute("carving_select_columns.comp.glsl")),
-        project_(Program::compute("projtex_project_layer.comp.glsl")),
+        project_(Program::compute("projtex_project_layer.comp.glsl",
+                                  concat("#define SUPERSAMPLE ", options.supersample, "\n"))),
         score_(Program::compute("carving_score_columns.comp.glsl")),
         update_(Program::compute("carving_update_columns.comp.glsl")) {
     for (const Camera& camera : cameras) cameras_.push_back(projtex::to_grid(camera, hull.grid));
@@ -88,7 +89,7 @@ class Sweeper {
     const ivec3 grid = bits_.grid.bricks;
     const int u = (direction.axis + 1) % 3, v = (direction.axis + 2) % 3;
     parameters_.axes = {u, v, direction.axis, direction.sign};
-    parameters_.layer = {0, options_.supersample, int(cameras_.size()), options_.front_face};
+    parameters_.layer = {0, 0, 0, options_.front_face};
     const shaders::Column fresh{{-1, -1, 0, 0}, {0, 0, 0, 0}};
     columns_ = Buffer::of(
         std::vector<shaders::Column>(std::size_t(grid[u]) * grid[v] * 64, fresh));
@@ -222,7 +223,7 @@ class Sweeper {
       while (column < columns_of_layer_.size() && columns_of_layer_[column] >> 6 < end) ++column;
       bind(first, first_column, selected, samples_, scores, decided, column - first_column);
       images_.texture().bind(0);
-      project_.dispatch(context_, "projtex_project_layer", end - first, shaders::kMaxLayerViews);
+      project_.dispatch(context_, "projtex_project_layer", end - first);
       score_.dispatch(context_, "carving_score_columns",
                       gpu::group_count(column - first_column, 64));
       counts_.samples += std::int64_t(end - first) * shaders::kMaxLayerViews *
