@@ -14,7 +14,7 @@ void main() {
   vec3 n = normalize(camera_normal);
   float headlight = max(-n.z, 0.0);
   float side = max(0.8 * dot(n, kSideLight) + 0.2, 0.0);  // wraps around: a large, soft light
-  vec3 light = kClay * (0.06 + 0.45 * headlight + 0.6 * side);
+  vec3 light = kClay * (0.04 + 0.35 * headlight + 0.75 * side);
   coloured = vec4(vertex_colour, 1.0);
   clay = vec4(sqrt(light), 1.0);  // gamma 2 is close enough to sRGB for an invented material
 }

@@ -11,10 +11,12 @@ using glm::vec4;
 #define constexpr const
 #endif
 
+constexpr int kSplatRun = 16;               // points that a thread draws into a depth map
 constexpr int kMaxBakeViews = 6;            // views whose colours are mixed, the best ones
 constexpr float kBakeMinCosine = 0.2f;      // views flatter than this to the surface say nothing
 constexpr float kBakeShift = 1.5f;          // voxels along the normal, to where visibility is tested
 constexpr float kBakeDepthBias = 2.5f;      // voxels
+constexpr float kBakeTexel = 2.0f;          // voxels that a depth map's texel is wide
 constexpr float kBakeMinAlpha = 0.5f;       // below: the image knows nothing there
 constexpr float kBakeAgreementNoise = 4.0f;  // noise deviations at which a view half agrees
 constexpr float kBakeScatterGain = 2.0f;    // per unit of scatter of the viewing directions

@@ -70,6 +70,9 @@ struct BakedVertex {
   double confidence = 0;   ///< 0: seen by no view, and the colour is black
 };
 
+/// Draws a point that faces the camera into a map, as the kernel does.
+void splat_point(const glm::dvec3& position, const glm::dvec3& normal, BakeView& view);
+
 /// The same as the kernel for one vertex (position in voxel coordinates), in double precision.
 BakedVertex bake_vertex(std::span<const BakeView> views, double noise_sigma,
                         const glm::dvec3& position, const glm::dvec3& normal);

@@ -98,6 +98,16 @@ glm::dvec3 robust_mean(const std::vector<Sight>& sights, double noise_sigma) {
 
 }  // namespace
 
+void splat_point(const glm::dvec3& position, const glm::dvec3& normal, BakeView& view) {
+  const glm::dvec3 p = to_pixel(view.camera, position);
+  if (p.z <= 1 || glm::dot(view.camera.centre - position, normal) < 0) return;
+  const glm::ivec4& size = view.depth_info.size;
+  const int x = std::min(int((p.x + 0.5) * view.depth_info.scale.x), size.x - 1);
+  const int y = std::min(int((p.y + 0.5) * view.depth_info.scale.x), size.y - 1);
+  double& depth = view.depths[std::size_t(y) * size.x + x];
+  depth = std::min(depth, p.z);
+}
+
 BakedVertex bake_vertex(std::span<const BakeView> views, double noise_sigma,
                         const glm::dvec3& position, const glm::dvec3& normal) {
   std::vector<Sight> sights = find_sights(views, position, normal);

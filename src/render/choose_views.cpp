@@ -7,7 +7,8 @@
 namespace photohull::render {
 namespace {
 
-constexpr std::size_t kSampledVertices = 2000;
+constexpr std::size_t kSampledVertices = 4000;
+constexpr int kCells = 32;                // along each side of an image
 constexpr double kCosLeastAngle = 0.966;  // 15 degrees
 constexpr double kLeastNear = 1e-3;       // of the far depth: what a depth buffer still tells apart
 
@@ -31,21 +32,23 @@ Sphere bounds_of(const TriMesh& mesh) {
           0.5 * glm::distance(glm::dvec3(low), glm::dvec3(high))};
 }
 
-double surface_seen(const TriMesh& mesh, const Camera& camera) {
-  const glm::dvec3 eye = camera.center();
-  double area = 0;
+/// Cells of a coarse raster over the image that the mesh covers, times the share of the mesh that
+/// lies on the image, squared.
+double share_covered(const TriMesh& mesh, const Camera& camera) {
+  std::vector<bool> covered(std::size_t(kCells) * kCells);
   std::size_t on_image = 0, sampled = 0;
   for (std::size_t i = 0; i < mesh.positions.size(); i += stride_of(mesh), ++sampled) {
-    const glm::dvec3 world = mesh.world(i);
-    const auto pixel = camera.project(world);
+    const auto pixel = camera.project(mesh.world(i));
     if (!pixel || !camera.on_image(*pixel)) continue;
     ++on_image;
-    const double cosine = glm::dot(glm::normalize(eye - world), glm::dvec3(mesh.normals[i]));
-    const double scale = camera.intrinsics.fx / camera.to_camera(world).z;
-    if (cosine > 0) area += cosine * scale * scale;
+    const auto cell = [](double at, int size) {
+      return std::min(int((at + 0.5) / size * kCells), kCells - 1);
+    };
+    covered[std::size_t(cell(pixel->y, camera.intrinsics.height)) * kCells +
+            cell(pixel->x, camera.intrinsics.width)] = true;
   }
   const double share = double(on_image) / double(std::max<std::size_t>(sampled, 1));
-  return area * share * share;
+  return double(std::count(covered.begin(), covered.end(), true)) * share * share;
 }
 
 }  // namespace
@@ -54,7 +57,7 @@ int choose_main_view(const TriMesh& mesh, std::span<const View> views) {
   int best = 0;
   double most = -1;
   for (std::size_t i = 0; i < views.size(); ++i) {
-    const double seen = surface_seen(mesh, views[i].camera);
+    const double seen = share_covered(mesh, views[i].camera);
     if (!(seen > most)) continue;
     most = seen;
     best = int(i);

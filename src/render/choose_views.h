@@ -9,8 +9,8 @@
 
 namespace photohull::render {
 
-/// The view that sees most of the surface: sum over a sample of the vertices of their projected
-/// areas, times the share of them that lies on the image, squared. Hidden surface counts too.
+/// The view that shows the mesh largest and whole: its covered share of the image, times the share
+/// of the mesh's vertices that lie on the image, squared.
 int choose_main_view(const TriMesh& mesh, std::span<const View> views);
 
 /// Up to `count` further views, each as far in direction (seen from the mesh's centre) from those

@@ -9,31 +9,39 @@ namespace {
 /// Far more than a grid's edge: a triangle of nonsense must not stall the program.
 constexpr int kMaxSteps = 4096;
 
-/// Points of a regular subdivision of a triangle; its corners are left out.
+/// Points of a regular subdivision of a triangle.
 void subdivide(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, int steps,
-               std::vector<glm::ivec4>& out) {
+               std::vector<shaders::BakeVertex>& out) {
   const glm::vec3 ab = (b - a) / float(steps), ac = (c - a) / float(steps);
+  const glm::vec4 normal(glm::cross(b - a, c - a), 0);  // the kernel needs its direction only
   for (int i = 0; i <= steps; ++i)
     for (int j = 0; i + j <= steps; ++j) {
       const bool corner = (i == 0 && j == 0) || i == steps || j == steps;
-      if (!corner) out.emplace_back(glm::ivec3(glm::round(a + float(i) * ab + float(j) * ac)), 0);
+      if (!corner) out.push_back({glm::vec4(a + float(i) * ab + float(j) * ac, 0), normal});
     }
 }
 
 }  // namespace
 
-std::vector<glm::ivec4> surface_points(const GridSpec& grid, const TriMesh& mesh) {
-  std::vector<glm::vec3> voxels;
-  voxels.reserve(mesh.positions.size());
+std::vector<shaders::BakeVertex> to_voxels(const GridSpec& grid, const TriMesh& mesh) {
+  std::vector<shaders::BakeVertex> out(mesh.positions.size());
   const glm::dvec3 offset = (mesh.origin - grid.origin) / grid.voxel_size;
-  for (const glm::vec3& p : mesh.positions)
-    voxels.emplace_back(glm::dvec3(p) / grid.voxel_size + offset);
-  std::vector<glm::ivec4> points;
-  points.reserve(voxels.size());
-  for (const glm::vec3& v : voxels) points.emplace_back(glm::ivec3(glm::round(v)), 0);
+  const double scale = 1.0 / grid.voxel_size;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const glm::vec3 voxel(scale * glm::dvec3(mesh.positions[i]) + offset);
+    out[i] = {glm::vec4(voxel, 0), glm::vec4(mesh.normals[i], 0)};
+  }
+  return out;
+}
+
+std::vector<shaders::BakeVertex> points_between(const TriMesh& mesh,
+                                                const std::vector<shaders::BakeVertex>& vertices) {
+  std::vector<shaders::BakeVertex> points;
   constexpr float kSquare = float(kPointSpacing * kPointSpacing);
   for (const auto& t : mesh.triangles) {
-    const glm::vec3 &a = voxels[t[0]], &b = voxels[t[1]], &c = voxels[t[2]];
+    const glm::vec3 a(vertices[t[0]].position);
+    const glm::vec3 b(vertices[t[1]].position);
+    const glm::vec3 c(vertices[t[2]].position);
     const glm::vec3 ab = b - a, ac = c - a, bc = c - b;
     const float longest = std::max({glm::dot(ab, ab), glm::dot(ac, ac), glm::dot(bc, bc)});
     if (!(longest > kSquare)) continue;
@@ -41,6 +49,16 @@ std::vector<glm::ivec4> surface_points(const GridSpec& grid, const TriMesh& mesh
     subdivide(a, b, c, int(steps), points);
   }
   return points;
+}
+
+visibility::DepthMaps occluder_maps(std::span<const Camera> cameras, const GridSpec& grid) {
+  // DepthMaps sizes its texels after voxels: show it larger ones.
+  GridSpec coarse = grid;
+  coarse.voxel_size *= shaders::kBakeTexel;
+  coarse.bricks = glm::max(grid.bricks / int(shaders::kBakeTexel), 1);
+  std::vector<projtex::GridCamera> coarse_cameras;
+  for (const Camera& camera : cameras) coarse_cameras.push_back(projtex::to_grid(camera, coarse));
+  return visibility::DepthMaps(coarse_cameras, coarse);
 }
 
 }  // namespace photohull::render

@@ -1,0 +1,158 @@
+#include "render/preview.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "render/bake_colour.h"
+#include "render/meshes.h"
+#include "render/rasterizer.h"
+#include "support/gl_context.h"
+#include "support/ray_cast.h"
+#include "support/silhouettes.h"
+
+namespace photohull {
+namespace {
+
+constexpr double kRadius = 1.0;
+const glm::dvec3 kCentre{100, -40, 250};
+const GridSpec kGrid{kCentre - 1.2, 0.025, {12, 12, 12}};
+
+glm::dvec3 surface_colour(const glm::dvec3& p) { return test::noise_colour(p - kCentre, 0.3); }
+
+/// A textured sphere before black.
+glm::dvec3 trace(const glm::dvec3& eye, const glm::dvec3& ray) {
+  const glm::dvec3 offset = eye - kCentre;
+  const double b = glm::dot(offset, ray);
+  const double d = b * b - glm::dot(offset, offset) + kRadius * kRadius;
+  return d < 0 ? glm::dvec3(0) : surface_colour(eye + (-b - std::sqrt(d)) * ray);
+}
+
+std::vector<View> sphere_views(int count, int width, int height) {
+  std::vector<View> views;
+  for (const Camera& camera : test::cameras_around(kCentre, 5, count, 1.9 * height, width, height))
+    views.push_back({"view", camera, test::ray_cast(camera, trace), {}});
+  return views;
+}
+
+TriMesh baked_sphere(const std::vector<View>& views) {
+  TriMesh mesh = test::sphere_mesh(kCentre, kRadius, 120);
+  Progress silent;
+  gpu::Context& context = test::gl_context();  // before the images need it
+  bake_colour(context, kGrid, projtex::ImageSet(views), projtex::cameras_of(views), 0.01, mesh,
+              silent);
+  return mesh;
+}
+
+render::Window whole(const Camera& camera) {
+  return {-0.5, -0.5, double(camera.intrinsics.width), double(camera.intrinsics.height), 3.5, 6.5};
+}
+
+TEST(Rasterizer, SilhouetteOfASphereIsItsProjection) {
+  test::Rng rng(5);
+  const TriMesh mesh = test::sphere_mesh(kCentre, kRadius, 200);
+  render::Rasterizer rasterizer(test::gl_context(), mesh);
+  for (int round = 0; round < 4; ++round) {
+    const Box box{kCentre - kRadius, kCentre + kRadius};
+    const Camera camera = test::random_camera(rng, box, 200, 150);
+    render::Window window = whole(camera);
+    window.near = 0.1;
+    window.far = 30;
+    const auto clay = rasterizer.draw(camera, window, 200, 150).clay;
+    const test::Outline outline = test::sphere_outline(camera, kCentre, kRadius);
+    int inside = 0;
+    for (std::size_t i = 0; i < outline.distance.pixels.size(); ++i) {
+      const float distance = outline.distance.pixels[i];
+      if (std::abs(distance) < 1) continue;
+      const std::uint8_t* p = &clay.rgb[3 * i];
+      const bool background = p[0] == render::kBackground && p[1] == p[0] && p[2] == p[0];
+      EXPECT_EQ(background, distance > 0) << "pixel " << i % 200 << ", " << i / 200;
+      inside += distance < 0;
+    }
+    EXPECT_GT(inside, 100);
+  }
+}
+
+/// Root mean square of the difference in bytes between a rendering and a photograph that is moved
+/// by `dx` pixels, well inside the sphere.
+double difference(const PreviewImage& rendering, const View& view, int dx) {
+  const test::Outline outline = test::sphere_outline(view.camera, kCentre, kRadius);
+  double sum = 0;
+  int count = 0;
+  for (int y = 0; y < rendering.height; ++y)
+    for (int x = 2; x < rendering.width - 2; ++x) {
+      const std::size_t i = std::size_t(y) * rendering.width + x;
+      if (outline.distance.pixels[i] > -12) continue;
+      for (int c = 0; c < 3; ++c) {
+        const double d = double(rendering.rgb[3 * i + c]) - view.image.bytes[4 * (i + dx) + c];
+        sum += d * d;
+        ++count;
+      }
+    }
+  return std::sqrt(sum / count);
+}
+
+TEST(Rasterizer, BakedColoursLieWhereThePhotographsHaveThem) {
+  const std::vector<View> views = sphere_views(12, 240, 180);
+  const TriMesh mesh = baked_sphere(views);
+  render::Rasterizer rasterizer(test::gl_context(), mesh);
+  for (const View& view : views) {
+    const auto drawn = rasterizer.draw(view.camera, whole(view.camera), 240, 180).coloured;
+    const double aligned = difference(drawn, view, 0);
+    EXPECT_LT(aligned, 8);
+    EXPECT_LT(aligned, 0.7 * difference(drawn, view, 1));
+    EXPECT_LT(aligned, 0.7 * difference(drawn, view, -1));
+  }
+}
+
+TEST(Preview, ShowsPhotographColourAndClayThenOtherViews) {
+  const std::vector<View> views = sphere_views(12, 120, 90);
+  const TriMesh mesh = baked_sphere(views);
+  PreviewOptions options;
+  options.panel_edge = 90;
+  const PreviewImage page = render_preview(test::gl_context(), mesh, views, options);
+  ASSERT_EQ(page.rgb.size(), std::size_t(page.width) * page.height * 3);
+  EXPECT_GT(page.width, 200);
+  EXPECT_LE(page.width, 3 * 90 + 16);
+  EXPECT_GT(page.height, 90);
+  // The middles of the first two panels show the same point of the sphere.
+  const int panel = (page.width - 16) / 3;
+  double photograph = 0, coloured = 0;
+  for (int dy = -3; dy <= 3; ++dy)
+    for (int dx = -3; dx <= 3; ++dx) {
+      const std::size_t at = std::size_t(panel / 2 + dy) * page.width + panel / 2 + dx;
+      photograph += page.rgb[3 * at] / 49.0;
+      coloured += page.rgb[3 * (at + panel + 8)] / 49.0;
+    }
+  EXPECT_NEAR(photograph, coloured, 8);
+}
+
+TEST(Preview, OfAnEmptyMeshIsThePhotograph) {
+  const std::vector<View> views = sphere_views(1, 80, 60);
+  PreviewOptions options;
+  options.panel_edge = 80;
+  const PreviewImage page = render_preview(test::gl_context(), TriMesh{}, views, options);
+  ASSERT_EQ(page.width, 80);
+  ASSERT_EQ(page.height, 60);
+  for (std::size_t i = 0; i < 80 * 60; ++i)
+    for (int c = 0; c < 3; ++c) ASSERT_EQ(page.rgb[3 * i + c], views[0].image.bytes[4 * i + c]);
+}
+
+TEST(Preview, OneViewAndNoColours) {
+  const std::vector<View> views = sphere_views(1, 80, 60);
+  const TriMesh mesh = test::sphere_mesh(kCentre, kRadius, 20);
+  const PreviewImage page = render_preview(test::gl_context(), mesh, views);
+  EXPECT_LE(page.height, 120) << "there is no other viewpoint to show";
+  EXPECT_GT(page.width, page.height);
+}
+
+TEST(Preview, CameraInsideTheMesh) {
+  std::vector<View> views = sphere_views(1, 80, 60);
+  views[0].camera = test::look_at(kCentre, kCentre + glm::dvec3(1, 0, 0), 50, 80, 60);
+  const TriMesh mesh = test::sphere_mesh(kCentre, kRadius, 20);
+  const PreviewImage page = render_preview(test::gl_context(), mesh, views);
+  EXPECT_GT(page.width, 0);
+}
+
+}  // namespace
+}  // namespace photohull
