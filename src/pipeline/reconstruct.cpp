@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 
+#include "calib/crop.h"
 #include "calib/noise.h"
 #include "calib/prepare_views.h"
 #include "calib/silhouette.h"
@@ -33,6 +34,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kDebrisFraction = 5e-4;  // of the largest part's voxels
+constexpr int kCropMargin = 24;           // pixels around the box's projection: patches, mip levels
 constexpr double kBoxSlack = 0.5;         // voxels that the surface may stand out of the box
 
 /// Shares of a job's time, measured on the scenes of docs/benchmarks.md; they only drive the time left.
@@ -94,6 +96,7 @@ class Job {
     clock_.run("clean", Weights::kClean, [&] { remove_small_components(volume, kDebrisFraction); });
     TriMesh mesh = clock_.run("mesh", Weights::kMesh, [&] { return extract_mesh(volume); });
     clock_.run("colour", Weights::kColour, [&] { colour(mesh); });
+    images_.reset();  // the rest needs the memory more
     const auto preview = clock_.run("preview", Weights::kPreview, [&] {
       return render_preview(*context_, mesh, views_);
     });
@@ -134,11 +137,12 @@ class Job {
     if (options_.load.masks == io::MaskSource::kNone) prepare_options.masks = MaskPolicy::kNone;
     PreparedViews prepared = prepare_views(scene_, loader, prepare_options, progress_);
     views_ = std::move(prepared.views);
+    report_.noise_sigma = median_noise(views_);
+    for (View& view : views_) crop_to_box(scene_.box.value(), kCropMargin, view);
     cameras_ = projtex::cameras_of(views_);
     report_.mask_source = prepared.mask_source;
     report_.mask_confidence = prepared.mask_confidence;
     for (const std::string& text : prepared.warnings) warn(text);
-    report_.noise_sigma = median_noise(views_);
   }
 
   void open_device() {

@@ -33,7 +33,8 @@ std::string Report::to_json() const {
     j["stages"].push_back({{"name", s.name},
                            {"wall_seconds", s.wall_seconds},
                            {"cpu_seconds", s.cpu_seconds},
-                           {"samples", s.samples}});
+                           {"samples", s.samples},
+                           {"peak_memory_bytes", s.peak_memory_bytes}});
   j["hull"] = {{"nodes_tested", nodes_tested}, {"bricks_evaluated", bricks_evaluated}};
   j["photo"] = {{"sweeps", sweeps},
                 {"voxels_judged", voxels_judged},

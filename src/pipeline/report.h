@@ -16,6 +16,7 @@ struct StageReport {
   double wall_seconds = 0;
   double cpu_seconds = 0;      ///< user + system, all threads
   std::int64_t samples = 0;    ///< texture samples, where the stage takes any
+  std::int64_t peak_memory_bytes = 0;  ///< of the process up to the stage's end
 };
 
 struct Report {

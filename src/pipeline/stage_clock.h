@@ -30,6 +30,7 @@ class StageClock {
       const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - wall;
       stage.wall_seconds = elapsed.count();
       stage.cpu_seconds = process_cpu_seconds() - cpu;
+      stage.peak_memory_bytes = process_peak_memory();
       report.stages.push_back(stage);
     }
     Report& report;

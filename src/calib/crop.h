@@ -1,0 +1,15 @@
+// Views cut down to what the region of interest needs.
+#pragma once
+
+#include "core/box.h"
+#include "core/image.h"
+
+namespace photohull {
+
+/// Crops a view's image and mask to the rectangle that the box (world) projects to, grown by
+/// `margin` pixels on each side, and moves the principal point accordingly: everything after works
+/// on fewer pixels, with the same result. A view that has part of the box behind it, or none of it
+/// on its image, stays as it is.
+void crop_to_box(const Box& box, int margin, View& view);
+
+}  // namespace photohull
