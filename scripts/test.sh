@@ -55,15 +55,28 @@ check_aloud() {
   if "$@"; then passed=$((passed + 1)); else failed+=("$name"); fi
 }
 
-# Our C++; shaders/ is read by the GLSL compiler too and keeps its own layout.
-cpp_files() { find src cli tests \( -name '*.cpp' -o -name '*.h' \) -print | sort; }
-
 run_tests() { ctest --preset "$1" --parallel "$jobs" --no-tests=error; }
 
-formatting() { cpp_files | xargs clang-format --dry-run -Werror; }
+# C++ files under the folders given that exist. shaders/ is left out: the GLSL compiler reads it too.
+cpp_files() {
+  local folder
+  for folder in "$@"; do
+    if [ -d "$folder" ]; then find "$folder" -name '*.cpp' -o -name '*.h'; fi
+  done | sort
+}
+
+formatting() {
+  local file status=0
+  for file in $(cpp_files src cli tests bench); do
+    clang-format --dry-run -Werror "$file" 2>/dev/null && continue
+    say "to mend: clang-format -i $file"
+    status=1
+  done
+  return $status
+}
 
 static_analysis() {
-  cpp_files | grep '\.cpp$' | xargs -P "$jobs" -n 1 clang-tidy -p $build --quiet 2>&1 |
+  cpp_files src cli | grep '\.cpp$' | xargs -P "$jobs" -n 1 clang-tidy -p $build --quiet 2>&1 |
     { grep -vE '^[0-9]+ warnings? generated\.$' || true; }
 }
 
