@@ -11,7 +11,7 @@ install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME photohull)
 set(CPACK_PACKAGE_VENDOR "The photohull authors")
-set(CPACK_PACKAGE_CONTACT "The photohull authors <photohull@localhost>")
+set(CPACK_PACKAGE_CONTACT "The photohull authors")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
 set(CPACK_PACKAGE_DESCRIPTION
 "photohull reconstructs an object from photographs whose cameras are known: it carves away all
@@ -24,6 +24,6 @@ set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-# Loaded at run time, so that shlibdeps cannot see it: an OpenGL driver behind EGL.
-set(CPACK_DEBIAN_PACKAGE_DEPENDS "libegl1, libegl-mesa0, libgl1-mesa-dri")
+# Loaded at run time, where dpkg-shlibdeps cannot see it: an OpenGL driver behind EGL.
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "libegl-mesa0, libgl1-mesa-dri")
 include(CPack)
