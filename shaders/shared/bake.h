@@ -11,6 +11,7 @@ using glm::vec4;
 #define constexpr const
 #endif
 
+constexpr int kBakeGroup = 64;              // vertices of a work group
 constexpr int kSplatRun = 16;               // points that a thread draws into a depth map
 constexpr int kMaxBakeViews = 6;            // views whose colours are mixed, the best ones
 constexpr float kBakeMinCosine = 0.2f;      // views flatter than this to the surface say nothing

@@ -10,6 +10,7 @@
 #include "gpu/buffer.h"
 #include "gpu/program.h"
 #include "render/surface_points.h"
+#include "render/view_lists.h"
 #include "shared/bake.h"
 #include "visibility/depth_maps.h"
 
@@ -82,11 +83,15 @@ void bake_colour(gpu::Context& context, const GridSpec& grid, const projtex::Ima
   images.texture().bind(0);
   for (const Batch& batch : batches) {
     progress.check_cancelled();
+    const Buffer lists = Buffer::of(
+        render::list_views(std::span(vertices).subspan(batch.first, batch.count), gpu_views));
     const Buffer baked(batch.count * sizeof(glm::vec4));
     batch.parameters.bind_uniform(0);
     batch.vertices.bind_storage(1);
     baked.bind_storage(2);
-    bake.dispatch(context, "render_bake_vertices", gpu::group_count(batch.count, 64));
+    lists.bind_storage(3);
+    bake.dispatch(context, "render_bake_vertices",
+                  gpu::group_count(batch.count, shaders::kBakeGroup));
     const auto results = baked.download<glm::vec4>(batch.count);
     for (std::size_t i = 0; i < batch.count; ++i) {
       mesh.colours[batch.first + i] = glm::vec3(results[i]);

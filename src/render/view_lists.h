@@ -1,0 +1,20 @@
+// Private to module render: which views a group of neighbouring vertices needs to look at.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "shared/bake.h"
+#include "shared/view.h"
+
+namespace photohull::render {
+
+/// For each run of kBakeGroup vertices, 1 + views.size() words: a count, then the indices of the
+/// views that at least one of its vertices may face with a cosine above kBakeMinCosine. Bounds a
+/// group by a sphere and a cone of normals [Shirman93], so that it may list too many, never too
+/// few.
+std::vector<std::uint32_t> list_views(std::span<const shaders::BakeVertex> vertices,
+                                      std::span<const shaders::GpuView> views);
+
+}  // namespace photohull::render
