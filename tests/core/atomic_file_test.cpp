@@ -5,7 +5,7 @@
 #include <sys/stat.h>
 
 #include "core/error.h"
-#include "scratch_folder.h"
+#include "support/scratch_folder.h"
 
 namespace photohull {
 namespace {

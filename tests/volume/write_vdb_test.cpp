@@ -8,7 +8,7 @@
 
 #include "analytic_volumes.h"
 #include "core/error.h"
-#include "scratch_folder.h"
+#include "support/scratch_folder.h"
 
 namespace photohull {
 namespace {
