@@ -1,7 +1,7 @@
 // Double-precision references of the visual-hull kernels, written from the definition.
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <vector>
 
 #include "carving/hull.h"
 #include "core/error.h"
@@ -9,23 +9,70 @@
 namespace photohull::carving::reference {
 namespace {
 
-struct Rectangle {
+using Polygon = std::vector<glm::dvec2>;
+
+/// Turn from a to b to c: positive when left (y up).
+double turn(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+/// Convex hull by monotone chains, its corners in order.
+Polygon convex_hull(Polygon points) {
+  std::sort(points.begin(), points.end(), [](const glm::dvec2& a, const glm::dvec2& b) {
+    return a.x != b.x ? a.x < b.x : a.y < b.y;
+  });
+  Polygon hull;
+  for (int pass = 0; pass < 2; ++pass) {
+    const std::size_t first = hull.size();
+    for (const glm::dvec2& p : points) {
+      while (hull.size() >= first + 2 && turn(hull[hull.size() - 2], hull.back(), p) <= 0)
+        hull.pop_back();
+      hull.push_back(p);
+    }
+    hull.pop_back();  // begins the other chain
+    std::reverse(points.begin(), points.end());
+  }
+  return hull;
+}
+
+/// 0 inside.
+double distance_to(const Polygon& convex, const glm::dvec2& p) {
+  bool inside = true;
+  double nearest = 1e300;
+  for (std::size_t i = 0; i < convex.size(); ++i) {
+    const glm::dvec2 a = convex[i], ab = convex[(i + 1) % convex.size()] - a;
+    inside = inside && turn(a, a + ab, p) >= 0;
+    const double t = std::clamp(glm::dot(p - a, ab) / std::max(glm::dot(ab, ab), 1e-300), 0.0, 1.0);
+    nearest = std::min(nearest, glm::length(p - a - t * ab));
+  }
+  return inside ? 0 : nearest;
+}
+
+enum class Place { kBehind, kStraddling, kInFront };
+
+struct ProjectedCube {
+  Place place = Place::kStraddling;
+  Polygon outline;  ///< when in front
   glm::dvec2 low{1e300}, high{-1e300};
 };
 
-/// Nothing when a corner is not in front of the camera.
-std::optional<Rectangle> project_cube(const GridSpec& grid, const Camera& camera,
-                                      const glm::dvec3& low, const glm::dvec3& high) {
-  Rectangle r;
+ProjectedCube project_cube(const GridSpec& grid, const Camera& camera, const glm::dvec3& low,
+                           const glm::dvec3& high) {
+  ProjectedCube cube;
   for (int corner = 0; corner < 8; ++corner) {
     const glm::dvec3 voxel((corner & 1) ? high.x : low.x, (corner & 2) ? high.y : low.y,
                            (corner & 4) ? high.z : low.z);
-    const auto pixel = camera.project(grid.world(voxel));
-    if (!pixel) return std::nullopt;
-    r.low = glm::min(r.low, *pixel);
-    r.high = glm::max(r.high, *pixel);
+    if (const auto pixel = camera.project(grid.world(voxel))) cube.outline.push_back(*pixel);
   }
-  return r;
+  if (cube.outline.empty()) cube.place = Place::kBehind;
+  if (cube.outline.size() < 8) return cube;
+  cube.place = Place::kInFront;
+  cube.outline = convex_hull(cube.outline);
+  for (const glm::dvec2& p : cube.outline) {
+    cube.low = glm::min(cube.low, p);
+    cube.high = glm::max(cube.high, p);
+  }
+  return cube;
 }
 
 double coverage(const Silhouette& s, int x, int y) {
@@ -49,6 +96,28 @@ double bilinear_distance(const Silhouette& s, const glm::dvec2& pixel) {
   return sum;
 }
 
+bool touches_image(const Camera& camera, const ProjectedCube& cube) {
+  const Intrinsics& k = camera.intrinsics;
+  return cube.high.x >= -0.5 && cube.high.y >= -0.5 && cube.low.x <= k.width - 0.5 &&
+         cube.low.y <= k.height - 0.5;
+}
+
+/// Least and greatest coverage of the pixels within one pixel of the cube's projection: those that
+/// a bilinear look-up there can use.
+glm::dvec2 coverage_range(const Silhouette& silhouette, const Intrinsics& k,
+                          const ProjectedCube& cube) {
+  const glm::ivec2 first(glm::max(glm::floor(cube.low) - 1.0, glm::dvec2(0)));
+  const glm::ivec2 last(glm::min(glm::ceil(cube.high) + 1.0, glm::dvec2(k.width, k.height) - 1.0));
+  glm::dvec2 range(1, 0);
+  for (int y = first.y; y <= last.y; ++y)
+    for (int x = first.x; x <= last.x; ++x) {
+      if (distance_to(cube.outline, {x, y}) > 1) continue;
+      const double c = coverage(silhouette, x, y);
+      range = {std::min(range.x, c), std::max(range.y, c)};
+    }
+  return range;
+}
+
 }  // namespace
 
 NodeClass classify_node(const GridSpec& grid, const Box& box, std::span<const Camera> cameras,
@@ -60,31 +129,22 @@ NodeClass classify_node(const GridSpec& grid, const Box& box, std::span<const Ca
   const glm::dvec3 box_high = (box.max - grid.origin) / grid.voxel_size;
   if (glm::any(glm::greaterThan(low, box_high)) || glm::any(glm::lessThan(high, box_low)))
     return NodeClass::kOutside;
-  bool inside = glm::all(glm::greaterThanEqual(low, box_low)) &&
-                glm::all(glm::lessThanEqual(high, box_high));
+  bool inside =
+      glm::all(glm::greaterThanEqual(low, box_low)) && glm::all(glm::lessThanEqual(high, box_high));
   int partly_seen = 0, wholly_seen = 0;
   for (std::size_t v = 0; v < cameras.size(); ++v) {
-    const Intrinsics& k = cameras[v].intrinsics;
-    const auto r = project_cube(grid, cameras[v], low, high);
-    if (!r) {
+    const ProjectedCube cube = project_cube(grid, cameras[v], low, high);
+    if (cube.place == Place::kStraddling) {
       ++partly_seen;
       inside = false;
-      continue;
     }
-    const int x0 = std::max(0, int(std::floor(r->low.x))), x1 = std::min(k.width - 1, int(std::ceil(r->high.x)));
-    const int y0 = std::max(0, int(std::floor(r->low.y))), y1 = std::min(k.height - 1, int(std::ceil(r->high.y)));
-    if (x0 > x1 || y0 > y1) continue;
+    if (cube.place != Place::kInFront || !touches_image(cameras[v], cube)) continue;
     ++partly_seen;
-    const bool whole = cameras[v].on_image(r->low) && cameras[v].on_image(r->high);
+    const bool whole = cameras[v].on_image(cube.low) && cameras[v].on_image(cube.high);
     wholly_seen += whole;
-    double least = 1, greatest = 0;
-    for (int y = y0; y <= y1; ++y)
-      for (int x = x0; x <= x1; ++x) {
-        least = std::min(least, coverage(silhouettes[v], x, y));
-        greatest = std::max(greatest, coverage(silhouettes[v], x, y));
-      }
-    if (whole && greatest < 0.5) return NodeClass::kOutside;
-    inside = inside && least >= 0.5;
+    const glm::dvec2 range = coverage_range(silhouettes[v], cameras[v].intrinsics, cube);
+    if (whole && range.y < 0.5) return NodeClass::kOutside;
+    inside = inside && range.x >= 0.5;
   }
   if (partly_seen < options.min_views) return NodeClass::kOutside;
   return inside && wholly_seen >= options.min_views ? NodeClass::kInside : NodeClass::kSurface;

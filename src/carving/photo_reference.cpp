@@ -1,0 +1,147 @@
+#include "carving/photo_reference.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace photohull::carving::reference {
+namespace {
+
+constexpr double kOutlierShare = 0.5;
+constexpr int kPeakLayers = 2;
+
+glm::dvec3 mean_of(const Patch& patch) {
+  glm::dvec3 sum(0);
+  for (const glm::dvec3& colour : patch) sum += colour;
+  return sum / double(kPatchTaps);
+}
+
+/// Over the taps and summed over the channels; of a patch with itself it is the variance.
+double covariance(const Patch& a, const Patch& b) {
+  const glm::dvec3 mean_a = mean_of(a), mean_b = mean_of(b);
+  double sum = 0;
+  for (int tap = 0; tap < kPatchTaps; ++tap) sum += glm::dot(a[tap] - mean_a, b[tap] - mean_b);
+  return sum / kPatchTaps;
+}
+
+double correlation(const Patch& a, const Patch& b, double noise_variance) {
+  const double floor = 3 * noise_variance;  // three channels
+  return covariance(a, b) / std::sqrt((covariance(a, a) + floor) * (covariance(b, b) + floor));
+}
+
+}  // namespace
+
+Consistency photo_consistency(std::span<const Patch> patches, double noise_variance) {
+  const std::size_t n = patches.size();
+  Consistency out;
+  out.seen = int(n);
+  if (n == 0) return out;
+  for (const Patch& patch : patches) out.texture += covariance(patch, patch) / 3 / double(n);
+
+  std::vector<double> agreement(n);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j)
+      if (i != j) agreement[i] += correlation(patches[i], patches[j], noise_variance);
+  const double least = kOutlierShare * *std::max_element(agreement.begin(), agreement.end());
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (agreement[i] >= least) kept.push_back(i);
+    out.outlier_margin = std::min(out.outlier_margin, std::abs(agreement[i] - least));
+  }
+  out.used = int(kept.size());
+  if (kept.size() < 2) return out;
+
+  double sum = 0;
+  int pairs = 0;
+  for (std::size_t i = 0; i < kept.size(); ++i)
+    for (std::size_t j = i + 1; j < kept.size(); ++j, ++pairs)
+      sum += correlation(patches[kept[i]], patches[kept[j]], noise_variance);
+  out.score = sum / pairs;
+  return out;
+}
+
+glm::ivec3 SweepFrame::voxel(const glm::ivec2& column, int layer) const {
+  glm::ivec3 out;
+  out[u()] = column.x;
+  out[v()] = column.y;
+  out[axis] = sign > 0 ? layer : voxels[axis] - 1 - layer;
+  return out;
+}
+
+SelectedColumns select(const BitVolume& bits, const SweepFrame& frame, int layer,
+                       const glm::ivec2& origin, std::span<const std::uint8_t> on_path) {
+  SelectedColumns out;
+  for (int dv = 0; dv < kBrickEdge; ++dv)
+    for (int du = 0; du < kBrickEdge; ++du) {
+      const glm::ivec2 column = origin + glm::ivec2(du, dv);
+      const glm::ivec3 voxel = frame.voxel(column, layer);
+      const bool stands = bits.standing(voxel);
+      const bool bare = stands && !bits.standing(frame.voxel(column, layer - 1));
+      if (bare || on_path[std::size_t(column.y) * frame.voxels[frame.u()] + column.x]) {
+        out.judged.push_back(column);
+        continue;
+      }
+      bool exposed = false;
+      for (int face = 0; face < 6; ++face) {
+        glm::ivec3 neighbour = voxel;
+        neighbour[face / 2] += face % 2 ? 1 : -1;
+        exposed = exposed || !bits.standing(neighbour);
+      }
+      if (stands && exposed) out.occluders.push_back(voxel);
+    }
+  return out;
+}
+
+bool ColumnJudge::can_tell(int layer) const {
+  const Consistency& c = scores_[layer];
+  return c.seen >= rules_.min_views && c.texture >= rules_.min_texture;
+}
+
+double ColumnJudge::value(int layer) const { return can_tell(layer) ? scores_[layer].score : -2; }
+
+int ColumnJudge::path_end(int bare) const {
+  int end = bare + 1;
+  while (end < layers() && standing_[end] && end <= bare + rules_.max_path) ++end;
+  return end;
+}
+
+int ColumnJudge::explanation(int bare) const {
+  const int end = path_end(bare);
+  int best = bare;
+  for (int layer = bare; layer < end; ++layer) {
+    if (value(layer) <= value(best) && layer != bare) continue;
+    best = layer;
+    // A peak: good, and not exceeded by the layers right behind it.
+    bool exceeded = false;
+    for (int behind = layer + 1; behind <= layer + kPeakLayers && behind < end; ++behind)
+      exceeded = exceeded || value(behind) > value(layer);
+    const bool seen_to_be_one = layer + kPeakLayers < layers() || end < layers();
+    if (value(layer) >= rules_.keep_score && !exceeded) return seen_to_be_one ? layer : -1;
+  }
+  return end < layers() ? best : -1;
+}
+
+std::vector<shaders::Decision> ColumnJudge::decisions(const glm::ivec2& column) const {
+  std::vector<shaders::Decision> out;
+  for (int layer = 0; layer < layers(); ++layer) {
+    if (!standing_[layer] || (layer > 0 && standing_[layer - 1])) continue;
+    const double score = scores_[layer].score;
+    shaders::Decision d{{column, layer, layer}, {score, score, 0, 0}};
+    if (!can_tell(layer)) {
+      d.scores.z = shaders::kUnseen;
+    } else if (score >= rules_.keep_score) {
+      d.scores.z = shaders::kKept;
+    } else {
+      const int surface = explanation(layer);
+      if (surface < 0) break;
+      const double best = scores_[surface].score;
+      const bool better = best >= rules_.keep_score && best >= score + rules_.better_by;
+      d.scores.y = float(best);
+      d.scores.z = better ? shaders::kBetter : shaders::kUndecided;
+      if (better) d.place.w = surface;
+    }
+    out.push_back(d);
+  }
+  return out;
+}
+
+}  // namespace photohull::carving::reference

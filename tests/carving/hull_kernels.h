@@ -1,0 +1,47 @@
+// The kernels of the visual hull on their own, bound as carve_silhouette binds them.
+#pragma once
+
+#include <vector>
+
+#include "carving/hull.h"
+#include "gpu/buffer.h"
+#include "gpu/program.h"
+#include "gpu/texture.h"
+#include "shared/hull.h"
+#include "support/silhouettes.h"
+
+namespace photohull::carving::test_kernels {
+
+/// A scene to take a hull of.
+struct HullScene {
+  GridSpec grid;
+  Box box;
+  std::vector<Camera> cameras;
+  std::vector<test::Outline> outlines;  ///< empty parts: the view has no mask
+  HullOptions options;
+
+  std::vector<Silhouette> silhouettes() const;
+  double distance(const glm::ivec3& voxel) const;  ///< of the reference
+};
+
+class HullKernels {
+ public:
+  HullKernels(gpu::Context& context, const HullScene& scene);
+
+  /// shaders::kNode... of each node (xyz in its own edges; w: level).
+  std::vector<std::uint32_t> classify(const std::vector<glm::ivec4>& nodes, float margin);
+  /// kBrickVoxels distances a brick, all views considered.
+  std::vector<float> distances(const std::vector<glm::ivec4>& bricks);
+
+ private:
+  void upload(int view, const test::Outline& outline);
+
+  gpu::Context& context_;
+  const HullScene& scene_;
+  int words_;
+  gpu::TextureArray pyramid_, distance_maps_;
+  gpu::Buffer views_;
+  shaders::HullParameters parameters_{};
+};
+
+}  // namespace photohull::carving::test_kernels

@@ -1,0 +1,154 @@
+#include "carving/sweep_kernels.h"
+
+#include <algorithm>
+
+namespace photohull::carving::test_kernels {
+namespace {
+
+using glm::ivec3;
+using gpu::Buffer;
+
+std::vector<shaders::GpuView> to_gpu(const std::vector<projtex::GridCamera>& cameras) {
+  std::vector<shaders::GpuView> views;
+  for (const projtex::GridCamera& c : cameras) views.push_back(to_gpu_view(c, {64, 64}));
+  return views;
+}
+
+/// An empty list with room for `capacity` entries of 16 or 32 bytes after its header.
+Buffer list_of(std::size_t capacity, std::size_t entry_bytes) {
+  Buffer list(16 + capacity * entry_bytes);
+  list.fill(0);
+  return list;
+}
+
+}  // namespace
+
+SweepKernels::SweepKernels(gpu::Context& context, const BitVolume& bits,
+                           const reference::SweepFrame& frame,
+                           const std::vector<projtex::GridCamera>& cameras)
+    : context_(context),
+      frame_(frame),
+      bricks_(bits.grid.bricks),
+      view_count_(int(cameras.size())),
+      select_(gpu::Program::compute("carving_select_columns.comp.glsl")),
+      score_(gpu::Program::compute("carving_score_columns.comp.glsl")),
+      update_(gpu::Program::compute("carving_update_columns.comp.glsl")),
+      maps_(cameras, bits.grid),
+      views_(Buffer::of(to_gpu(cameras))),
+      table_(Buffer::of(bits.table)),
+      occupancy_(Buffer::of(bits.words)),
+      active_(bits.table.size() * 4),
+      uniforms_(sizeof parameters) {
+  const std::size_t columns =
+      std::size_t(frame.voxels[frame.u()]) * std::size_t(frame.voxels[frame.v()]);
+  columns_ = Buffer::of(std::vector<shaders::Column>(columns, {{-1, -1, 0, 0}, glm::vec4(0)}));
+  decisions_ = list_of(columns * std::size_t(frame.voxels[frame.axis]), sizeof(shaders::Decision));
+  active_.fill(0);
+  parameters.axes = {frame.u(), frame.v(), frame.axis, frame.sign};
+}
+
+void SweepKernels::bind(const Buffer& block6) {
+  parameters.chunk.x = parameters.chunk.z = 0;
+  parameters.chunk.w = int(judged_.size());
+  uniforms_.write(0, sizeof parameters, &parameters);
+  uniforms_.bind_uniform(0);
+  views_.bind_storage(0);
+  items_.bind_storage(1);
+  table_.bind_storage(2);
+  occupancy_.bind_storage(3);
+  columns_.bind_storage(4);
+  selected_.bind_storage(5);
+  block6.bind_storage(6);
+  scores_.bind_storage(7);
+  maps_.bind();
+  active_.bind_storage(10);
+  decisions_.bind_storage(11);
+  packed_.bind_storage(12);
+}
+
+SelectedLayer SweepKernels::select(int layer) {
+  std::vector<shaders::LayerItem> items;
+  const int u = frame_.u(), v = frame_.v();
+  ivec3 brick = frame_.voxel({0, 0}, layer) / kBrickEdge;
+  for (brick[v] = 0; brick[v] < bricks_[v]; ++brick[v])
+    for (brick[u] = 0; brick[u] < bricks_[u]; ++brick[u]) {
+      shaders::LayerItem item{};
+      item.brick = glm::ivec4(brick, view_count_);
+      for (int i = 0; i < view_count_; ++i) item.views[i / 4][i % 4] = unsigned(i);
+      items.push_back(item);
+    }
+  parameters.bricks = glm::ivec4(bricks_, int(items.size()));
+  parameters.layer.x = layer;
+  parameters.layer.z = view_count_;
+  items_ = Buffer::of(items);
+  selected_ = list_of(items.size(), 16);
+  occluders_ = list_of(items.size() * 128, 16);
+  judged_.clear();
+  bind(occluders_);
+  select_.dispatch(context_, "carving_select_columns", items.size());
+
+  const std::uint32_t count = selected_.download<std::uint32_t>(1)[0];
+  entries_ = selected_.download<glm::uvec4>(count, 1);
+  std::sort(entries_.begin(), entries_.end(),
+            [](const glm::uvec4& a, const glm::uvec4& b) { return a.x < b.x; });
+  selected_.write(16, entries_.size() * 16, entries_.data());
+  SelectedLayer out;
+  for (std::size_t entry = 0; entry < entries_.size(); ++entry)
+    for (std::uint32_t column = 0; column < 64; ++column) {
+      if (!(entries_[entry][1 + int(column / 32)] >> (column % 32) & 1)) continue;
+      judged_.push_back(std::uint32_t(entry * 64) + column);
+      const glm::ivec4 b = items[entries_[entry].x].brick;
+      out.judged.push_back(glm::ivec2(b[u], b[v]) * kBrickEdge +
+                           glm::ivec2(column % 8, column / 8));
+    }
+  out.occluders = occluders();
+  packed_ = Buffer::of(judged_);
+  scores_ = Buffer(judged_.size() * 16);
+  return out;
+}
+
+std::vector<glm::vec4> SweepKernels::score(const std::vector<glm::vec4>& samples) {
+  const Buffer sample_buffer = Buffer::of(samples);
+  bind(sample_buffer);
+  score_.dispatch(context_, "carving_score_columns", gpu::group_count(judged_.size(), 64));
+  return scores_.download<glm::vec4>(judged_.size());
+}
+
+void SweepKernels::update(const std::vector<glm::vec4>& scores) {
+  scores_ = Buffer::of(scores);
+  bind(occluders_);
+  update_.dispatch(context_, "carving_update_columns", gpu::group_count(judged_.size(), 64));
+}
+
+std::size_t SweepKernels::patch_base(std::size_t judged, int view) const {
+  const std::uint32_t entry = judged_[judged] / 64, column = judged_[judged] % 64;
+  return (std::size_t(entry) * shaders::kMaxLayerViews + std::size_t(view)) * shaders::kApronArea +
+         column / 8 * shaders::kApronEdge + column % 8;
+}
+
+std::vector<std::uint8_t> SweepKernels::on_path() const {
+  std::vector<std::uint8_t> out;
+  for (const shaders::Column& column :
+       columns_.download<shaders::Column>(columns_.bytes() / sizeof(shaders::Column)))
+    out.push_back(column.path.x >= 0);
+  return out;
+}
+
+std::vector<shaders::Decision> SweepKernels::decisions() const {
+  std::vector<shaders::Decision> out(decisions_.download<std::uint32_t>(1)[0]);
+  decisions_.read(16, out.size() * sizeof(shaders::Decision), out.data());
+  return out;
+}
+
+std::vector<ivec3> SweepKernels::occluders() const {
+  const std::uint32_t count = occluders_.download<std::uint32_t>(1)[0];
+  std::vector<ivec3> out;
+  for (const glm::ivec4& voxel : occluders_.download<glm::ivec4>(count, 1)) out.emplace_back(voxel);
+  return out;
+}
+
+std::uint32_t SweepKernels::judged_count() const {
+  return decisions_.download<std::uint32_t>(2)[1];
+}
+
+}  // namespace photohull::carving::test_kernels
