@@ -37,8 +37,9 @@ void SceneArguments::add_to(CLI::App& command) {
   command.add_option("--format", format,
                      "middlebury, colmap-text, colmap-binary or transforms (default: detected)");
   command.add_option("--box", box, "region of interest \"x0 y0 z0 x1 y1 z1\" in world units");
-  command.add_option("--masks", masks,
-                     "auto (files, alpha, else a background model), none, or a folder of masks")
+  command
+      .add_option("--masks", masks,
+                  "auto (files, alpha, else a background model), none, or a folder of masks")
       ->capture_default_str();
   command.add_option("--views", views, "views to use, e.g. \"0-10,15,img_*.png\" (default: all)");
   command.add_option("--pixel-center", pixel_center,

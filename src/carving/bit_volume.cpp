@@ -9,11 +9,11 @@ namespace {
 
 using glm::ivec3;
 
-constexpr int kReach = 3;                       // voxels around a carved one that may change
+constexpr int kReach = 3;                         // voxels around a carved one that may change
 constexpr int kWindow = kBrickEdge + 2 * kReach;  // a brick with its surroundings
-constexpr float kSmoothLimit = 1.2f;            // voxels: beyond it the binomial filter saturates
-constexpr float kSignGap = 0.15f;               // voxels: least distance on the right side
-constexpr float kBinomialSlope = 1 / 0.375f;    // voxels per unit of filtered occupancy at an edge
+constexpr float kSmoothLimit = 1.2f;              // voxels: beyond it the binomial filter saturates
+constexpr float kSignGap = 0.15f;                 // voxels: least distance on the right side
+constexpr float kBinomialSlope = 1 / 0.375f;  // voxels per unit of filtered occupancy at an edge
 
 using Window = std::array<std::uint8_t, kWindow * kWindow * kWindow>;
 using FloatWindow = std::array<float, kWindow * kWindow * kWindow>;
@@ -70,8 +70,7 @@ float carved_value(const Window& window, const FloatWindow& filtered, int x, int
   const bool stands = window[window_index(x, y, z)];
   const float value = (0.5f - filtered[window_index(x, y, z)]) * kBinomialSlope;
   if (std::abs(value) >= kSmoothLimit) {
-    const float distance =
-        std::max(kSmoothLimit, distance_to_other_side(window, x, y, z) - 0.5f);
+    const float distance = std::max(kSmoothLimit, distance_to_other_side(window, x, y, z) - 0.5f);
     return stands ? -distance : distance;
   }
   return stands ? std::min(value, -kSignGap) : std::max(value, kSignGap);
@@ -148,8 +147,8 @@ SparseVolume carved_distance(const SparseVolume& hull, const BitVolume& bits) {
           float& value = values[voxel_offset({x, y, z})];
           value = hull.at(brick * kBrickEdge + ivec3(x, y, z));
           if (carved)
-            value = std::max(
-                value, carved_value(window, filtered, x + kReach, y + kReach, z + kReach));
+            value =
+                std::max(value, carved_value(window, filtered, x + kReach, y + kReach, z + kReach));
         }
     store(out, brick, values);
   }

@@ -10,11 +10,11 @@ namespace {
 using glm::ivec3;
 using shaders::Decision;
 
-constexpr int kRadius = 2;        // columns around one that have a say: 24 neighbours
-constexpr int kSlope = 2;         // layers a surface may climb from column to column
-constexpr int kSupport = 8;       // neighbours that make an outcome trusted
-constexpr int kLonely = 3;        // a kept voxel with fewer can be overruled
-constexpr int kConsensus = 12;    // trusted neighbours that overrule
+constexpr int kRadius = 2;      // columns around one that have a say: 24 neighbours
+constexpr int kSlope = 2;       // layers a surface may climb from column to column
+constexpr int kSupport = 8;     // neighbours that make an outcome trusted
+constexpr int kLonely = 3;      // a kept voxel with fewer can be overruled
+constexpr int kConsensus = 12;  // trusted neighbours that overrule
 
 int outcome(const Decision& d) { return int(d.scores.z); }
 bool has_surface(const Decision& d) {
@@ -49,9 +49,7 @@ class ColumnMap {
   }
 
  private:
-  std::size_t index(const Decision& d) const {
-    return std::size_t(d.place.y) * width_ + d.place.x;
-  }
+  std::size_t index(const Decision& d) const { return std::size_t(d.place.y) * width_ + d.place.x; }
   int width_, height_;
   std::vector<std::size_t> first_;
   std::vector<Decision> sorted_;

@@ -36,12 +36,14 @@ double voxel_size_for(const Box& box, int resolution) {
 GridSpec fit_grid(const Box& box, double voxel_size) {
   if (!(std::isfinite(voxel_size) && voxel_size > 0))
     throw UsageError(concat("voxel size ", voxel_size, ": must be finite and positive"));
-  const glm::dvec3 bricks = glm::ceil((box.size() / voxel_size + 2.0 * kMargin) / double(kBrickEdge));
+  const glm::dvec3 bricks =
+      glm::ceil((box.size() / voxel_size + 2.0 * kMargin) / double(kBrickEdge));
   const double count = bricks.x * bricks.y * bricks.z;
   if (!(count <= kMaxBricks))
-    throw Error(concat("voxel size ", voxel_size, " makes a lattice of ", bricks.x * kBrickEdge, " x ",
-                       bricks.y * kBrickEdge, " x ", bricks.z * kBrickEdge, " voxels, whose index alone takes ",
-                       std::ceil(count * 4 / 1048576), " MiB; choose a lower --resolution, a larger "
+    throw Error(concat("voxel size ", voxel_size, " makes a lattice of ", bricks.x * kBrickEdge,
+                       " x ", bricks.y * kBrickEdge, " x ", bricks.z * kBrickEdge,
+                       " voxels, whose index alone takes ", std::ceil(count * 4 / 1048576),
+                       " MiB; choose a lower --resolution, a larger "
                        "--voxel-size or a smaller --box"));
   GridSpec grid;
   grid.voxel_size = voxel_size;

@@ -1,5 +1,5 @@
-// Based on: A. Laurentini, "The visual hull concept", PAMI 1994; the coarse-to-fine sweep is that of
-// R. Szeliski, "Rapid octree construction from image sequences", CVGIP 1993, on bricks.
+// Based on: A. Laurentini, "The visual hull concept", PAMI 1994; the coarse-to-fine sweep is that
+// of R. Szeliski, "Rapid octree construction from image sequences", CVGIP 1993, on bricks.
 #include "carving/hull.h"
 
 #include <algorithm>
@@ -16,11 +16,11 @@
 namespace photohull::carving {
 namespace {
 
-using gpu::Buffer;
 using glm::ivec3;
 using glm::ivec4;
+using gpu::Buffer;
 
-constexpr float kSplitMargin = 1.0f;        // voxels: keeps both ends of every sign change stored
+constexpr float kSplitMargin = 1.0f;         // voxels: keeps both ends of every sign change stored
 constexpr std::size_t kBatchBricks = 16384;  // 32 MiB of distances a dispatch
 
 /// Everything the kernels need of the silhouettes, on the device.
@@ -70,8 +70,8 @@ DeviceSilhouettes upload(const GridSpec& grid, std::span<const Camera> cameras,
 }
 
 struct Classified {
-  std::vector<ivec4> surface;            ///< nodes to split or, at level 0, bricks to evaluate
-  std::vector<std::uint32_t> relevant;   ///< view bit sets of `surface`
+  std::vector<ivec4> surface;           ///< nodes to split or, at level 0, bricks to evaluate
+  std::vector<std::uint32_t> relevant;  ///< view bit sets of `surface`
   std::vector<ivec4> inside;
 };
 

@@ -45,8 +45,8 @@ namespace reference {
 
 enum class NodeClass { kOutside, kInside, kSurface };
 
-/// What the node's cube of `edge` voxels from corner `low` (voxel coordinates, grown by `margin`) is,
-/// by looking at every pixel that its projection touches; double precision.
+/// What the node's cube of `edge` voxels from corner `low` (voxel coordinates, grown by `margin`)
+/// is, by looking at every pixel that its projection touches; double precision.
 NodeClass classify_node(const GridSpec& grid, const Box& box, std::span<const Camera> cameras,
                         std::span<const Silhouette> silhouettes, const HullOptions& options,
                         const glm::ivec3& low, int edge, double margin);

@@ -1,6 +1,6 @@
 // Based on: S. Seitz, C. Dyer, "Photorealistic scene reconstruction by voxel coloring", CVPR 1997;
-// K. Kutulakos, S. Seitz, "A theory of shape by space carving", IJCV 2000; and, for the evaluation on
-// reference planes by projective texture mapping, A. Montenegro's thesis, chapter 3.
+// K. Kutulakos, S. Seitz, "A theory of shape by space carving", IJCV 2000; and, for the evaluation
+// on reference planes by projective texture mapping, A. Montenegro's thesis, chapter 3.
 #include "carving/photo.h"
 
 #include <algorithm>
@@ -22,8 +22,8 @@ using glm::ivec3;
 using gpu::Buffer;
 using gpu::Program;
 
-constexpr double kLeastCosine = 0.35;      // between a camera's direction and the sweep
-constexpr std::size_t kChunk = 1024;       // bricks whose samples are held at once
+constexpr double kLeastCosine = 0.35;  // between a camera's direction and the sweep
+constexpr std::size_t kChunk = 1024;   // bricks whose samples are held at once
 // Voxels carved in a round per voxel judged below which another round changes nothing measurable.
 constexpr double kNegligible = 0.1;
 
@@ -78,8 +78,7 @@ class Sweeper {
   int cameras_along(const Direction& d) const {
     const glm::dvec3 centre = 0.5 * glm::dvec3(bits_.grid.voxels());
     int count = 0;
-    for (const auto& camera : cameras_)
-      count += cosine(camera, centre, d) > kLeastCosine;
+    for (const auto& camera : cameras_) count += cosine(camera, centre, d) > kLeastCosine;
     return count;
   }
 
@@ -91,8 +90,7 @@ class Sweeper {
     parameters_.axes = {u, v, direction.axis, direction.sign};
     parameters_.layer = {0, 0, 0, options_.front_face};
     const shaders::Column fresh{{-1, -1, 0, 0}, {0, 0, 0, 0}};
-    columns_ = Buffer::of(
-        std::vector<shaders::Column>(std::size_t(grid[u]) * grid[v] * 64, fresh));
+    columns_ = Buffer::of(std::vector<shaders::Column>(std::size_t(grid[u]) * grid[v] * 64, fresh));
     maps_->clear();
     std::vector<shaders::Decision> decisions;
     for (int slab = 0; slab < grid[direction.axis]; ++slab) {
@@ -226,8 +224,8 @@ class Sweeper {
       project_.dispatch(context_, "projtex_project_layer", end - first);
       score_.dispatch(context_, "carving_score_columns",
                       gpu::group_count(column - first_column, 64));
-      counts_.samples += std::int64_t(end - first) * shaders::kMaxLayerViews *
-                         shaders::kApronArea * options_.supersample * options_.supersample;
+      counts_.samples += std::int64_t(end - first) * shaders::kMaxLayerViews * shaders::kApronArea *
+                         options_.supersample * options_.supersample;
     }
     bind(0, 0, selected, occluders.buffer, scores, decided, columns_of_layer_.size());
     update_.dispatch(context_, "carving_update_columns",

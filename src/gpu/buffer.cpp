@@ -15,7 +15,8 @@ Buffer::Buffer(std::size_t bytes, const void* data) : bytes_(bytes) {
   const GLenum error = glGetError();
   if (error != GL_NO_ERROR) {
     glDeleteBuffers(1, &id_);
-    throw Error(concat("the device cannot hold a buffer of ", bytes >> 20, " MiB; lower --resolution"));
+    throw Error(
+        concat("the device cannot hold a buffer of ", bytes >> 20, " MiB; lower --resolution"));
   }
   if (data && bytes > 0 && bytes < 16) write(0, bytes, data);
 }

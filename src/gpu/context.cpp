@@ -1,5 +1,7 @@
 #include "gpu/context.h"
 
+#include <malloc.h>
+
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
@@ -7,6 +9,7 @@
 #include "core/error.h"
 #include "gpu/egl_devices.h"
 #include "gpu/gl.h"
+#include "gpu/program.h"
 
 namespace photohull::gpu {
 namespace {
@@ -19,13 +22,20 @@ std::int64_t now_ns() {
 
 const char* error_name(GLenum error) {
   switch (error) {
-    case GL_OUT_OF_MEMORY: return "the device is out of memory; lower --resolution";
-    case GL_CONTEXT_LOST: return "the device was lost";
-    case GL_INVALID_ENUM: return "invalid enum";
-    case GL_INVALID_VALUE: return "invalid value";
-    case GL_INVALID_OPERATION: return "invalid operation";
-    case GL_INVALID_FRAMEBUFFER_OPERATION: return "invalid framebuffer operation";
-    default: return "unknown error";
+    case GL_OUT_OF_MEMORY:
+      return "the device is out of memory; lower --resolution";
+    case GL_CONTEXT_LOST:
+      return "the device was lost";
+    case GL_INVALID_ENUM:
+      return "invalid enum";
+    case GL_INVALID_VALUE:
+      return "invalid value";
+    case GL_INVALID_OPERATION:
+      return "invalid operation";
+    case GL_INVALID_FRAMEBUFFER_OPERATION:
+      return "invalid framebuffer operation";
+    default:
+      return "unknown error";
   }
 }
 
@@ -59,8 +69,15 @@ Context::~Context() { destroy_context(*egl_); }
 void Context::check_errors(const char* where) const {
   const GLenum error = glGetError();
   if (error != GL_NO_ERROR)
-    throw Error(concat("OpenGL failed in ", where, " on ", device_.renderer, ": ",
-                       error_name(error)));
+    throw Error(
+        concat("OpenGL failed in ", where, " on ", device_.renderer, ": ", error_name(error)));
+}
+
+void Context::release_deleted() {
+  constexpr unsigned kUnits = 8;
+  for (unsigned unit = 0; unit < kUnits; ++unit) glBindTextureUnit(unit, 0);
+  Program::compute("gpu_nothing.comp.glsl").dispatch(*this, "gpu_nothing", 1);
+  malloc_trim(0);
 }
 
 Launch::Launch(Context& context, const char* name)

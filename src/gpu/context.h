@@ -11,10 +11,10 @@
 namespace photohull::gpu {
 
 struct Limits {
-  std::int64_t ssbo_bytes = 0;     ///< largest shader storage block
-  int texture_size = 0;            ///< largest edge of a 2D texture
-  int texture_layers = 0;          ///< largest 2D array
-  std::int64_t groups_x = 0;       ///< largest dispatch along x
+  std::int64_t ssbo_bytes = 0;  ///< largest shader storage block
+  int texture_size = 0;         ///< largest edge of a 2D texture
+  int texture_layers = 0;       ///< largest 2D array
+  std::int64_t groups_x = 0;    ///< largest dispatch along x
 };
 
 /// Time spent in the launches of one name.
@@ -39,6 +39,10 @@ class Context {
   /// Throws Error naming `where` if GL has an error pending (out of memory, lost context).
   void check_errors(const char* where) const;
 
+  /// Makes the driver let go of deleted textures and buffers that earlier dispatches used, and
+  /// gives the memory back to the system. Worth a call after a stage that held much.
+  void release_deleted();
+
   /// Seconds and count per launch name since the start; kernels add to it through `Launch`.
   std::map<std::string, LaunchStatistics>& statistics() { return statistics_; }
 
@@ -50,7 +54,8 @@ class Context {
   std::map<std::string, LaunchStatistics> statistics_;
 };
 
-/// Scope of a named launch: a GL debug group, and wall time up to the end of the work on the device.
+/// Scope of a named launch: a GL debug group, and wall time up to the end of the work on the
+/// device.
 class Launch {
  public:
   Launch(Context& context, const char* name);

@@ -56,9 +56,13 @@ EglHandles make_context(EGLDeviceEXT device, DeviceInfo& info) {
   EGLConfig config = nullptr;
   EGLint configs = 0;
   eglChooseConfig(handles.display, config_attributes, &config, 1, &configs);
-  const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
+  const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                               4,
+                               EGL_CONTEXT_MINOR_VERSION,
+                               5,
                                EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                               EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+                               EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                               EGL_NONE};
   handles.context = eglCreateContext(handles.display, configs > 0 ? config : EGL_NO_CONFIG_KHR,
                                      EGL_NO_CONTEXT, attributes);
   if (handles.context == EGL_NO_CONTEXT) throw Error("it gives no OpenGL 4.5 core context");

@@ -18,9 +18,9 @@ struct DeviceInfo {
 /// All EGL devices, each tried with an OpenGL 4.5 core context. Throws Error when EGL is missing.
 std::vector<DeviceInfo> list_devices();
 
-/// Which of `devices` a --device argument means: "auto" takes the first usable hardware device, else
-/// the software rasterizer; "software" that one; a number the device of that index.
-/// Throws UsageError for other text or an index that does not exist, Error when none is usable.
+/// Which of `devices` a --device argument means: "auto" takes the first usable hardware device,
+/// else the software rasterizer; "software" that one; a number the device of that index. Throws
+/// UsageError for other text or an index that does not exist, Error when none is usable.
 DeviceInfo choose_device(const std::vector<DeviceInfo>& devices, const std::string& selection);
 
 }  // namespace photohull::gpu

@@ -67,8 +67,8 @@ Program Program::compute(std::string_view path, std::string_view defines) {
 Program Program::raster(std::string_view vertex_path, std::string_view fragment_path,
                         std::string_view defines) {
   const unsigned vertex = compile_stage(GL_VERTEX_SHADER, vertex_path, defines);
-  return Program(link({vertex, compile_stage(GL_FRAGMENT_SHADER, fragment_path, defines)},
-                      fragment_path));
+  return Program(
+      link({vertex, compile_stage(GL_FRAGMENT_SHADER, fragment_path, defines)}, fragment_path));
 }
 
 Program::~Program() {

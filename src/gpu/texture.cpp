@@ -15,13 +15,20 @@ struct FormatInfo {
 
 FormatInfo info_of(TextureFormat format) {
   switch (format) {
-    case TextureFormat::kSrgb8Alpha8: return {GL_SRGB8_ALPHA8, GL_RGBA, GL_UNSIGNED_BYTE};
-    case TextureFormat::kRgba8: return {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE};
-    case TextureFormat::kRgba16f: return {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT};
-    case TextureFormat::kRg8: return {GL_RG8, GL_RG, GL_UNSIGNED_BYTE};
-    case TextureFormat::kR8: return {GL_R8, GL_RED, GL_UNSIGNED_BYTE};
-    case TextureFormat::kR16f: return {GL_R16F, GL_RED, GL_FLOAT};
-    case TextureFormat::kR32f: return {GL_R32F, GL_RED, GL_FLOAT};
+    case TextureFormat::kSrgb8Alpha8:
+      return {GL_SRGB8_ALPHA8, GL_RGBA, GL_UNSIGNED_BYTE};
+    case TextureFormat::kRgba8:
+      return {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE};
+    case TextureFormat::kRgba16f:
+      return {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT};
+    case TextureFormat::kRg8:
+      return {GL_RG8, GL_RG, GL_UNSIGNED_BYTE};
+    case TextureFormat::kR8:
+      return {GL_R8, GL_RED, GL_UNSIGNED_BYTE};
+    case TextureFormat::kR16f:
+      return {GL_R16F, GL_RED, GL_FLOAT};
+    case TextureFormat::kR32f:
+      return {GL_R32F, GL_RED, GL_FLOAT};
   }
   check_failed(__FILE__, __LINE__, "texture format");
 }

@@ -48,8 +48,8 @@ std::vector<std::string> check_box(const Box& box, const std::string& source,
                                    std::span<const SourceView> views) {
   const glm::dvec3 size = box.size();
   if (!(size.x > 0 && size.y > 0 && size.z > 0))
-    throw Error(concat("the box from ", source, " has no volume: its sides are ", size.x, ", ", size.y,
-                       ", ", size.z, "; give --box \"x0 y0 z0 x1 y1 z1\""));
+    throw Error(concat("the box from ", source, " has no volume: its sides are ", size.x, ", ",
+                       size.y, ", ", size.z, "; give --box \"x0 y0 z0 x1 y1 z1\""));
   std::vector<std::string> blind;
   for (const SourceView& view : views) {
     if (box.contains(view.camera.center()))
@@ -62,8 +62,9 @@ std::vector<std::string> check_box(const Box& box, const std::string& source,
                        " on its image: check the box's units and the poses' direction "
                        "(photohull info shows both)"));
   if (blind.empty()) return {};
-  return {concat(blind.size(), " of ", views.size(), " cameras do not have the box on their image: ",
-                 blind.front(), blind.size() > 1 ? ", ..." : "")};
+  return {concat(blind.size(), " of ", views.size(),
+                 " cameras do not have the box on their image: ", blind.front(),
+                 blind.size() > 1 ? ", ..." : "")};
 }
 
 void check_memory(std::int64_t bytes, const GridSpec& grid) {

@@ -15,8 +15,8 @@ constexpr double kDegrees = 57.29577951308232;
 // Measured with bench/run_scenes.sh on a software rasterizer; they only feed the estimate.
 constexpr double kSecondsPerPixel = 3.5e-8;
 constexpr double kSecondsPerSurfaceVoxel = 6e-5;
-constexpr double kSmallestBaseline = 3;   // degrees: closer views tell little about depth
-constexpr double kLargestBaseline = 50;   // degrees: farther views hardly correlate
+constexpr double kSmallestBaseline = 3;  // degrees: closer views tell little about depth
+constexpr double kLargestBaseline = 50;  // degrees: farther views hardly correlate
 
 void measure_angles(Inspection& out) {
   std::vector<glm::dvec3> rays;
@@ -69,8 +69,9 @@ Inspection inspect(const Scene& scene) {
   if (out.nearest_angle < kSmallestBaseline)
     out.warnings.push_back("neighbouring views are nearly the same: depth will be uncertain");
   if (out.nearest_angle > kLargestBaseline)
-    out.warnings.push_back("neighbouring views are far apart: photo-consistency will find little; "
-                           "add views or use --method hull");
+    out.warnings.push_back(
+        "neighbouring views are far apart: photo-consistency will find little; "
+        "add views or use --method hull");
   return out;
 }
 

@@ -37,10 +37,12 @@ constexpr double kDebrisFraction = 5e-4;  // of the largest part's voxels
 constexpr int kCropMargin = 24;           // pixels around the box's projection: patches, mip levels
 constexpr double kBoxSlack = 0.5;         // voxels that the surface may stand out of the box
 
-/// Shares of a job's time, measured on the scenes of docs/benchmarks.md; they only drive the time left.
+/// Shares of a job's time, measured on the scenes of docs/benchmarks.md; they only drive the time
+/// left.
 struct Weights {
-  static constexpr double kScene = 0.1, kViews = 5, kDevice = 1, kHull = 5, kImages = 1, kPhoto = 120,
-                          kClean = 0.2, kMesh = 2, kColour = 4, kPreview = 1, kFiles = 2;
+  static constexpr double kScene = 0.1, kViews = 5, kDevice = 1, kHull = 5, kImages = 1,
+                          kPhoto = 120, kClean = 0.2, kMesh = 2, kColour = 4, kPreview = 1,
+                          kFiles = 2;
 };
 
 std::string number(double value) {
@@ -88,19 +90,20 @@ class Job {
     clock_.run("views", Weights::kViews, [&] { prepare(); });
     clock_.run("device", Weights::kDevice, [&] { open_device(); });
     SparseVolume volume = clock_.run("hull", Weights::kHull, [&] { return carve_hull(); });
-    images_ = clock_.run("images", Weights::kImages, [&] {
-      return std::make_unique<projtex::ImageSet>(views_);
-    });
+    for (View& view : views_) view.mask.coverage = {};
+    context_->release_deleted();
+    images_ = clock_.run("images", Weights::kImages,
+                         [&] { return std::make_unique<projtex::ImageSet>(views_); });
     if (options_.effective_method() != Method::kHull)
       volume = clock_.run("photo", Weights::kPhoto, [&] { return carve_photo(volume); });
     clock_.run("clean", Weights::kClean, [&] { remove_small_components(volume, kDebrisFraction); });
     TriMesh mesh = clock_.run("mesh", Weights::kMesh, [&] { return extract_mesh(volume); });
     clock_.run("colour", Weights::kColour, [&] { colour(mesh); });
-    images_.reset();  // the rest needs the memory more
-    const auto preview = clock_.run("preview", Weights::kPreview, [&] {
-      return render_preview(*context_, mesh, views_);
-    });
-    clock_.run("files", Weights::kFiles, [&] { write(volume, mesh, preview); });
+    images_.reset();
+    context_->release_deleted();
+    clock_.run("files", Weights::kFiles, [&] { write(volume, mesh); });
+    context_->release_deleted();
+    clock_.run("preview", Weights::kPreview, [&] { write_preview(mesh); });
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     finish(volume, mesh, elapsed.count());
     return report_;
@@ -119,11 +122,13 @@ class Job {
     report_.views = int(scene_.views.size());
     for (const std::string& text : scene_.warnings) warn(text);
     if (!scene_.box)
-      throw Error(concat(scene_.path.string(), ": nothing tells where the object is: give --box "
+      throw Error(concat(scene_.path.string(),
+                         ": nothing tells where the object is: give --box "
                          "\"x0 y0 z0 x1 y1 z1\" or a bbox.txt beside the scene"));
     report_.box = *scene_.box;
     report_.box_source = scene_.box_source;
-    for (const std::string& text : check_box(*scene_.box, scene_.box_source, scene_.views)) warn(text);
+    for (const std::string& text : check_box(*scene_.box, scene_.box_source, scene_.views))
+      warn(text);
     for (const SourceView& view : scene_.views) cameras_.push_back(view.camera);
     grid_ = carving::fit_grid(*scene_.box, voxel_size_of(options_, *scene_.box, cameras_));
     check_memory(carving::estimate_memory(grid_), grid_);
@@ -163,8 +168,9 @@ class Job {
       silhouettes.push_back({&views_[i].mask, masked ? &distances[i] : nullptr});
     }
     if (!any_mask && options_.effective_method() == Method::kHull)
-      warn("without masks the hull is the box clipped by the frusta: give masks or use "
-           "--method space-carving");
+      warn(
+          "without masks the hull is the box clipped by the frusta: give masks or use "
+          "--method space-carving");
     carving::HullOptions hull_options;
     hull_options.min_views = any_mask ? 1 : 2;
     Box box = *scene_.box;
@@ -195,16 +201,20 @@ class Job {
     report_.voxels_undecided = counts.undecided + counts.reverted;
     photo_samples_ = counts.samples;
     if (volume.inside_voxels() == 0)
-      throw Error("photo-consistency carved everything away: the photographs disagree everywhere; "
-                  "check the cameras (photohull info) or use --method hull");
+      throw Error(
+          "photo-consistency carved everything away: the photographs disagree everywhere; "
+          "check the cameras (photohull info) or use --method hull");
     if (counts.judged == 0)
       warn("no voxel was seen by enough cameras to be judged: the result is the hull");
     return volume;
   }
 
   void colour(TriMesh& mesh) {
-    if (mesh.triangles.empty()) throw Error("the volume holds no surface: every part is thinner than a voxel; raise --resolution");
-    photohull::bake_colour(*context_, grid_, *images_, cameras_, report_.noise_sigma, mesh, progress_);
+    if (mesh.triangles.empty())
+      throw Error(
+          "the volume holds no surface: every part is thinner than a voxel; raise --resolution");
+    photohull::bake_colour(*context_, grid_, *images_, cameras_, report_.noise_sigma, mesh,
+                           progress_);
     const auto unseen = std::count(mesh.confidence.begin(), mesh.confidence.end(), 0.0f);
     report_.unseen_share = double(unseen) / double(mesh.confidence.size());
     if (report_.unseen_share > 0.5)
@@ -212,13 +222,17 @@ class Job {
                   " % of the surface is seen by no camera: it is the hull's guess"));
   }
 
-  void write(const SparseVolume& volume, const TriMesh& mesh, const PreviewImage& preview) {
+  void write(const SparseVolume& volume, const TriMesh& mesh) {
     VdbMetadata metadata{{"photohull_options", option_line()}};
     const fs::path& out = options_.output;
     write_vdb(out / "volume.vdb", volume, attributes_from_mesh(volume, mesh), metadata);
     write_ply(out / "mesh.ply", mesh);
-    io::write_png(out / "preview.png", preview.width, preview.height, 3, preview.rgb);
     report_.files = {"volume.vdb", "mesh.ply", "preview.png", "report.json"};
+  }
+
+  void write_preview(const TriMesh& mesh) {
+    const PreviewImage preview = render_preview(*context_, mesh, views_);
+    io::write_png(options_.output / "preview.png", preview.width, preview.height, 3, preview.rgb);
   }
 
   std::string option_line() const {
@@ -274,27 +288,36 @@ class Job {
 
 const char* to_string(Quality quality) {
   switch (quality) {
-    case Quality::kDraft: return "draft";
-    case Quality::kNormal: return "normal";
-    case Quality::kHigh: return "high";
+    case Quality::kDraft:
+      return "draft";
+    case Quality::kNormal:
+      return "normal";
+    case Quality::kHigh:
+      return "high";
   }
   return "?";
 }
 
 const char* to_string(Method method) {
   switch (method) {
-    case Method::kHull: return "hull";
-    case Method::kVoxelColoring: return "voxel-coloring";
-    case Method::kSpaceCarving: return "space-carving";
+    case Method::kHull:
+      return "hull";
+    case Method::kVoxelColoring:
+      return "voxel-coloring";
+    case Method::kSpaceCarving:
+      return "space-carving";
   }
   return "?";
 }
 
 double footprint_factor(Quality quality) {
   switch (quality) {
-    case Quality::kDraft: return 4.0;
-    case Quality::kNormal: return 1.5;
-    case Quality::kHigh: return 0.75;
+    case Quality::kDraft:
+      return 4.0;
+    case Quality::kNormal:
+      return 1.5;
+    case Quality::kHigh:
+      return 0.75;
   }
   return 1.5;
 }

@@ -18,15 +18,15 @@ const char* to_string(Quality quality);
 const char* to_string(Method method);
 
 struct ReconstructOptions {
-  std::filesystem::path scene;     ///< folder or file
-  std::filesystem::path output;    ///< folder; made when it does not exist
+  std::filesystem::path scene;   ///< folder or file
+  std::filesystem::path output;  ///< folder; made when it does not exist
   io::LoadSceneOptions load;
-  std::optional<int> resolution;   ///< voxels along the box's longest side, >= 2
+  std::optional<int> resolution;     ///< voxels along the box's longest side, >= 2
   std::optional<double> voxel_size;  ///< world units, > 0; excludes `resolution`
   Quality quality = Quality::kNormal;
-  std::optional<Method> method;    ///< default: hull for draft, space carving otherwise
-  std::string device = "auto";     ///< auto, software or an index
-  int threads = 0;                 ///< 0: one a core
+  std::optional<Method> method;  ///< default: hull for draft, space carving otherwise
+  std::string device = "auto";   ///< auto, software or an index
+  int threads = 0;               ///< 0: one a core
 
   /// Throws UsageError naming the option.
   void validate() const;
@@ -39,8 +39,9 @@ double footprint_factor(Quality quality);
 /// Sum of the weights of the stages that this job will announce to its Progress.
 double total_weight(const ReconstructOptions& options);
 
-/// Runs the job and writes volume.vdb, mesh.ply, preview.png and report.json into the output folder,
-/// each whole or not at all. Throws Error, UsageError or Cancelled; then no half-written file is left.
+/// Runs the job and writes volume.vdb, mesh.ply, preview.png and report.json into the output
+/// folder, each whole or not at all. Throws Error, UsageError or Cancelled; then no half-written
+/// file is left.
 Report reconstruct(const ReconstructOptions& options, Progress& progress);
 
 }  // namespace photohull::pipeline

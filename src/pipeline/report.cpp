@@ -21,7 +21,8 @@ std::string Report::to_json() const {
   j["scene"] = {{"path", scene}, {"format", format}, {"views", views}};
   j["device"] = device;
   for (const auto& [name, value] : options) j["options"][name] = value;
-  j["box"] = {{"min", to_json_array(box.min)}, {"max", to_json_array(box.max)}, {"source", box_source}};
+  j["box"] = {
+      {"min", to_json_array(box.min)}, {"max", to_json_array(box.max)}, {"source", box_source}};
   j["masks"] = {{"source", mask_source}, {"confidence", mask_confidence}};
   j["noise_sigma"] = noise_sigma;
   j["grid"] = {{"origin", to_json_array(grid.origin)},

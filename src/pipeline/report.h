@@ -14,8 +14,8 @@ namespace photohull::pipeline {
 struct StageReport {
   std::string name;
   double wall_seconds = 0;
-  double cpu_seconds = 0;      ///< user + system, all threads
-  std::int64_t samples = 0;    ///< texture samples, where the stage takes any
+  double cpu_seconds = 0;              ///< user + system, all threads
+  std::int64_t samples = 0;            ///< texture samples, where the stage takes any
   std::int64_t peak_memory_bytes = 0;  ///< of the process up to the stage's end
 };
 
@@ -28,7 +28,7 @@ struct Report {
   std::string box_source;
   std::string mask_source;
   double mask_confidence = 0;
-  double noise_sigma = 0;           ///< square-root-encoded units of full scale
+  double noise_sigma = 0;  ///< square-root-encoded units of full scale
   GridSpec grid;
   std::vector<StageReport> stages;
   std::int64_t nodes_tested = 0, bricks_evaluated = 0;
@@ -36,7 +36,7 @@ struct Report {
   std::int64_t bricks_stored = 0;
   int sweeps = 0;
   std::int64_t vertices = 0, triangles = 0;
-  double unseen_share = 0;          ///< of the mesh's vertices
+  double unseen_share = 0;  ///< of the mesh's vertices
   std::int64_t peak_memory_bytes = 0;
   double wall_seconds = 0, cpu_seconds = 0;
   std::vector<std::string> warnings;

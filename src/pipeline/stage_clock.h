@@ -25,7 +25,10 @@ class StageClock {
   /// Notes the time from its construction to its end, whatever the work's result type is.
   struct Span {
     Span(Report& r, const std::string& name)
-        : report(r), stage{name}, cpu(process_cpu_seconds()), wall(std::chrono::steady_clock::now()) {}
+        : report(r),
+          stage{name},
+          cpu(process_cpu_seconds()),
+          wall(std::chrono::steady_clock::now()) {}
     ~Span() {
       const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - wall;
       stage.wall_seconds = elapsed.count();

@@ -46,9 +46,9 @@ ImageSet::ImageSet(std::span<const View> views) {
   const bool half = std::any_of(views.begin(), views.end(), [](const View& v) {
     return v.image.encoding == Encoding::kLinearHalf;
   });
-  texture_ = gpu::TextureArray(
-      half ? gpu::TextureFormat::kRgba16f : gpu::TextureFormat::kSrgb8Alpha8, size.x, size.y,
-      int(views.size()), 0);
+  texture_ =
+      gpu::TextureArray(half ? gpu::TextureFormat::kRgba16f : gpu::TextureFormat::kSrgb8Alpha8,
+                        size.x, size.y, int(views.size()), 0);
   const std::size_t pixel_bytes = half ? 8 : 4;
   for (std::size_t i = 0; i < views.size(); ++i) {
     const ColourImage& image = views[i].image;

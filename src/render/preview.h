@@ -19,7 +19,7 @@ struct PreviewImage {
 };
 
 struct PreviewOptions {
-  int panel_edge = 640;  ///< longest side of a panel of the top row, pixels; in [16, 4096]
+  int panel_edge = 512;  ///< longest side of a panel of the top row, pixels; in [16, 4096]
   int other_views = 2;   ///< viewpoints of the bottom row at most; in [0, 4]
 };
 

@@ -8,7 +8,8 @@
 namespace photohull::visibility {
 namespace {
 
-/// Texels per pixel such that a voxel at the grid's centre covers one texel; never finer than pixels.
+/// Texels per pixel such that a voxel at the grid's centre covers one texel; never finer than
+/// pixels.
 double texels_per_pixel(const projtex::GridCamera& camera, const GridSpec& grid) {
   const glm::dvec3 centre = 0.5 * glm::dvec3(grid.voxels() - 1);
   const double depth = (camera.projection * glm::dvec4(centre, 1)).z;

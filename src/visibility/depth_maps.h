@@ -23,8 +23,8 @@ class DepthMaps {
   void clear();
   /// Storage blocks 8 (infos) and 9 (depths) of include/depth_map.glsl.
   void bind() const;
-  /// Draws the first `count` voxels of `voxels` (ivec4, preceded by a header of 16 bytes whose first
-  /// word is the count) into all maps. Cameras must be bound to storage block 0.
+  /// Draws the first `count` voxels of `voxels` (ivec4, preceded by a header of 16 bytes whose
+  /// first word is the count) into all maps. Cameras must be bound to storage block 0.
   void splat(gpu::Context& context, const gpu::Buffer& voxels, std::size_t count);
 
   const std::vector<shaders::DepthMapInfo>& infos() const { return infos_; }
@@ -39,7 +39,8 @@ class DepthMaps {
 
 namespace reference {
 
-/// Draws a voxel into a map of `info` (row-major depths), as DepthMaps::splat does; double precision.
+/// Draws a voxel into a map of `info` (row-major depths), as DepthMaps::splat does; double
+/// precision.
 void splat_voxel(const projtex::GridCamera& camera, const shaders::DepthMapInfo& info,
                  const glm::ivec3& voxel, std::vector<double>& depths);
 

@@ -15,7 +15,8 @@ void splat_voxel(const projtex::GridCamera& camera, const shaders::DepthMapInfo&
   for (int y = 0; y < info.size.y; ++y)
     for (int x = 0; x < info.size.x; ++x) {
       // The texel's square [x, x + 1) against the voxel's.
-      const bool touches = x + 1 > cx - half && x <= cx + half && y + 1 > cy - half && y <= cy + half;
+      const bool touches =
+          x + 1 > cx - half && x <= cx + half && y + 1 > cy - half && y <= cy + half;
       double& depth = depths[std::size_t(y) * info.size.x + x];
       if (touches) depth = std::min(depth, p.z);
     }
