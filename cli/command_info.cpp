@@ -38,8 +38,8 @@ void print_views(const Scene& scene) {
     std::printf(" to %.0f x %.0f", width.high, height.high);
   std::printf(" pixels\nfocal length   %.1f", focal.low);
   if (focal.low != focal.high) std::printf(" to %.1f", focal.high);
-  std::printf(" pixels\ndistortion     %d of %zu views\nmask files     %d of %zu views\n", distorted,
-              scene.views.size(), masked, scene.views.size());
+  std::printf(" pixels\ndistortion     %d of %zu views\nmask files     %d of %zu views\n",
+              distorted, scene.views.size(), masked, scene.views.size());
 }
 
 void print_text(const pipeline::Inspection& info) {
@@ -65,13 +65,21 @@ void print_json(const pipeline::Inspection& info) {
   for (const SourceView& v : info.scene.views) {
     const Intrinsics& k = v.camera.intrinsics;
     const glm::dvec3 c = v.camera.center();
-    j["views"].push_back({{"name", v.name}, {"width", k.width}, {"height", k.height}, {"fx", k.fx},
-                          {"fy", k.fy}, {"skew", k.skew}, {"cx", k.cx}, {"cy", k.cy},
-                          {"centre", {c.x, c.y, c.z}}, {"mask", v.mask.string()}});
+    j["views"].push_back({{"name", v.name},
+                          {"width", k.width},
+                          {"height", k.height},
+                          {"fx", k.fx},
+                          {"fy", k.fy},
+                          {"skew", k.skew},
+                          {"cx", k.cx},
+                          {"cy", k.cy},
+                          {"centre", {c.x, c.y, c.z}},
+                          {"mask", v.mask.string()}});
   }
   if (info.scene.box) {
     const Box& b = *info.scene.box;
-    j["box"] = {{"min", {b.min.x, b.min.y, b.min.z}}, {"max", {b.max.x, b.max.y, b.max.z}},
+    j["box"] = {{"min", {b.min.x, b.min.y, b.min.z}},
+                {"max", {b.max.x, b.max.y, b.max.z}},
                 {"source", info.scene.box_source}};
     j["nearest_angle_degrees"] = info.nearest_angle;
     j["farthest_angle_degrees"] = info.farthest_angle;

@@ -37,8 +37,8 @@ pipeline::ReconstructOptions to_options(const Arguments& a, const CLI::App& comm
   o.load = a.scene.options();
   o.quality = parse("--quality", a.quality, {Quality::kDraft, Quality::kNormal, Quality::kHigh});
   if (!a.method.empty())
-    o.method = parse("--method", a.method,
-                     {Method::kHull, Method::kVoxelColoring, Method::kSpaceCarving});
+    o.method =
+        parse("--method", a.method, {Method::kHull, Method::kVoxelColoring, Method::kSpaceCarving});
   if (command.count("--resolution")) o.resolution = a.resolution;
   if (command.count("--voxel-size")) o.voxel_size = a.voxel_size;
   o.device = a.device;
@@ -81,10 +81,12 @@ void add_reconstruct(CLI::App& app) {
   c->add_option("--out", a->out, "folder for the results; made when it does not exist")->required();
   c->add_option("--resolution", a->resolution, "voxels along the box's longest side");
   c->add_option("--voxel-size", a->voxel_size, "voxel size in world units");
-  c->add_option("--quality", a->quality, "draft, normal or high: voxel size from the images' pixels")
+  c->add_option("--quality", a->quality,
+                "draft, normal or high: voxel size from the images' pixels")
       ->capture_default_str();
-  c->add_option("--method", a->method,
-                "hull, voxel-coloring or space-carving (default: hull for draft, else space-carving)");
+  c->add_option(
+      "--method", a->method,
+      "hull, voxel-coloring or space-carving (default: hull for draft, else space-carving)");
   c->add_option("--device", a->device, "auto, software, or an index from 'photohull devices'")
       ->capture_default_str();
   c->add_option("--threads", a->threads, "threads to use (0: one a core)")->capture_default_str();

@@ -23,9 +23,9 @@ void crop_rows(std::vector<std::uint8_t>& bytes, std::size_t pixel_bytes, int wi
 void crop_to_box(const Box& box, int margin, View& view) {
   glm::dvec2 least(1e300), greatest(-1e300);
   for (int corner = 0; corner < 8; ++corner) {
-    const auto pixel = view.camera.project({(corner & 1 ? box.max : box.min).x,
-                                            (corner & 2 ? box.max : box.min).y,
-                                            (corner & 4 ? box.max : box.min).z});
+    const auto pixel =
+        view.camera.project({(corner & 1 ? box.max : box.min).x, (corner & 2 ? box.max : box.min).y,
+                             (corner & 4 ? box.max : box.min).z});
     if (!pixel) return;
     least = glm::min(least, *pixel);
     greatest = glm::max(greatest, *pixel);
@@ -35,8 +35,8 @@ void crop_to_box(const Box& box, int margin, View& view) {
   const glm::ivec2 low(glm::clamp(glm::floor(least) - double(margin), glm::dvec2(0), last));
   const glm::ivec2 high(glm::clamp(glm::ceil(greatest) + double(margin), glm::dvec2(0), last));
   const glm::ivec2 size = high - low + 1;
-  const bool off_image = glm::any(glm::greaterThan(least, last)) ||
-                         glm::any(glm::lessThan(greatest, glm::dvec2(0)));
+  const bool off_image =
+      glm::any(glm::greaterThan(least, last)) || glm::any(glm::lessThan(greatest, glm::dvec2(0)));
   if (off_image || (size.x == k.width && size.y == k.height)) return;
   crop_rows(view.image.bytes, view.image.bytes_per_pixel(), k.width, low, size);
   if (!view.mask.empty()) crop_rows(view.mask.coverage, 1, k.width, low, size);

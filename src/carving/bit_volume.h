@@ -14,9 +14,9 @@ struct BitVolume {
   static constexpr int kWords = kBrickVoxels / 32;
 
   GridSpec grid;
-  std::vector<std::uint32_t> table;    ///< per brick of the grid: a slot or SparseVolume::kOutside
-  std::vector<glm::ivec3> bricks;      ///< brick coordinates of each slot
-  std::vector<std::uint32_t> words;    ///< kWords per slot
+  std::vector<std::uint32_t> table;  ///< per brick of the grid: a slot or SparseVolume::kOutside
+  std::vector<glm::ivec3> bricks;    ///< brick coordinates of each slot
+  std::vector<std::uint32_t> words;  ///< kWords per slot
 
   bool standing(const glm::ivec3& voxel) const;
   void clear(const glm::ivec3& voxel);  ///< the voxel must stand

@@ -8,9 +8,9 @@
 
 namespace photohull::carving {
 
-/// Level 0 holds blocks of kBlock^2 pixels; each further level halves the blocks' number. Every cell
-/// has the least and the greatest coverage of the pixels it covers, interleaved (min, max). Cells
-/// beyond the image keep (255, 0), the neutral element. All levels have power-of-two sizes.
+/// Level 0 holds blocks of kBlock^2 pixels; each further level halves the blocks' number. Every
+/// cell has the least and the greatest coverage of the pixels it covers, interleaved (min, max).
+/// Cells beyond the image keep (255, 0), the neutral element. All levels have power-of-two sizes.
 struct MaskPyramid {
   static constexpr int kBlock = 4;  ///< pixels
 

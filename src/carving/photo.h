@@ -47,12 +47,12 @@ struct PhotoOptions {
 struct PhotoReport {
   int sweeps = 0;
   int rounds = 0;
-  std::int64_t judged = 0;     ///< voxels whose consistency was computed
+  std::int64_t judged = 0;  ///< voxels whose consistency was computed
   std::int64_t carved = 0;
-  std::int64_t undecided = 0;  ///< too few cameras, or too little texture: kept
-  std::int64_t reverted = 0;   ///< inconsistent, but nothing behind explained the images better
-  std::int64_t samples = 0;    ///< texture samples
-  double sampling_seconds = 0; ///< spent in the kernel that takes them
+  std::int64_t undecided = 0;   ///< too few cameras, or too little texture: kept
+  std::int64_t reverted = 0;    ///< inconsistent, but nothing behind explained the images better
+  std::int64_t samples = 0;     ///< texture samples
+  double sampling_seconds = 0;  ///< spent in the kernel that takes them
 };
 
 /// Carves `hull` and returns the result with a sub-voxel distance where something was carved; what

@@ -2,9 +2,7 @@
 
 namespace photohull {
 
-glm::dmat3 Intrinsics::k() const {
-  return {{fx, 0.0, 0.0}, {skew, fy, 0.0}, {cx, cy, 1.0}};
-}
+glm::dmat3 Intrinsics::k() const { return {{fx, 0.0, 0.0}, {skew, fy, 0.0}, {cx, cy, 1.0}}; }
 
 glm::dvec3 Camera::center() const {
   return -(glm::transpose(cam_from_world.rotation) * cam_from_world.translation);

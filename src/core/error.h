@@ -15,7 +15,8 @@ enum class ExitCode : int {
   kCancelled = 130  ///< Ctrl-C.
 };
 
-/// A user-facing failure. The message is one sentence: the file, the field, what was found, the mend.
+/// A user-facing failure. The message is one sentence: the file, the field, what was found, the
+/// mend.
 class Error : public std::runtime_error {
  public:
   explicit Error(const std::string& message, ExitCode code = ExitCode::kFailure)
@@ -51,18 +52,18 @@ std::string concat(const Args&... args) {
 }  // namespace photohull
 
 /// Programmer errors: abort with the expression.
-#define PHOTOHULL_CHECK(condition)                                          \
-  do {                                                                      \
+#define PHOTOHULL_CHECK(condition)                                               \
+  do {                                                                           \
     if (!(condition)) ::photohull::check_failed(__FILE__, __LINE__, #condition); \
   } while (false)
 
 /// Programmer errors: abort with both operands printed.
-#define PHOTOHULL_CHECK_OP(a, op, b)                                                         \
-  do {                                                                                       \
-    const auto& check_a = (a);                                                               \
-    const auto& check_b = (b);                                                               \
-    if (!(check_a op check_b))                                                               \
-      ::photohull::check_failed(__FILE__, __LINE__,                                          \
-                                ::photohull::concat(#a " " #op " " #b, " (", check_a, " vs ", \
-                                                    check_b, ")"));                          \
+#define PHOTOHULL_CHECK_OP(a, op, b)                                                    \
+  do {                                                                                  \
+    const auto& check_a = (a);                                                          \
+    const auto& check_b = (b);                                                          \
+    if (!(check_a op check_b))                                                          \
+      ::photohull::check_failed(                                                        \
+          __FILE__, __LINE__,                                                           \
+          ::photohull::concat(#a " " #op " " #b, " (", check_a, " vs ", check_b, ")")); \
   } while (false)

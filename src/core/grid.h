@@ -40,14 +40,14 @@ inline int voxel_offset(const glm::ivec3& local) {
 /// A truncated signed distance on bricks near the surface; what is not stored is known to lie
 /// inside or outside. Distances are in voxels, negative inside, clamped to [-kBand, kBand].
 struct SparseVolume {
-  static constexpr float kBand = 3.0f;              ///< voxels
+  static constexpr float kBand = 3.0f;  ///< voxels
   static constexpr std::uint32_t kOutside = 0xffffffffu;
   static constexpr std::uint32_t kInside = 0xfffffffeu;
 
   GridSpec grid;
-  std::vector<std::uint32_t> table;       ///< per brick of the grid: a slot, kOutside or kInside
-  std::vector<glm::ivec3> bricks;         ///< brick coordinates of each slot
-  std::vector<float> distance;            ///< kBrickVoxels per slot, in voxel_offset order
+  std::vector<std::uint32_t> table;  ///< per brick of the grid: a slot, kOutside or kInside
+  std::vector<glm::ivec3> bricks;    ///< brick coordinates of each slot
+  std::vector<float> distance;       ///< kBrickVoxels per slot, in voxel_offset order
 
   /// Value at a voxel of the grid; outside the grid it is +kBand.
   float at(const glm::ivec3& voxel) const;

@@ -11,7 +11,8 @@ namespace photohull {
 
 /// RGBA pixels, row-major from the top-left, in one of the two encodings that the GPU samples to
 /// linear light: 8-bit sRGB (4 bytes a pixel) for 8-bit sources, and linear half float (8 bytes a
-/// pixel) for 16-bit and floating-point sources. Alpha is linear in both: 1 where the file has none.
+/// pixel) for 16-bit and floating-point sources. Alpha is linear in both: 1 where the file has
+/// none.
 struct ColourImage {
   enum class Encoding { kSrgb8, kLinearHalf };
 

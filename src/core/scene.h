@@ -29,10 +29,10 @@ struct SourceView {
 struct Scene {
   std::filesystem::path path;
   SceneFormat format = SceneFormat::kMiddlebury;
-  std::vector<SourceView> views;    ///< in the order of the scene file
-  std::vector<glm::dvec3> points;   ///< sparse points, world; may be empty
-  std::optional<Box> box;           ///< region of interest, world
-  std::string box_source;           ///< e.g. "bbox.txt", "README.txt", "--box", "sparse points"
+  std::vector<SourceView> views;   ///< in the order of the scene file
+  std::vector<glm::dvec3> points;  ///< sparse points, world; may be empty
+  std::optional<Box> box;          ///< region of interest, world
+  std::string box_source;          ///< e.g. "bbox.txt", "README.txt", "--box", "sparse points"
   std::vector<std::string> warnings;
 };
 
