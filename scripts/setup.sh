@@ -22,7 +22,7 @@ packages=(
   # Images; OpenImageIO's CMake files ask for its tools.
   libopenimageio-dev openimageio-tools libopencv-dev
   libglm-dev libcli11-dev nlohmann-json3-dev libspdlog-dev
-  libgtest-dev libgmock-dev
+  libgtest-dev libgmock-dev libbenchmark-dev
 )
 
 preset=release
