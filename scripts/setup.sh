@@ -53,12 +53,15 @@ if [ $install = yes ]; then
   install_missing "${packages[@]}"
 fi
 
-# A compiler at work on OpenVDB's templates takes 1.5 GB: fewer jobs than cores where memory is short.
+# OpenVDB's templates take a compiler more than a gigabyte: fewer jobs than cores where memory is short.
 available_kb=$(awk '/^MemAvailable:/ {print $2}' /proc/meminfo 2>/dev/null || echo 0)
 fitting=$((available_kb / 1500000))
 if [ "$fitting" -lt "$jobs" ]; then
   jobs=$((fitting > 1 ? fitting : 1))
 fi
+
+# Checkouts in different folders share what they compile alike.
+export CCACHE_BASEDIR=$root
 
 build=build/$preset
 mkdir -p "$build" || die "The folder $build cannot be made; is this checkout writable?"
