@@ -83,16 +83,17 @@ std::vector<LinearImage> mip_chain(const ColourImage& image, const glm::ivec2& a
 }
 
 double mip_level(const GridCamera& camera, const PlaneSquare& square, int supersample) {
+  if (!pixel_of(camera, square.centre)) return 0;
   const double longest = std::max(glm::length(derivative(camera, square.centre, square.u)),
                                   glm::length(derivative(camera, square.centre, square.v)));
   return std::log2(std::max(longest / supersample, 1.0));
 }
 
 glm::dvec4 project_layer_sample(const GridCamera& camera, std::span<const LinearImage> mips,
-                                const PlaneSquare& square, int supersample, MipFilter filter) {
+                                const PlaneSquare& square, int supersample, double lambda,
+                                MipFilter filter) {
   const auto centre = pixel_of(camera, square.centre);
   if (!centre || !on_image(camera, *centre)) return {0, 0, 0, -1};
-  const double lambda = mip_level(camera, square, supersample);
   glm::dvec4 sum(0);
   for (int b = 0; b < supersample; ++b)
     for (int a = 0; a < supersample; ++a) {

@@ -31,12 +31,15 @@ struct PlaneSquare {
 };
 
 /// lambda: log2 of the pixels that a sample's footprint spans along its longest edge, with n x n
-/// samples a square; 0 where pixels are larger than that.
+/// samples a square; 0 where pixels are larger than that, and behind the camera. The kernel uses
+/// that of the square in the middle of a brick's apron for all of it.
 double mip_level(const GridCamera& camera, const PlaneSquare& square, int supersample);
 
-/// Square root of the linear colour that the photograph shows on the square, by n x n samples from
-/// its mip chain, and their alpha; alpha -1 where the square's centre is not on the image.
+/// Square root of the linear colour that the photograph shows on the square, by n x n samples of
+/// its mip chain at `lambda`, and their alpha; alpha -1 where the square's centre is not on the
+/// image.
 glm::dvec4 project_layer_sample(const GridCamera& camera, std::span<const LinearImage> mips,
-                                const PlaneSquare& square, int supersample, MipFilter filter);
+                                const PlaneSquare& square, int supersample, double lambda,
+                                MipFilter filter);
 
 }  // namespace photohull::projtex::reference

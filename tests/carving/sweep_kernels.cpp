@@ -79,7 +79,6 @@ SelectedLayer SweepKernels::select(int layer) {
     }
   parameters.bricks = glm::ivec4(bricks_, int(items.size()));
   parameters.layer.x = layer;
-  parameters.layer.z = view_count_;
   items_ = Buffer::of(items);
   selected_ = list_of(items.size(), 16);
   occluders_ = list_of(items.size() * 128, 16);

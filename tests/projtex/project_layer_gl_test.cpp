@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/error.h"
 #include "gpu/buffer.h"
 #include "gpu/program.h"
 #include "gpu/texture.h"
@@ -84,8 +85,7 @@ class ProjectLayer : public ::testing::Test {
     parameters.bricks = glm::ivec4(layer_case.grid.bricks, int(items.size()));
     parameters.axes = {(layer_case.axis + 1) % 3, (layer_case.axis + 2) % 3, layer_case.axis,
                        layer_case.sign};
-    parameters.layer = {layer_case.layer, layer_case.supersample, int(cameras.size()),
-                        layer_case.front_face};
+    parameters.layer = {layer_case.layer, 0, 0, layer_case.front_face};
     std::vector<glm::uvec4> selected{{unsigned(items.size()), 0, 0, 0}};
     for (std::size_t i = 0; i < items.size(); ++i) selected.emplace_back(unsigned(i), ~0u, ~0u, 0u);
     const std::size_t count = items.size() * shaders::kMaxLayerViews * shaders::kApronArea;
@@ -98,36 +98,38 @@ class ProjectLayer : public ::testing::Test {
     selected_buffer.bind_storage(5);
     samples.bind_storage(6);
     texture_.bind(0);
-    gpu::Program::compute("projtex_project_layer.comp.glsl")
-        .dispatch(context_, "projtex_project_layer", items.size(), shaders::kMaxLayerViews);
+    gpu::Program::compute("projtex_project_layer.comp.glsl",
+                          concat("#define SUPERSAMPLE ", layer_case.supersample, "\n"))
+        .dispatch(context_, "projtex_project_layer", items.size());
     return samples.download<glm::vec4>(count);
   }
 
+  /// The square of a place in the item's apron (x along u, y along v).
   static PlaneSquare square_of(const LayerCase& layer_case, const shaders::LayerItem& item,
-                               int apron) {
+                               const glm::dvec2& place) {
     const int u = (layer_case.axis + 1) % 3, v = (layer_case.axis + 2) % 3;
     PlaneSquare square;
     square.u[u] = square.v[v] = 1;
-    square.centre[u] =
-        item.brick[u] * kBrickEdge - shaders::kPatchRadius + apron % shaders::kApronEdge;
-    square.centre[v] =
-        item.brick[v] * kBrickEdge - shaders::kPatchRadius + apron / shaders::kApronEdge;
+    square.centre[u] = item.brick[u] * kBrickEdge - shaders::kPatchRadius + place.x;
+    square.centre[v] = item.brick[v] * kBrickEdge - shaders::kPatchRadius + place.y;
     square.centre[layer_case.axis] = voxel_along(layer_case, layer_case.layer) -
                                      (layer_case.front_face ? 0.5 * layer_case.sign : 0.0);
     return square;
   }
 
-  /// Are single and double precision free to differ: at the border, at the plane of the camera, at
-  /// a switch of the nearest level?
-  static bool undecidable(const LayerCase& layer_case, const GridCamera& camera,
-                          const PlaneSquare& square) {
+  /// Is single precision free to differ: at the border or the plane of the camera?
+  static bool near_border(const GridCamera& camera, const PlaneSquare& square) {
     const glm::dvec3 p = camera.projection * glm::dvec4(square.centre, 1);
     if (std::abs(p.z) < 1e-2) return true;
     const glm::dvec2 pixel = glm::dvec2(p) / p.z;
     const double bound = 1e-3;
     for (int i = 0; i < 2; ++i)
       if (std::abs(pixel[i] + 0.5) < bound || std::abs(pixel[i] - kSize + 0.5) < bound) return true;
-    const double lambda = mip_level(camera, square, layer_case.supersample);
+    return false;
+  }
+
+  /// Is `lambda` at a switch of the nearest level?
+  static bool at_switch(const LayerCase& layer_case, double lambda) {
     return layer_case.filter == MipFilter::kNearest &&
            std::abs(lambda - std::floor(lambda) - 0.5) < 1e-4;
   }
@@ -137,12 +139,18 @@ class ProjectLayer : public ::testing::Test {
     const std::vector<glm::vec4> samples = run(layer_case, cameras, items);
     Outcome out;
     for (std::size_t i = 0; i < items.size(); ++i)
-      for (std::size_t view = 0; view < cameras.size(); ++view)
+      for (std::size_t view = 0; view < cameras.size(); ++view) {
+        const glm::dvec2 middle(0.5 * (shaders::kApronEdge - 1));
+        const double lambda = mip_level(cameras[view], square_of(layer_case, items[i], middle),
+                                        layer_case.supersample);
+        if (at_switch(layer_case, lambda)) continue;
         for (int a = 0; a < shaders::kApronArea; ++a) {
-          const PlaneSquare square = square_of(layer_case, items[i], a);
-          if (undecidable(layer_case, cameras[view], square)) continue;
-          const glm::dvec4 expected = reference::project_layer_sample(
-              cameras[view], mips_[view], square, layer_case.supersample, layer_case.filter);
+          const glm::dvec2 place(a % shaders::kApronEdge, a / shaders::kApronEdge);
+          const PlaneSquare square = square_of(layer_case, items[i], place);
+          if (near_border(cameras[view], square)) continue;
+          const glm::dvec4 expected =
+              reference::project_layer_sample(cameras[view], mips_[view], square,
+                                              layer_case.supersample, lambda, layer_case.filter);
           const glm::dvec4 found(
               samples[(i * shaders::kMaxLayerViews + view) * shaders::kApronArea + a]);
           if ((expected.a < 0) != (found.a < 0)) {
@@ -155,6 +163,7 @@ class ProjectLayer : public ::testing::Test {
             out.worst = std::max({out.worst, d.r, d.g, d.b, d.a});
           }
         }
+      }
     return out;
   }
 
