@@ -98,8 +98,37 @@ class ColumnsTest : public SweepKernelTest,
     EXPECT_EQ(sorted(found.occluders), sorted(expected.occluders)) << "layer " << layer;
   }
 
+  void compare_decisions(const SweepKernels& kernels, const BitVolume& bits,
+                         const SweepFrame& frame, const reference::JudgeRules& rules,
+                         const std::vector<std::vector<Consistency>>& scores);
   void sweep(double density, const reference::JudgeRules& rules);
 };
+
+void ColumnsTest::compare_decisions(const SweepKernels& kernels, const BitVolume& bits,
+                                    const SweepFrame& frame, const reference::JudgeRules& rules,
+                                    const std::vector<std::vector<Consistency>>& scores) {
+  const int layers = frame.voxels[frame.axis], width = frame.voxels[frame.u()];
+  std::map<std::pair<int, int>, std::vector<Decision>> found;
+  for (const Decision& d : kernels.decisions()) found[{d.place.x, d.place.y}].push_back(d);
+  int outcomes[4] = {};
+  for (int i = 0; i < int(scores.size()); ++i) {
+    const ivec2 column(i % width, i / width);
+    std::vector<std::uint8_t> standing;
+    for (int layer = 0; layer < layers; ++layer)
+      standing.push_back(bits.standing(frame.voxel(column, layer)));
+    const auto expected = ColumnJudge(rules, standing, scores[i]).decisions(column);
+    auto& mine = found[{column.x, column.y}];
+    std::sort(mine.begin(), mine.end(),
+              [](const Decision& a, const Decision& b) { return a.place.z < b.place.z; });
+    ASSERT_EQ(mine.size(), expected.size()) << column.x << ", " << column.y;
+    for (std::size_t k = 0; k < mine.size(); ++k) {
+      EXPECT_EQ(mine[k].place, expected[k].place) << column.x << ", " << column.y;
+      EXPECT_EQ(mine[k].scores, expected[k].scores) << column.x << ", " << column.y;
+      ++outcomes[int(expected[k].scores.z)];
+    }
+  }
+  for (const int count : outcomes) EXPECT_GT(count, 10);
+}
 
 void ColumnsTest::sweep(double density, const reference::JudgeRules& rules) {
   const BitVolume bits = random_bits(rng_, {3, 2, 4}, density);
@@ -136,26 +165,7 @@ void ColumnsTest::sweep(double density, const reference::JudgeRules& rules) {
   }
   EXPECT_EQ(kernels.judged_count(), judged);
 
-  std::map<std::pair<int, int>, std::vector<Decision>> found;
-  for (const Decision& d : kernels.decisions()) found[{d.place.x, d.place.y}].push_back(d);
-  int outcomes[4] = {};
-  for (int i = 0; i < columns; ++i) {
-    const ivec2 column(i % width, i / width);
-    std::vector<std::uint8_t> standing;
-    for (int layer = 0; layer < layers; ++layer)
-      standing.push_back(bits.standing(frame.voxel(column, layer)));
-    const auto expected = ColumnJudge(rules, standing, scores[i]).decisions(column);
-    auto& mine = found[{column.x, column.y}];
-    std::sort(mine.begin(), mine.end(),
-              [](const Decision& a, const Decision& b) { return a.place.z < b.place.z; });
-    ASSERT_EQ(mine.size(), expected.size()) << column.x << ", " << column.y;
-    for (std::size_t k = 0; k < mine.size(); ++k) {
-      EXPECT_EQ(mine[k].place, expected[k].place) << column.x << ", " << column.y;
-      EXPECT_EQ(mine[k].scores, expected[k].scores) << column.x << ", " << column.y;
-      ++outcomes[int(expected[k].scores.z)];
-    }
-  }
-  for (const int count : outcomes) EXPECT_GT(count, 10);
+  compare_decisions(kernels, bits, frame, rules, scores);
 }
 
 TEST_P(ColumnsTest, LongPathsThroughDenseVoxels) { sweep(0.93, {0.6, 0.15, 3, 2e-4, 64}); }
