@@ -25,7 +25,7 @@ using gpu::Program;
 constexpr double kLeastCosine = 0.35;  // between a camera's direction and the sweep
 constexpr std::size_t kChunk = 1024;   // bricks whose samples are held at once
 // Voxels carved in a round per voxel judged below which another round changes nothing measurable.
-constexpr double kNegligible = 0.1;
+constexpr double kNegligible = 0.03;
 
 struct Direction {
   int axis, sign;
@@ -265,14 +265,17 @@ class Sweeper {
   PhotoReport counts_;
 };
 
+/// The sweeps of a round. Those that most cameras look along come first: they see the surface best,
+/// and what they settle the others find settled.
 std::vector<Direction> directions_of(const PhotoOptions& options, const Sweeper& sweeper) {
   std::vector<Direction> all;
   for (int axis = 0; axis < 3; ++axis)
     for (const int sign : {1, -1}) all.push_back({axis, sign});
-  if (options.method == PhotoMethod::kSpaceCarving) return all;
-  return {*std::max_element(all.begin(), all.end(), [&](const Direction& a, const Direction& b) {
-    return sweeper.cameras_along(a) < sweeper.cameras_along(b);
-  })};
+  std::stable_sort(all.begin(), all.end(), [&](const Direction& a, const Direction& b) {
+    return sweeper.cameras_along(a) > sweeper.cameras_along(b);
+  });
+  if (options.method == PhotoMethod::kVoxelColoring) all.resize(1);
+  return all;
 }
 
 }  // namespace
