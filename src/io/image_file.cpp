@@ -1,5 +1,6 @@
 #include "io/image_file.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/half.h>
 #include <OpenImageIO/imageio.h>
 
@@ -11,8 +12,8 @@
 #include <mutex>
 #include <new>
 
-#include "core/error.h"
 #include "core/atomic_file.h"
+#include "core/error.h"
 #include "io/text_file.h"
 
 namespace photohull::io {
@@ -47,6 +48,12 @@ void keep_to_one_thread() {
   });
 }
 
+/// OpenImageIO's messages may come as several lines, one a plug-in.
+std::string one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
 Layout layout_of(const OIIO::ImageSpec& spec, const fs::path& path) {
   constexpr int kMaxChannels = 16;
   Layout layout;
@@ -79,7 +86,7 @@ OpenImage open_image(const fs::path& path) {
   request.attribute("oiio:UnassociatedAlpha", 1);
   file.input = OIIO::ImageInput::open(path.string(), &request);
   if (!file.input)
-    throw Error(concat(path.string(), ": cannot be read as an image (", OIIO::geterror(),
+    throw Error(concat(path.string(), ": cannot be read as an image (", one_line(OIIO::geterror()),
                        "); PNG, JPEG, TIFF and OpenEXR are known"));
   file.input->threads(1);
   file.spec = file.input->spec();
@@ -100,7 +107,7 @@ void read_pixels(OpenImage& file, OIIO::TypeDesc type, void* out) {
   const bool read = file.input->read_image(0, 0, 0, file.layout.channels, type, out);
   if (!read || file.input->has_error())
     throw Error(concat(file.path.string(), ": the image is damaged or cut short (",
-                       file.input->geterror(), "); export it again"));
+                       one_line(file.input->geterror()), "); export it again"));
 }
 
 /// Stored colour divided by stored alpha, both up to `maximum`.
@@ -293,7 +300,7 @@ Mask read_mask(const fs::path& path) {
   return mask;
 }
 
-void write_png(const fs::path& path, int width, int height, int channels,
+void write_png(AtomicFile& file, int width, int height, int channels,
                std::span<const std::uint8_t> bytes) {
   PHOTOHULL_CHECK(width > 0 && height > 0 && channels >= 1 && channels <= 4);
   PHOTOHULL_CHECK_OP(bytes.size(), ==, std::size_t(width) * height * channels);
@@ -306,11 +313,20 @@ void write_png(const fs::path& path, int width, int height, int channels,
   const auto output = OIIO::ImageOutput::create("png");
   if (!output) throw Error("PNG files cannot be written: OpenImageIO lacks its PNG plug-in");
   output->threads(1);
-  AtomicFile file(path);
-  if (!output->open(file.temporary().string(), spec) ||
+  // Compressed in memory: OpenImageIO may take a full disk for a success.
+  std::vector<unsigned char> compressed;
+  OIIO::Filesystem::IOVecOutput memory(compressed);
+  if (!output->set_ioproxy(&memory) || !output->open("memory.png", spec) ||
       !output->write_image(OIIO::TypeDesc::UINT8, bytes.data()) || !output->close())
-    throw Error(concat(path.string(), ": cannot be written (", output->geterror(),
-                       "); choose a folder that exists, is writable and has space"));
+    throw Error(concat(file.target().string(), ": cannot be compressed (",
+                       one_line(output->geterror()), ")"));
+  file.write(compressed.data(), compressed.size());
+}
+
+void write_png(const fs::path& path, int width, int height, int channels,
+               std::span<const std::uint8_t> bytes) {
+  AtomicFile file(path);
+  write_png(file, width, height, channels, bytes);
   file.commit();
 }
 

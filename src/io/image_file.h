@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <span>
 
+#include "core/atomic_file.h"
 #include "core/image.h"
 
 namespace photohull::io {
@@ -43,6 +44,9 @@ Mask read_mask(const std::filesystem::path& path);
 /// top-left; 1 to 4 channels: grey, grey + alpha, RGB, RGBA, alpha straight. The file appears whole
 /// or not at all. Throws Error when it cannot be written.
 void write_png(const std::filesystem::path& path, int width, int height, int channels,
+               std::span<const std::uint8_t> bytes);
+/// The same, for the caller to commit.
+void write_png(AtomicFile& file, int width, int height, int channels,
                std::span<const std::uint8_t> bytes);
 
 }  // namespace photohull::io

@@ -12,7 +12,6 @@
 
 #include "core/error.h"
 #include "core/image.h"
-#include "core/atomic_file.h"
 
 namespace photohull {
 namespace {
@@ -141,16 +140,20 @@ void put_faces(const TriMesh& mesh, BlockWriter& out) {
 
 }  // namespace
 
-void write_ply(const std::filesystem::path& path, const TriMesh& mesh) {
+void write_ply(AtomicFile& file, const TriMesh& mesh) {
   check_attributes(mesh);
   const bool doubles = needs_double(mesh);
-  AtomicFile file(path);
   const std::string text = header(mesh, doubles);
   file.write(text.data(), text.size());
   BlockWriter out(file);
   put_vertices(mesh, doubles, out);
   put_faces(mesh, out);
   out.flush();
+}
+
+void write_ply(const std::filesystem::path& path, const TriMesh& mesh) {
+  AtomicFile file(path);
+  write_ply(file, mesh);
   file.commit();
 }
 

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "core/atomic_file.h"
 #include "core/mesh.h"
 
 namespace photohull {
@@ -13,6 +14,8 @@ namespace photohull {
 /// (uchar, int) `vertex_indices`. The file appears whole or not at all; throws Error when it cannot
 /// be written.
 void write_ply(const std::filesystem::path& path, const TriMesh& mesh);
+/// The same, for the caller to commit.
+void write_ply(AtomicFile& file, const TriMesh& mesh);
 
 /// Reads a PLY, ascii or binary little-endian, with the properties that write_ply writes in any
 /// order and any scalar type; other properties and elements are skipped, polygons become fans of

@@ -7,11 +7,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <vector>
 
 #include "core/error.h"
-#include "core/atomic_file.h"
 #include "volume/fill_tree.h"
 
 namespace photohull {
@@ -108,9 +109,54 @@ FloatGrid::Ptr confidence_grid(const SparseVolume& volume, const std::vector<flo
   return grid;
 }
 
-void write_grids(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids,
-                 const openvdb::MetaMap& metadata) {
-  AtomicFile file(path);
+/// A hash of everything that makes the file; eight bytes a step.
+class ContentHash {
+ public:
+  template <typename T>
+  void add(const std::vector<T>& values) {
+    add_bytes(values.data(), values.size() * sizeof(T));
+  }
+  void add_bytes(const void* data, std::size_t size) {
+    const auto* bytes = static_cast<const unsigned char*>(data);
+    mix(size);
+    for (std::size_t i = 0; i < size; i += 8) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, bytes + i, std::min<std::size_t>(8, size - i));
+      mix(word);
+    }
+  }
+  std::uint64_t mix(std::uint64_t word) {
+    hash_ = (hash_ ^ word) * 0x9e3779b97f4a7c15u;
+    return hash_ ^= hash_ >> 32;
+  }
+
+ private:
+  std::uint64_t hash_ = 0;
+};
+
+/// A tag of UUID's shape (version 8) that depends on the contents alone. OpenVDB's own is random,
+/// so that no two files would be alike.
+std::string content_tag(const SparseVolume& volume, const VolumeAttributes& attributes,
+                        const VdbMetadata& metadata) {
+  ContentHash hash;
+  hash.add_bytes(&volume.grid.origin, sizeof volume.grid.origin);
+  hash.add_bytes(&volume.grid.voxel_size, sizeof volume.grid.voxel_size);
+  hash.add(volume.table);
+  hash.add(volume.distance);
+  hash.add(attributes.colour);
+  hash.add(attributes.confidence);
+  for (const auto& [name, value] : metadata)
+    for (const std::string& text : {name, value}) hash.add_bytes(text.data(), text.size());
+  const std::uint64_t high = hash.mix(1), low = hash.mix(2);
+  char text[37];
+  std::snprintf(text, sizeof text, "%08x-%04x-8%03x-8%03x-%012llx", unsigned(high >> 32),
+                unsigned(high >> 16 & 0xffff), unsigned(high & 0xfff), unsigned(low >> 52),
+                static_cast<unsigned long long>(low & 0xffffffffffff));
+  return text;
+}
+
+void write_grids(AtomicFile& file, const openvdb::GridCPtrVec& grids,
+                 const openvdb::MetaMap& metadata, const std::string& tag) {
   std::vector<char> buffer(std::size_t(1) << 20);
   std::ofstream out;
   out.rdbuf()->pubsetbuf(buffer.data(), std::streamsize(buffer.size()));
@@ -121,11 +167,14 @@ void write_grids(const std::filesystem::path& path, const openvdb::GridCPtrVec& 
     CheckedArchive archive;
     archive.setCompression(openvdb::io::COMPRESS_ACTIVE_MASK);
     archive.write_to(out, grids, metadata);
+    // After the magic number, the file's and the library's version and the flag for offsets.
+    constexpr std::streamoff kTag = 8 + 4 + 2 * 4 + 1;
+    out.seekp(kTag);
+    out.write(tag.data(), std::streamsize(tag.size()));
     out.close();
   } catch (const std::ios::failure&) {
     file.fail(errno);
   }
-  file.commit();
 }
 
 /// Runs a reader of an OpenVDB file; whatever it throws becomes an Error that names the file.
@@ -215,8 +264,8 @@ SparseVolume to_volume(const FloatGrid& source) {
 
 }  // namespace
 
-void write_vdb(const std::filesystem::path& path, const SparseVolume& volume,
-               const VolumeAttributes& attributes, const VdbMetadata& metadata) {
+void write_vdb(AtomicFile& file, const SparseVolume& volume, const VolumeAttributes& attributes,
+               const VdbMetadata& metadata) {
   PHOTOHULL_CHECK(volume.grid.voxel_size > 0);
   const std::size_t voxels = volume.distance.size();
   PHOTOHULL_CHECK(attributes.colour.empty() || attributes.colour.size() == voxels);
@@ -233,7 +282,14 @@ void write_vdb(const std::filesystem::path& path, const SparseVolume& volume,
   if (!attributes.colour.empty()) add(colour_grid(volume, attributes.colour), "Cd");
   if (!attributes.confidence.empty())
     add(confidence_grid(volume, attributes.confidence), "confidence");
-  write_grids(path, grids, map);
+  write_grids(file, grids, map, content_tag(volume, attributes, metadata));
+}
+
+void write_vdb(const std::filesystem::path& path, const SparseVolume& volume,
+               const VolumeAttributes& attributes, const VdbMetadata& metadata) {
+  AtomicFile file(path);
+  write_vdb(file, volume, attributes, metadata);
+  file.commit();
 }
 
 SparseVolume read_vdb_surface(const std::filesystem::path& path) {

@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 
+#include "core/atomic_file.h"
 #include "core/grid.h"
 #include "volume/attributes.h"
 
@@ -18,10 +19,13 @@ using VdbMetadata = std::map<std::string, std::string>;
 ///   confidence  [0, 1] (half), active likewise
 /// the last two only where `attributes` has them. Index (i, j, k) of every grid is the voxel of
 /// that index, whose centre is at grid.world({i, j, k}). `metadata` becomes string metadata of the
-/// file and of every grid, beside voxel_size and photohull_version.
-/// The file appears whole or not at all; throws Error when it cannot be written.
+/// file and of every grid, beside voxel_size and photohull_version. Equal contents give equal
+/// bytes. The file appears whole or not at all; throws Error when it cannot be written.
 void write_vdb(const std::filesystem::path& path, const SparseVolume& volume,
                const VolumeAttributes& attributes, const VdbMetadata& metadata);
+/// The same, for the caller to commit.
+void write_vdb(AtomicFile& file, const SparseVolume& volume, const VolumeAttributes& attributes,
+               const VdbMetadata& metadata);
 
 /// Reads the grid `surface`, or else the first level set, as a volume in voxels. Indices are
 /// shifted by whole bricks so that none is negative; grid.origin follows. Distances are clamped to
