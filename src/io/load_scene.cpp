@@ -163,9 +163,9 @@ std::vector<RawView> fill_views(const LoadSceneOptions& options, const RawScene&
 
 void LoadSceneOptions::validate() const {
   if (pixel_center && *pixel_center != 0.0 && *pixel_center != 0.5)
-    throw UsageError(concat("pixel_center is ", *pixel_center, ", but it must be 0 or 0.5"));
+    throw UsageError(concat("--pixel-center ", *pixel_center, ": expected 0 or 0.5"));
   if (masks == MaskSource::kDirectory && mask_directory.empty())
-    throw UsageError("the mask directory is empty; name the folder that holds the masks");
+    throw UsageError("--masks is empty: expected auto, none or the folder that holds the masks");
   if (!box) return;
   try {
     check_box(*box, "--box");

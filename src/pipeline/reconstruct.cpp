@@ -14,10 +14,10 @@
 #include "carving/fit_grid.h"
 #include "carving/hull.h"
 #include "carving/photo.h"
-#include "core/atomic_file.h"
 #include "core/error.h"
 #include "io/image_file.h"
 #include "pipeline/checks.h"
+#include "pipeline/result_files.h"
 #include "pipeline/stage_clock.h"
 #include "projtex/image_set.h"
 #include "render/bake_colour.h"
@@ -52,14 +52,6 @@ std::string number(double value) {
   return out.str();
 }
 
-void make_output_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error || !fs::is_directory(folder))
-    throw Error(concat("--out ", folder.string(), ": cannot make this folder (",
-                       error ? error.message() : "a file of that name exists", ")"));
-}
-
 double voxel_size_of(const ReconstructOptions& options, const Box& box,
                      std::span<const Camera> cameras) {
   if (options.voxel_size) return *options.voxel_size;
@@ -85,10 +77,12 @@ class Job {
 
   Report run() {
     const auto start = std::chrono::steady_clock::now();
-    make_output_folder(options_.output);
     clock_.run("scene", Weights::kScene, [&] { load(); });
-    clock_.run("views", Weights::kViews, [&] { prepare(); });
+    // What can fail at once does so before the photographs are decoded.
+    ResultFiles files(options_.output, {"volume.vdb", "mesh.ply", "preview.png", "report.json"});
+    report_.files = files.names();
     clock_.run("device", Weights::kDevice, [&] { open_device(); });
+    clock_.run("views", Weights::kViews, [&] { prepare(); });
     SparseVolume volume = clock_.run("hull", Weights::kHull, [&] { return carve_hull(); });
     for (View& view : views_) view.mask.coverage = {};
     context_->release_deleted();
@@ -101,11 +95,15 @@ class Job {
     clock_.run("colour", Weights::kColour, [&] { colour(mesh); });
     images_.reset();
     context_->release_deleted();
-    clock_.run("files", Weights::kFiles, [&] { write(volume, mesh); });
+    clock_.run("files", Weights::kFiles, [&] { write(volume, mesh, files); });
     context_->release_deleted();
-    clock_.run("preview", Weights::kPreview, [&] { write_preview(mesh); });
+    clock_.run("preview", Weights::kPreview, [&] { write_preview(mesh, files); });
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     finish(volume, mesh, elapsed.count());
+    const std::string report = report_.to_json();
+    files.open("report.json").write(report.data(), report.size());
+    progress_.check_cancelled();
+    files.commit();
     return report_;
   }
 
@@ -206,6 +204,9 @@ class Job {
           "check the cameras (photohull info) or use --method hull");
     if (counts.judged == 0)
       warn("no voxel was seen by enough cameras to be judged: the result is the hull");
+    else if (report_.voxels_undecided >= counts.judged)
+      warn(
+          "the photographs show too little texture to decide on any voxel: the result is the hull");
     return volume;
   }
 
@@ -222,22 +223,22 @@ class Job {
                   " % of the surface is seen by no camera: it is the hull's guess"));
   }
 
-  void write(const SparseVolume& volume, const TriMesh& mesh) {
-    VdbMetadata metadata{{"photohull_options", option_line()}};
-    const fs::path& out = options_.output;
-    write_vdb(out / "volume.vdb", volume, attributes_from_mesh(volume, mesh), metadata);
-    write_ply(out / "mesh.ply", mesh);
-    report_.files = {"volume.vdb", "mesh.ply", "preview.png", "report.json"};
+  void write(const SparseVolume& volume, const TriMesh& mesh, ResultFiles& files) {
+    write_vdb(files.open("volume.vdb"), volume, attributes_from_mesh(volume, mesh),
+              {{"photohull_options", option_line()}});
+    progress_.check_cancelled();
+    write_ply(files.open("mesh.ply"), mesh);
   }
 
-  void write_preview(const TriMesh& mesh) {
+  void write_preview(const TriMesh& mesh, ResultFiles& files) {
     const PreviewImage preview = render_preview(*context_, mesh, views_);
-    io::write_png(options_.output / "preview.png", preview.width, preview.height, 3, preview.rgb);
+    io::write_png(files.open("preview.png"), preview.width, preview.height, 3, preview.rgb);
   }
 
   std::string option_line() const {
     std::string line;
-    for (const auto& [name, value] : report_.options) line += name + "=" + value + " ";
+    for (const auto& [name, value] : report_.options)
+      line += (line.empty() ? "" : " ") + name + "=" + value;
     return line;
   }
 
@@ -253,7 +254,18 @@ class Job {
     report_.wall_seconds = wall_seconds;
     report_.cpu_seconds = process_cpu_seconds();
     report_.peak_memory_bytes = process_peak_memory();
-    write_atomically(options_.output / "report.json", report_.to_json());
+  }
+
+  std::string mask_option() const {
+    switch (options_.load.masks) {
+      case io::MaskSource::kAuto:
+        return "auto";
+      case io::MaskSource::kNone:
+        return "none";
+      case io::MaskSource::kDirectory:
+        break;
+    }
+    return options_.load.mask_directory.string();
   }
 
  public:
@@ -266,6 +278,9 @@ class Job {
     if (options_.resolution) list.emplace_back("resolution", std::to_string(*options_.resolution));
     if (options_.voxel_size) list.emplace_back("voxel_size", number(*options_.voxel_size));
     if (!options_.load.views.empty()) list.emplace_back("views", options_.load.views);
+    list.emplace_back("masks", mask_option());
+    if (options_.load.pixel_center)
+      list.emplace_back("pixel_center", number(*options_.load.pixel_center));
     list.emplace_back("device", options_.device);
     list.emplace_back("threads", std::to_string(options_.threads));
   }
@@ -324,12 +339,17 @@ double footprint_factor(Quality quality) {
 
 void ReconstructOptions::validate() const {
   load.validate();
+  if (output.empty()) throw UsageError("--out is empty: give a folder for the results");
+  const bool index = !device.empty() && device.find_first_not_of("0123456789") == std::string::npos;
+  if (device != "auto" && device != "software" && !index)
+    throw UsageError(concat("--device ", device,
+                            ": expected auto, software or an index of 'photohull devices'"));
   if (resolution && voxel_size)
     throw UsageError("--resolution and --voxel-size exclude each other: give one");
   if (resolution && *resolution < 2)
     throw UsageError(concat("--resolution ", *resolution, ": at least 2"));
   if (voxel_size && !(std::isfinite(*voxel_size) && *voxel_size > 0))
-    throw UsageError("--voxel-size must be finite and positive");
+    throw UsageError(concat("--voxel-size ", *voxel_size, ": must be finite and positive"));
   if (threads < 0) throw UsageError(concat("--threads ", threads, ": 0 (one a core) or more"));
 }
 

@@ -39,9 +39,9 @@ double footprint_factor(Quality quality);
 /// Sum of the weights of the stages that this job will announce to its Progress.
 double total_weight(const ReconstructOptions& options);
 
-/// Runs the job and writes volume.vdb, mesh.ply, preview.png and report.json into the output
-/// folder, each whole or not at all. Throws Error, UsageError or Cancelled; then no half-written
-/// file is left.
+/// Runs the job and puts volume.vdb, mesh.ply, preview.png and report.json into the output folder,
+/// all together at the end. Throws Error, UsageError or Cancelled; earlier results then stay as
+/// they were and no half-written file is left.
 Report reconstruct(const ReconstructOptions& options, Progress& progress);
 
 }  // namespace photohull::pipeline

@@ -48,7 +48,8 @@ std::string Report::to_json() const {
   j["peak_memory_bytes"] = peak_memory_bytes;
   j["warnings"] = warnings;
   j["files"] = files;
-  return j.dump(2) + "\n";
+  // File names need not be UTF-8, JSON must.
+  return j.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
 double process_cpu_seconds() {

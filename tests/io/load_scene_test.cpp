@@ -120,7 +120,7 @@ TEST_F(LoadScene, MasksAreFoundBesideTheImagesFolder) {
 TEST_F(LoadScene, AMaskDirectoryMustServeEveryView) {
   LoadSceneOptions options;
   options.masks = MaskSource::kDirectory;
-  EXPECT_THAT(error_with(options), HasSubstr("mask directory is empty"));
+  EXPECT_THAT(error_with(options), HasSubstr("--masks is empty"));
   options.mask_directory = folder_ / "cut";
   EXPECT_THAT(error_with(options), HasSubstr("no such mask folder"));
   put_image("cut/a.png");

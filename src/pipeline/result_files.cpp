@@ -1,0 +1,31 @@
+#include "pipeline/result_files.h"
+
+#include "core/error.h"
+
+namespace photohull::pipeline {
+namespace fs = std::filesystem;
+
+ResultFiles::ResultFiles(fs::path folder, std::vector<std::string> names)
+    : folder_(std::move(folder)), names_(std::move(names)) {
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  // A file of the folder's name may or may not count as an error.
+  std::error_code ignored;
+  if (error || !fs::is_directory(folder_, ignored))
+    throw Error(
+        concat("--out ", folder_.string(), ": cannot make this folder (",
+               fs::exists(folder_, ignored) ? "a file of that name exists" : error.message(),
+               "); choose another one"));
+  for (const std::string& name : names_) AtomicFile probe(folder_ / name);
+}
+
+AtomicFile& ResultFiles::open(const std::string& name) {
+  return files_.emplace_back(folder_ / name);
+}
+
+void ResultFiles::commit() {
+  for (AtomicFile& file : files_) file.commit();
+  files_.clear();
+}
+
+}  // namespace photohull::pipeline
