@@ -89,7 +89,8 @@ void print_json(const pipeline::Inspection& info) {
     j["cpu_seconds"] = info.cpu_seconds;
   }
   j["warnings"] = info.warnings;
-  std::printf("%s\n", j.dump(2).c_str());
+  std::printf("%s\n",
+              j.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "commands.h"
 #include "core/error.h"
@@ -12,9 +13,11 @@ namespace {
 
 struct Arguments {
   SceneArguments scene;
-  std::string out, quality = "normal", method, device = "auto";
-  int resolution = 0, threads = 0;
-  double voxel_size = 0;
+  std::string out, quality = "normal", device = "auto";
+  std::optional<std::string> method;
+  std::optional<int> resolution;
+  std::optional<double> voxel_size;
+  int threads = 0;
   bool json = false;
 };
 
@@ -28,7 +31,7 @@ Enum parse(const std::string& option, const std::string& text, std::initializer_
   throw UsageError(option + " " + text + ": expected one of " + legal);
 }
 
-pipeline::ReconstructOptions to_options(const Arguments& a, const CLI::App& command) {
+pipeline::ReconstructOptions to_options(const Arguments& a) {
   using pipeline::Method;
   using pipeline::Quality;
   pipeline::ReconstructOptions o;
@@ -36,11 +39,11 @@ pipeline::ReconstructOptions to_options(const Arguments& a, const CLI::App& comm
   o.output = a.out;
   o.load = a.scene.options();
   o.quality = parse("--quality", a.quality, {Quality::kDraft, Quality::kNormal, Quality::kHigh});
-  if (!a.method.empty())
-    o.method =
-        parse("--method", a.method, {Method::kHull, Method::kVoxelColoring, Method::kSpaceCarving});
-  if (command.count("--resolution")) o.resolution = a.resolution;
-  if (command.count("--voxel-size")) o.voxel_size = a.voxel_size;
+  if (a.method)
+    o.method = parse("--method", *a.method,
+                     {Method::kHull, Method::kVoxelColoring, Method::kSpaceCarving});
+  o.resolution = a.resolution;
+  o.voxel_size = a.voxel_size;
   o.device = a.device;
   o.threads = a.threads;
   o.validate();
@@ -61,8 +64,8 @@ void print_summary(const pipeline::Report& report, const std::string& out) {
   for (const std::string& file : report.files) std::printf("  %s/%s\n", out.c_str(), file.c_str());
 }
 
-void run(const Arguments& a, const CLI::App& command) {
-  const pipeline::ReconstructOptions options = to_options(a, command);
+void run(const Arguments& a) {
+  const pipeline::ReconstructOptions options = to_options(a);
   TerminalProgress progress(pipeline::total_weight(options));
   const pipeline::Report report = pipeline::reconstruct(options, progress);
   progress.finish();
@@ -99,7 +102,7 @@ void add_reconstruct(CLI::App& app) {
       "  photohull reconstruct scan --out out/scan --resolution 512 --method hull\n"
       "  photohull reconstruct colmap/sparse/0 --out out/plant --box \"-1 -1 0 1 1 2\"\n"
       "  photohull reconstruct transforms.json --out out/x --masks my_masks --views 0-23 --json");
-  c->callback([a, c] { run(*a, *c); });
+  c->callback([a] { run(*a); });
 }
 
 }  // namespace photohull::cli

@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string>
 
 #include "commands.h"
 #include "core/error.h"
@@ -18,10 +20,17 @@ extern "C" void on_interrupt(int signal) {
   photohull::request_cancellation();
 }
 
+/// The parser's message as one sentence.
+std::string one_line(std::string message) {
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  while (!message.empty() && (message.back() == ' ' || message.back() == '.')) message.pop_back();
+  return message + "; see --help";
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"photohull turns calibrated photographs into a volume and a mesh by carving space."};
   app.set_version_flag("--version", "photohull " PHOTOHULL_VERSION);
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);
   app.footer(
       "Examples:\n"
       "  photohull info datasets/templeSparseRing\n"
@@ -33,10 +42,15 @@ int run(int argc, char** argv) {
   photohull::cli::add_devices(app);
   try {
     app.parse(argc, argv);
+    if (app.get_subcommands().empty())
+      throw photohull::UsageError("a command is missing: reconstruct, info or devices; see --help");
   } catch (const CLI::ParseError& e) {
-    const int code = app.exit(e);
-    return code == 0 ? 0 : int(photohull::ExitCode::kUsage);
+    if (e.get_exit_code() != 0) throw photohull::UsageError(one_line(e.what()));
+    app.exit(e);  // prints the help or the version
   }
+  // A full disk or a closed pipe behind standard output is a failure too.
+  if (std::fflush(stdout) != 0 || std::ferror(stdout))
+    throw photohull::Error("standard output could not be written in full");
   return 0;
 }
 

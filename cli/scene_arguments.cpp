@@ -49,10 +49,12 @@ void SceneArguments::add_to(CLI::App& command) {
 
 io::LoadSceneOptions SceneArguments::options() const {
   io::LoadSceneOptions out;
-  if (!format.empty()) out.format = parse_format(format);
-  if (pixel_center != -1) out.pixel_center = pixel_center;
-  if (!box.empty()) out.box = parse_box(box);
-  out.views = views;
+  if (scene.empty()) throw UsageError("SCENE is empty: give the folder or file of the scene");
+  if (format) out.format = parse_format(*format);
+  out.pixel_center = pixel_center;
+  if (box) out.box = parse_box(*box);
+  if (views && views->empty()) throw UsageError("--views is empty: write e.g. 0-10,15");
+  out.views = views.value_or("");
   if (masks == "none") {
     out.masks = io::MaskSource::kNone;
   } else if (masks != "auto") {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 
 #include "io/load_scene.h"
@@ -9,8 +10,9 @@
 namespace photohull::cli {
 
 struct SceneArguments {
-  std::string scene, format, box, masks = "auto", views;
-  double pixel_center = -1;
+  std::string scene, masks = "auto";
+  std::optional<std::string> format, box, views;
+  std::optional<double> pixel_center;
 
   void add_to(CLI::App& command);
   /// Throws UsageError for values that are not understood.
