@@ -114,5 +114,6 @@ void main() {
   }
   if (partly_seen < parameters.counts.w) outside = true;
   if (wholly_seen < parameters.counts.w) inside = false;
-  classes[id] = outside ? kNodeOutside : inside ? kNodeInside : kNodeSurface;
+  classes[id] = (outside ? kNodeOutside : inside ? kNodeInside : kNodeSurface) |
+                (wholly_seen < parameters.counts.w ? kNodeUnsure : 0u);
 }

@@ -10,7 +10,7 @@
 
 layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform Parameters { HullParameters parameters; };
-layout(std430, binding = 1) readonly buffer Bricks { ivec4 bricks[]; };
+layout(std430, binding = 1) readonly buffer Bricks { ivec4 bricks[]; };  // w: not surely seen
 layout(std430, binding = 2) writeonly buffer Distances { float distances[]; };
 // Where each brick's list of views begins in this buffer (one more for the end), then the lists.
 layout(std430, binding = 3) readonly buffer Relevant { uint first_and_views[]; };
@@ -81,9 +81,9 @@ void main() {
         value[j] = max(value[j], view_distance(v, view, project(view, base + vec3(j >> 2, (j >> 1) & 1, j & 1))));
     }
   }
-  // Without silhouettes a point must be on the images of enough cameras.
+  // A point must be on the images of enough cameras; only where that is in doubt are they counted.
   int seen[8] = int[8](0, 0, 0, 0, 0, 0, 0, 0);
-  int counted = parameters.counts.w > 1 ? parameters.counts.y : 0;
+  int counted = bricks[brick].w != 0 ? parameters.counts.y : 0;
   for (int v = 0; v < counted; ++v)
     for (int j = 0; j < 8; ++j) {
       vec3 p = project(views[v], base + vec3(j >> 2, (j >> 1) & 1, j & 1));

@@ -19,7 +19,8 @@ const int kViews = kMaxLayerViews;
 const int kPairs = kViews * (kViews - 1) / 2;
 const int kPatchEdge = 2 * kPatchRadius + 1;
 const float kTaps = float(kPatchEdge * kPatchEdge);
-const float kOutlierShare = 0.5;  // views whose agreement is below this share of the best are dropped
+const float kOutlierShare = 0.5;  // views whose agreement is below this share of the best are dropped,
+const float kOutlierSlack = 0.1;  // but none that is this close to it
 
 void main() {
   uint index = gl_GlobalInvocationID.x + uint(parameters.chunk.z);
@@ -83,9 +84,10 @@ void main() {
     }
   float best = -1e30;
   for (int i = 0; i < kViews; ++i) best = seen[i] ? max(best, agreement[i]) : best;
+  float least = best - max((1.0 - kOutlierShare) * best, kOutlierSlack);
   int used = 0;
   for (int i = 0; i < kViews; ++i) {
-    seen[i] = seen[i] && agreement[i] >= kOutlierShare * best;
+    seen[i] = seen[i] && agreement[i] >= least;
     used += seen[i] ? 1 : 0;
   }
   float score = 0.0;

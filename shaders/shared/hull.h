@@ -15,6 +15,8 @@ using glm::vec4;
 constexpr uint kNodeOutside = 0u;
 constexpr uint kNodeInside = 1u;
 constexpr uint kNodeSurface = 2u;
+constexpr uint kNodeKindMask = 3u;
+constexpr uint kNodeUnsure = 4u;  // flag: fewer views show all of the node than must see a point
 
 struct HullParameters {
   vec4 box_min;   // region of interest in voxel coordinates (w unused)

@@ -15,15 +15,15 @@ namespace photohull::carving {
 double pixel_footprint(const Box& box, std::span<const Camera> cameras);
 
 /// A lattice over the box, grown by a margin of `kMargin` voxels on each side.
-/// Throws UsageError for a voxel size that is not finite and positive, and Error when the lattice
-/// would need more than `max_bricks` bricks (the message says how much memory that is).
+/// Throws UsageError for a voxel size that is not finite and positive, and Error when the lattice's
+/// index alone would take more than 256 MiB (the message says how much).
 GridSpec fit_grid(const Box& box, double voxel_size);
 
 /// Voxel size for an effective resolution of `resolution`^3: the box's longest side has that many.
 double voxel_size_for(const Box& box, int resolution);
 
 /// Bytes that a reconstruction on this grid is expected to take at its peak, images not counted:
-/// the brick table, and bricks, bits and mesh of a surface of `kSurfaceFactor` box-face areas.
+/// the brick table, and bricks, mesh and files of a surface as large as the box's faces.
 std::int64_t estimate_memory(const GridSpec& grid);
 
 }  // namespace photohull::carving

@@ -31,6 +31,17 @@ struct DeviceSilhouettes {
   int levels = 0;
 };
 
+/// Repeats the border beyond the image: samples half a pixel outside must not meet foreign values.
+void pad_distances(const SilhouetteDistance* d, const glm::ivec2& size, std::vector<float>& out) {
+  out.assign(std::size_t(size.x) * size.y, -SilhouetteDistance::kNoContour);
+  for (int y = 0; d && y < size.y; ++y) {
+    const float* row = &d->pixels[std::size_t(std::min(y, d->height - 1)) * d->width];
+    float* target = &out[std::size_t(y) * size.x];
+    std::copy(row, row + d->width, target);
+    std::fill(target + d->width, target + size.x, row[d->width - 1]);
+  }
+}
+
 DeviceSilhouettes upload(const GridSpec& grid, std::span<const Camera> cameras,
                          std::span<const Silhouette> silhouettes) {
   const glm::ivec2 size = projtex::array_size(cameras);
@@ -56,13 +67,9 @@ DeviceSilhouettes upload(const GridSpec& grid, std::span<const Camera> cameras,
       out.pyramid.upload(int(i), std::max(pyramid.width >> level, 1),
                          std::max(pyramid.height >> level, 1), pyramid.levels[level].data(), level);
     const SilhouetteDistance* d = silhouettes[i].distance;
-    if (d) {
-      PHOTOHULL_CHECK(d->width == k.width && d->height == k.height);
-      out.distances.upload(int(i), d->width, d->height, d->pixels.data());
-    } else {
-      padded.assign(std::size_t(k.width) * k.height, -SilhouetteDistance::kNoContour);
-      out.distances.upload(int(i), k.width, k.height, padded.data());
-    }
+    PHOTOHULL_CHECK(!d || (d->width == k.width && d->height == k.height));
+    pad_distances(d, size, padded);
+    out.distances.upload(int(i), size.x, size.y, padded.data());
     views.push_back(projtex::to_gpu_view(projtex::to_grid(cameras[i], grid), size));
   }
   out.views = Buffer::of(views);
@@ -72,6 +79,7 @@ DeviceSilhouettes upload(const GridSpec& grid, std::span<const Camera> cameras,
 struct Classified {
   std::vector<ivec4> surface;           ///< nodes to split or, at level 0, bricks to evaluate
   std::vector<std::uint32_t> relevant;  ///< view bit sets of `surface`
+  std::vector<std::uint8_t> unsure;     ///< of `surface`: too few views show all of it
   std::vector<ivec4> inside;
 };
 
@@ -124,8 +132,10 @@ class HullCarver {
     const auto bits = relevant.download<std::uint32_t>(nodes.size() * words_);
     Classified out;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-      if (kinds[i] == shaders::kNodeInside) out.inside.push_back(nodes[i]);
-      if (kinds[i] != shaders::kNodeSurface) continue;
+      const std::uint32_t kind = kinds[i] & shaders::kNodeKindMask;
+      if (kind == shaders::kNodeInside) out.inside.push_back(nodes[i]);
+      if (kind != shaders::kNodeSurface) continue;
+      out.unsure.push_back((kinds[i] & shaders::kNodeUnsure) != 0);
       out.surface.push_back(nodes[i]);
       out.relevant.insert(out.relevant.end(), bits.begin() + long(i * words_),
                           bits.begin() + long((i + 1) * words_));
@@ -163,7 +173,10 @@ class HullCarver {
 
   /// Distances of the bricks [first, first + count) of the last level.
   std::vector<float> evaluate(const Classified& leaves, std::size_t first, std::size_t count) {
-    Buffer bricks(count * sizeof(ivec4), &leaves.surface[first]);
+    std::vector<ivec4> flagged(leaves.surface.begin() + long(first),
+                               leaves.surface.begin() + long(first + count));
+    for (std::size_t i = 0; i < count; ++i) flagged[i].w = leaves.unsure[first + i];
+    Buffer bricks = Buffer::of(flagged);
     Buffer relevant = Buffer::of(view_lists(leaves, first, count));
     Buffer distances(count * kBrickVoxels * 4);
     parameters_.counts.x = int(count);

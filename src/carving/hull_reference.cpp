@@ -167,7 +167,7 @@ double hull_distance(const GridSpec& grid, const Box& box, std::span<const Camer
         cameras[v].to_camera(world).z / std::sqrt(std::abs(k.fx * k.fy)) / grid.voxel_size;
     value = std::max(value, bilinear_distance(silhouettes[v], *pixel) * voxels_per_pixel);
   }
-  if (options.min_views > 1 && seen < options.min_views) return band;
+  if (seen < options.min_views) return band;
   return std::clamp(value, -band, band);
 }
 

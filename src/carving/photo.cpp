@@ -156,8 +156,8 @@ class Sweeper {
     for (brick[v] = 0; brick[v] < grid[v]; ++brick[v])
       for (brick[u] = 0; brick[u] < grid[u]; ++brick[u]) {
         const std::size_t index = bits_.grid.brick_index(brick);
-        if (active[index] && bits_.table[index] != SparseVolume::kOutside)
-          items.push_back(choose_views(brick));
+        // An open path may lead through empty bricks.
+        if (active[index]) items.push_back(choose_views(brick));
       }
     return items;
   }

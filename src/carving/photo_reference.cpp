@@ -7,6 +7,7 @@ namespace photohull::carving::reference {
 namespace {
 
 constexpr double kOutlierShare = 0.5;
+constexpr double kOutlierSlack = 0.1;
 constexpr int kPeakLayers = 2;
 
 glm::dvec3 mean_of(const Patch& patch) {
@@ -41,7 +42,8 @@ Consistency photo_consistency(std::span<const Patch> patches, double noise_varia
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < n; ++j)
       if (i != j) agreement[i] += correlation(patches[i], patches[j], noise_variance);
-  const double least = kOutlierShare * *std::max_element(agreement.begin(), agreement.end());
+  const double best = *std::max_element(agreement.begin(), agreement.end());
+  const double least = best - std::max((1 - kOutlierShare) * best, kOutlierSlack);
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < n; ++i) {
     if (agreement[i] >= least) kept.push_back(i);

@@ -165,5 +165,23 @@ TEST_F(CarveSilhouette, TwoRunsGiveTheSameBytes) {
   EXPECT_EQ(a.distance, b.distance);
 }
 
+TEST_F(CarveSilhouette, SmallImagesAreNotMixedWithThePaddingOfLargeOnes) {
+  HullScene scene = scene_around(40, 3, 150, 64, 64);
+  scene.outlines.resize(3);
+  scene.cameras.push_back(test::look_at(kCentre + glm::dvec3(0, 5, 1), kCentre, 120, 160, 120));
+  scene.outlines.push_back(test::sphere_outline(scene.cameras.back(), kCentre, kRadius));
+  // Silhouettes that the image border cuts: their distance is not zero there.
+  for (int i = 0; i < 3; ++i)
+    scene.outlines[i] = test::rasterise(64, 64, [](const glm::dvec2& p) { return 30.5 - p.y; });
+  expect_equals_dense(carve(scene), scene);
+}
+
+TEST_F(CarveSilhouette, PointsThatNoImageShowsAreJudgedAlikeAtEveryLevel) {
+  HullScene scene = scene_around(40, 3, 500);  // the images show the middle of the box
+  scene.outlines.resize(3);
+  scene.options.min_views = 1;
+  expect_equals_dense(carve(scene), scene);
+}
+
 }  // namespace
 }  // namespace photohull::carving

@@ -76,7 +76,9 @@ std::vector<std::uint32_t> HullKernels::classify(const std::vector<glm::ivec4>& 
   distance_maps_.bind(1);
   gpu::Program::compute("carving_classify_nodes.comp.glsl")
       .dispatch(context_, "carving_classify_nodes", gpu::group_count(nodes.size(), 64));
-  return classes.download<std::uint32_t>(nodes.size());
+  std::vector<std::uint32_t> kinds = classes.download<std::uint32_t>(nodes.size());
+  for (std::uint32_t& kind : kinds) kind &= shaders::kNodeKindMask;
+  return kinds;
 }
 
 std::vector<float> HullKernels::distances(const std::vector<glm::ivec4>& bricks) {
@@ -87,7 +89,10 @@ std::vector<float> HullKernels::distances(const std::vector<glm::ivec4>& bricks)
     std::iota(lists.begin() + lists[i], lists.begin() + lists[i] + long(views), 0u);
   parameters_.counts.x = int(count);
   const gpu::Buffer parameters(sizeof parameters_, &parameters_);
-  const gpu::Buffer brick_buffer = gpu::Buffer::of(bricks), list_buffer = gpu::Buffer::of(lists);
+  // Every brick is treated as one that too few views may see.
+  std::vector<glm::ivec4> unsure = bricks;
+  for (glm::ivec4& brick : unsure) brick.w = 1;
+  const gpu::Buffer brick_buffer = gpu::Buffer::of(unsure), list_buffer = gpu::Buffer::of(lists);
   const gpu::Buffer out(count * kBrickVoxels * 4);
   parameters.bind_uniform(0);
   views_.bind_storage(0);
