@@ -1,0 +1,81 @@
+// Masks and photographs from which nothing can be carved.
+#include <nlohmann/json.hpp>
+
+#include "io/image_file.h"
+#include "sphere_scene.h"
+#include "support/ray_cast.h"
+
+namespace photohull::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class BadMasks : public SphereScene {
+ protected:
+  /// The folder's masks fail and the message names these.
+  void refuse(const std::string& masks, const std::vector<std::string>& parts) const {
+    fail(1, reconstruct({"--masks", path(masks)}), parts);
+  }
+  /// All photographs replaced by uniform ones of this colour and opacity.
+  void paint_images(std::uint8_t value, std::uint8_t alpha) const {
+    std::vector<std::uint8_t> pixels;
+    for (int i = 0; i < kWidth * kHeight; ++i)
+      pixels.insert(pixels.end(), {value, value, value, alpha});
+    for (int i = 0; i < kViews; ++i) io::write_png(image(i), kWidth, kHeight, 4, pixels);
+  }
+};
+
+TEST_F(BadMasks, AllBlack) {
+  write_masks("black", 0, 0);
+  refuse("black", {"all masks are empty", "white must be the object"});
+}
+
+TEST_F(BadMasks, Inverted) {
+  write_masks("inverted", 0, 255);
+  refuse("inverted", {"masks look inverted", "16 of 16"});
+}
+
+TEST_F(BadMasks, NotThereOrNotMasks) {
+  refuse("nowhere", {path("nowhere"), "no such mask folder"});
+  fs::remove(mask_file(2));
+  refuse("cutouts", {path("cutouts"), "no mask for view2.png"});
+  write_bytes(mask_file(2), "no picture");
+  refuse("cutouts", {mask_file(2)});
+  const std::vector<std::uint8_t> small(10 * 10, 255);
+  io::write_png(mask_file(2), 10, 10, 1, small);
+  refuse("cutouts", {mask_file(2), "10 x 10", "96 x 72"});
+}
+
+TEST_F(BadMasks, ThatCarveEverythingAwayNameTheViews) {
+  // A speck in one corner of two views, where the object is not.
+  std::vector<std::uint8_t> speck(kWidth * kHeight, 0);
+  for (int y = 0; y < 6; ++y) std::fill_n(speck.begin() + y * kWidth, 6, 255);
+  for (const int view : {3, 7}) io::write_png(mask_file(view), kWidth, kHeight, 1, speck);
+  refuse("cutouts",
+         {"nothing is left of the box", "view3.png removes", "view7.png removes", "masks"});
+}
+
+TEST_F(BadMasks, OneEmptyMaskIsNamed) {
+  const std::vector<std::uint8_t> black(kWidth * kHeight, 0);
+  io::write_png(mask_file(5), kWidth, kHeight, 1, black);
+  const Finished run = fail(1, reconstruct(), {"nothing is left of the box", "view5.png removes"});
+  EXPECT_THAT(run.err, HasSubstr("warning: view5.png: the mask is empty"));
+}
+
+TEST_F(BadMasks, UniformPhotographsGiveTheHullAndAWarning) {
+  paint_images(90, 255);
+  const Finished run = succeed(reconstruct());
+  const auto report = nlohmann::json::parse(read_bytes(path("out/report.json")));
+  EXPECT_EQ(report["photo"]["voxels_carved"], 0);
+  EXPECT_THAT(run.err, HasSubstr("warning: the photographs show too little texture"));
+}
+
+TEST_F(BadMasks, TransparentPhotographsCountAsUnmasked) {
+  paint_images(0, 0);
+  const Finished run = succeed(reconstruct({"--masks", "auto", "--method", "hull"}));
+  EXPECT_THAT(run.err, HasSubstr("warning: without masks the hull is the box"));
+}
+
+}  // namespace
+}  // namespace photohull::test

@@ -1,0 +1,106 @@
+// Where results cannot be put, runs that are stopped, and what the terminal shows meanwhile.
+#include <sys/mount.h>
+
+#include <csignal>
+
+#include "sphere_scene.h"
+
+namespace photohull::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::AnyOf;
+using testing::ContainsRegex;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+class Output : public SphereScene {
+ protected:
+  /// Results of an earlier run that a failing one must not touch.
+  void put_earlier_results() const {
+    fs::create_directories(out());
+    for (const char* name : {"mesh.ply", "preview.png", "report.json", "volume.vdb"})
+      write_bytes(fs::path(out()) / name, "earlier");
+  }
+  void expect_earlier_results() const {
+    for (const char* name : {"mesh.ply", "preview.png", "report.json", "volume.vdb"})
+      EXPECT_EQ(read_bytes(fs::path(out()) / name), "earlier") << name;
+    EXPECT_EQ(listing(out()).size(), 4u);
+  }
+  /// A job of several seconds.
+  Arguments long_job() const { return reconstruct({"--resolution", "160"}); }
+};
+
+TEST_F(Output, FolderThatCannotBeMade) {
+  write_bytes(path("file"), "x");
+  for (const char* name : {"file", "file/below"})
+    fail(1, {"reconstruct", scene(), "--out", path(name)}, {"--out " + path(name), "cannot make"});
+  EXPECT_EQ(read_bytes(path("file")), "x");
+  fail(1, {"reconstruct", scene(), "--out", "/proc/photohull"}, {"--out /proc/photohull"});
+  fs::create_directories(path("out/mesh.ply"));
+  fail(1, reconstruct(), {path("out/mesh.ply"), "folder"});
+}
+
+TEST_F(Output, FileSizeLimitLeavesEarlierResults) {
+  put_earlier_results();
+  for (const rlim_t limit : {0, 1000, 100000}) {
+    RunOptions limited;
+    limited.file_size_limit = limit;
+    fail(1, reconstruct({"--method", "hull"}), {"cannot write", out(), "too large"}, limited);
+    expect_earlier_results();
+  }
+}
+
+TEST_F(Output, FullDiskLeavesEarlierResults) {
+  fs::create_directories(out());
+  if (::mount("tmpfs", out().c_str(), "tmpfs", 0, "size=200k") != 0)
+    GTEST_SKIP() << "this needs the right to mount a small file system";
+  put_earlier_results();
+  fail(1, reconstruct({"--method", "hull"}), {"cannot write", out(), "No space left", "free some"});
+  expect_earlier_results();
+  ::umount(out().c_str());
+}
+
+TEST_F(Output, SignalsStopTheJobAndLeaveEarlierResults) {
+  put_earlier_results();
+  for (const int signal : {SIGINT, SIGTERM}) {
+    RunOptions stopped;
+    stopped.signal = signal;
+    stopped.signal_after = " photo\n";
+    stopped.timeout_seconds = 60;
+    const Finished run = fail(130, long_job(), {"cancelled"}, stopped);
+    EXPECT_THAT(run.err, Not(HasSubstr(" mesh\n")));
+    expect_earlier_results();
+  }
+}
+
+TEST_F(Output, PlainLinesWithoutATerminal) {
+  const Finished run = succeed(reconstruct({"--method", "hull"}));
+  EXPECT_THAT(run.err, AllOf(Not(HasSubstr("\033")), Not(HasSubstr("\r"))));
+  for (const std::string& line : run.error_lines())
+    EXPECT_THAT(line, AnyOf(ContainsRegex("^\\[ *[0-9.]+ s\\] [a-z]+$"), StartsWith("warning: ")));
+  EXPECT_THAT(run.err, HasSubstr("] hull\n"));
+}
+
+TEST_F(Output, ABarOnATerminal) {
+  RunOptions terminal;
+  terminal.error_terminal = true;
+  const Finished run = succeed(reconstruct({"--resolution", "96", "--json"}), terminal);
+  EXPECT_THAT(run.out, StartsWith("{"));
+  EXPECT_THAT(run.err, ContainsRegex("\\[#*\\.*\\] +[0-9]+ % photo, [0-9]+ s left"));
+  EXPECT_THAT(run.err, testing::EndsWith("\r\033[K"));  // the line is given back clean
+}
+
+TEST_F(Output, AnErrorOnATerminalStandsOnALineOfItsOwn) {
+  fs::remove(image(2));
+  RunOptions terminal;
+  terminal.error_terminal = true;
+  const Finished run = run_photohull(reconstruct(), terminal);
+  EXPECT_EQ(run.code, 1);
+  EXPECT_THAT(run.err, HasSubstr("\r\033[Kphotohull: "));
+}
+
+}  // namespace
+}  // namespace photohull::test

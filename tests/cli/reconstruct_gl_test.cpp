@@ -1,0 +1,159 @@
+// Reconstructions that work: what is written, and what the options do to it.
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "sphere_scene.h"
+#include "volume/analytic_volumes.h"
+#include "volume/write_mesh.h"
+#include "volume/write_vdb.h"
+
+namespace photohull::test {
+namespace {
+
+using nlohmann::json;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class Reconstruct : public SphereScene {
+ protected:
+  TriMesh mesh() const { return read_ply(path("out/mesh.ply")); }
+  json report() const { return json::parse(read_bytes(path("out/report.json"))); }
+};
+
+TEST_F(Reconstruct, WritesFourFilesWithAClosedMeshOfTheSphere) {
+  const Finished run = succeed(reconstruct());
+  EXPECT_THAT(listing(out()), ElementsAre("mesh.ply", "preview.png", "report.json", "volume.vdb"));
+  for (const char* name : {"mesh.ply", "preview.png", "report.json", "volume.vdb"})
+    EXPECT_THAT(run.out, HasSubstr(path(std::string("out/") + name)));
+  const TriMesh sphere = mesh();
+  EXPECT_EQ(open_edges(sphere), 0u);
+  EXPECT_NEAR(signed_volume(sphere), kSphereVolume, 0.06 * kSphereVolume);
+  EXPECT_EQ(sphere.normals.size(), sphere.positions.size());
+  EXPECT_EQ(sphere.colours.size(), sphere.positions.size());
+  const SparseVolume volume = read_vdb_surface(path("out/volume.vdb"));
+  const double voxel = std::pow(volume.grid.voxel_size, 3);
+  EXPECT_NEAR(double(volume.inside_voxels()) * voxel, signed_volume(sphere), 0.03 * kSphereVolume);
+}
+
+TEST_F(Reconstruct, ReportHasTheDocumentedFields) {
+  const Finished run = succeed(reconstruct({"--json"}));
+  EXPECT_EQ(run.out, read_bytes(path("out/report.json")));
+  const json r = report();
+  const json schema = json::parse(R"({
+    "photohull": "", "device": "", "noise_sigma": 0.1, "voxels_kept": 1, "wall_seconds": 0.1,
+    "cpu_seconds": 0.1, "peak_memory_bytes": 1, "warnings": [], "files": [], "stages": [],
+    "options": {}, "scene": {"path": "", "format": "", "views": 1},
+    "box": {"min": [], "max": [], "source": ""}, "masks": {"source": "", "confidence": 0.1},
+    "grid": {"origin": [], "voxel_size": 0.1, "voxels": [], "bricks_stored": 1},
+    "hull": {"nodes_tested": 1, "bricks_evaluated": 1},
+    "photo": {"sweeps": 1, "voxels_judged": 1, "voxels_carved": 1, "voxels_undecided": 1},
+    "mesh": {"vertices": 1, "triangles": 1, "unseen_share": 0.1}})");
+  const json fields = schema.flatten();
+  for (const auto& [key, value] : fields.items()) {
+    const json::json_pointer pointer(key);
+    ASSERT_TRUE(r.contains(pointer)) << key;
+    EXPECT_EQ(r[pointer].is_number(), value.is_number()) << key;
+    EXPECT_EQ(r[pointer].is_string(), value.is_string()) << key;
+    EXPECT_TRUE(!value.is_number_integer() || r[pointer].is_number_integer()) << key;
+  }
+  // Nothing stands in the report that is not documented.
+  for (const auto& [key, value] : r.items()) EXPECT_TRUE(schema.contains(key)) << key;
+  EXPECT_EQ(r["scene"]["format"], "middlebury");
+  EXPECT_EQ(r["scene"]["views"], kViews);
+  EXPECT_EQ(r["box"]["source"], "bbox.txt");
+  EXPECT_EQ(r["masks"]["source"], "mask files");
+  EXPECT_EQ(r["options"]["resolution"], "32");
+  EXPECT_EQ(r["mesh"]["triangles"], mesh().triangles.size());
+  std::vector<std::string> stages;
+  for (const json& stage : r["stages"]) stages.push_back(stage["name"]);
+  EXPECT_THAT(stages, ElementsAre("scene", "device", "views", "hull", "images", "photo", "clean",
+                                  "mesh", "colour", "files", "preview"));
+}
+
+#ifdef VDB_PRINT
+TEST_F(Reconstruct, VolumeIsReadableByOpenVdbsOwnTool) {
+  succeed(reconstruct({"--method", "hull"}));
+  const Finished print = run_program({VDB_PRINT, "-l", path("out/volume.vdb")});
+  EXPECT_EQ(print.code, 0) << print.err;
+  for (const char* text : {"surface", "Cd", "confidence", "level set", "photohull_version"})
+    EXPECT_THAT(print.out, HasSubstr(text));
+}
+#endif
+
+TEST_F(Reconstruct, MethodsDifferAsTheyShould) {
+  double volumes[3] = {};
+  int sweeps[3] = {};
+  int i = 0;
+  for (const char* method : {"hull", "voxel-coloring", "space-carving"}) {
+    succeed(reconstruct({"--method", method}));
+    volumes[i] = signed_volume(mesh());
+    sweeps[i++] = report()["photo"]["sweeps"];
+    EXPECT_EQ(report()["options"]["method"], method);
+  }
+  EXPECT_LE(volumes[2], volumes[0] * 1.001);
+  EXPECT_LE(volumes[1], volumes[0] * 1.001);
+  EXPECT_THAT(sweeps, ElementsAre(0, 1, testing::Ge(6)));
+}
+
+TEST_F(Reconstruct, DraftTakesLargerVoxelsAndOnlyTheHull) {
+  succeed(reconstruct({"--quality", "draft"}));
+  const double draft = report()["grid"]["voxel_size"];
+  EXPECT_EQ(report()["options"]["method"], "hull");
+  succeed(reconstruct({"--quality", "normal", "--method", "hull"}));
+  EXPECT_GT(draft, 2 * report()["grid"]["voxel_size"].get<double>());
+}
+
+TEST_F(Reconstruct, MasksMayBeFoundOrLeftOut) {
+  const Finished none = succeed(reconstruct({"--masks", "none", "--method", "hull"}));
+  EXPECT_EQ(report()["masks"]["source"], "none");
+  EXPECT_THAT(none.err, HasSubstr("warning: without masks the hull is the box"));
+  EXPECT_GT(signed_volume(mesh()), 1.5 * kSphereVolume);
+  succeed(reconstruct({"--masks", "auto", "--method", "hull"}));
+  EXPECT_EQ(report()["masks"]["source"], "background model");
+  EXPECT_NEAR(signed_volume(mesh()), 1.05 * kSphereVolume, 0.15 * kSphereVolume);
+  EXPECT_EQ(open_edges(mesh()), 0u);
+}
+
+TEST_F(Reconstruct, WithoutMasksColoursCarve) {
+  succeed(reconstruct({"--masks", "none"}));
+  EXPECT_GT(report()["photo"]["voxels_carved"], 100);
+  EXPECT_EQ(open_edges(mesh()), 0u);
+}
+
+TEST_F(Reconstruct, ViewsAndBoxSelect) {
+  succeed(reconstruct(
+      {"--method", "hull", "--views", "0-4,view6*", "--box", "0.1 -1.2 -0.7 1.1 0.8 1.3"}));
+  EXPECT_EQ(report()["scene"]["views"], 6);
+  EXPECT_EQ(report()["options"]["views"], "0-4,view6*");
+  EXPECT_EQ(report()["box"]["source"], "--box");
+  // The plane x = 0.1 halves the sphere; half a voxel of slack on the cut.
+  EXPECT_NEAR(signed_volume(mesh()), 0.5 * kSphereVolume, 0.12 * kSphereVolume);
+  EXPECT_EQ(open_edges(mesh()), 0u);
+}
+
+TEST_F(Reconstruct, VoxelSizeIsTaken) {
+  succeed(reconstruct({"--method", "hull", "--voxel-size", "0.08"}));
+  EXPECT_DOUBLE_EQ(report()["grid"]["voxel_size"], 0.08);
+}
+
+TEST_F(Reconstruct, SameBytesInEveryRunWhateverTheThreads) {
+  succeed(reconstruct({"--threads", "1"}));
+  const std::string mesh = read_bytes(path("out/mesh.ply"));
+  succeed(reconstruct({"--threads", "2"}));
+  EXPECT_TRUE(mesh == read_bytes(path("out/mesh.ply")));
+  const std::string volume = read_bytes(path("out/volume.vdb"));
+  succeed(reconstruct({"--threads", "2"}));
+  EXPECT_TRUE(mesh == read_bytes(path("out/mesh.ply")));
+  EXPECT_TRUE(volume == read_bytes(path("out/volume.vdb")));
+}
+
+TEST_F(Reconstruct, MakesTheOutputFolderAndReplacesEarlierResults) {
+  succeed({"reconstruct", scene(), "--out", path("a/b/c"), "--quality", "draft"});
+  EXPECT_EQ(listing(path("a/b/c")).size(), 4u);
+}
+
+}  // namespace
+}  // namespace photohull::test

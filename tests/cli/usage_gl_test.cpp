@@ -1,0 +1,131 @@
+// The command line itself: help, info, devices, and everything that is wrong usage.
+#include <nlohmann/json.hpp>
+
+#include "sphere_scene.h"
+
+namespace photohull::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class Usage : public SphereScene {
+ protected:
+  /// Adds these options to a right command and expects exit code 2.
+  void refuse(const Arguments& more, const std::vector<std::string>& parts) const {
+    fail(2, reconstruct(more), parts);
+  }
+};
+
+TEST_F(Usage, HelpShowsExamples) {
+  EXPECT_THAT(succeed({"--help"}).out, HasSubstr("Examples:"));
+  for (const char* command : {"reconstruct", "info", "devices"}) {
+    const Finished help = succeed({command, "--help"});
+    EXPECT_THAT(help.out, HasSubstr("Examples:\n  photohull "));
+    EXPECT_EQ(help.err, "");
+  }
+  EXPECT_THAT(succeed({"--version"}).out, StartsWith("photohull "));
+}
+
+TEST_F(Usage, InfoTellsWhatWasUnderstood) {
+  const std::string text = succeed({"info", scene()}).out;
+  for (const char* part :
+       {"16 (middlebury format)", "96 x 72 pixels", "focal length   145.0", "from bbox.txt",
+        "degrees to the nearest", "normal quality", "MiB", "CPU seconds"})
+    EXPECT_THAT(text, HasSubstr(part));
+}
+
+TEST_F(Usage, InfoAsJson) {
+  const Finished run = succeed({"info", scene(), "--json", "--masks", path("cutouts")});
+  EXPECT_EQ(run.err, "");
+  const json info = json::parse(run.out);
+  EXPECT_EQ(info["format"], "middlebury");
+  ASSERT_EQ(info["views"].size(), std::size_t(kViews));
+  EXPECT_EQ(info["views"][2]["name"], "view2.png");
+  EXPECT_EQ(info["views"][2]["width"], kWidth);
+  EXPECT_EQ(info["views"][2]["mask"], mask_file(2));
+  EXPECT_NEAR(info["pixel_footprint"].get<double>(), 4.0 / 145, 1e-9);
+  EXPECT_NEAR(info["normal_voxel_size"].get<double>(), 1.5 * 4.0 / 145, 1e-9);
+  EXPECT_EQ(info["box"]["source"], "bbox.txt");
+  EXPECT_GT(info["memory_bytes"], 0);
+  EXPECT_GT(info["cpu_seconds"], 0);
+}
+
+TEST_F(Usage, InfoWithoutABoxAsksForOne) {
+  std::filesystem::remove(folder_ / "bbox.txt");
+  EXPECT_THAT(succeed({"info", scene()}).out, HasSubstr("--box"));
+  EXPECT_FALSE(json::parse(succeed({"info", scene(), "--json"}).out).contains("box"));
+}
+
+TEST_F(Usage, DevicesSaysWhatAutoTakes) {
+  const std::string text = succeed({"devices"}).out;
+  EXPECT_THAT(text, StartsWith("0  "));
+  EXPECT_THAT(text, HasSubstr("auto takes "));
+}
+
+TEST_F(Usage, DeviceByName) {
+  succeed(reconstruct({"--device", "software", "--quality", "draft"}));
+  refuse({"--device", "99"}, {"--device 99", "photohull devices"});
+  for (const char* bad : {"gpu", "-1", "", "1x"}) refuse({"--device", bad}, {"--device"});
+}
+
+TEST_F(Usage, ParserErrorsAreOneLine) {
+  fail(2, {}, {"a command is missing", "--help"});
+  fail(2, {"rebuild"}, {"rebuild"});
+  fail(2, {"reconstruct"}, {"required"});
+  fail(2, {"reconstruct", scene()}, {"--out is required"});
+  fail(2, {"info"}, {"SCENE is required"});
+  fail(2, {"info", scene(), "--out", out()}, {"--out"});
+  refuse({"--resolutoin", "32"}, {"--resolutoin"});
+  refuse({"surplus"}, {"surplus"});
+  refuse({"--resolution"}, {"--resolution"});
+}
+
+TEST_F(Usage, NumbersOutOfRange) {
+  for (const char* bad : {"1", "0", "-5"})
+    refuse({"--resolution", bad}, {"--resolution " + std::string(bad), "at least 2"});
+  for (const char* bad : {"many", "3.5", "99999999999"})
+    refuse({"--resolution", bad}, {"--resolution"});
+  for (const char* bad : {"0", "-1", "nan", "inf"})
+    refuse({"--voxel-size", bad}, {"--voxel-size", "finite and positive"});
+  refuse({"--resolution", "32", "--voxel-size", "0.1"}, {"exclude each other"});
+  refuse({"--threads", "-1"}, {"--threads -1"});
+  for (const char* bad : {"0.3", "-1", "nan"}) refuse({"--pixel-center", bad}, {"--pixel-center"});
+}
+
+TEST_F(Usage, WordsThatAreNotChoices) {
+  refuse({"--quality", "best"}, {"--quality best", "draft, normal, high"});
+  refuse({"--method", "magic"}, {"--method magic", "hull, voxel-coloring, space-carving"});
+  refuse({"--method", ""}, {"--method"});
+  refuse({"--format", "obj"}, {"--format obj", "middlebury"});
+  refuse({"--masks", ""}, {"--masks"});
+  fail(2, {"reconstruct", scene(), "--out", ""}, {"--out"});
+  fail(2, {"reconstruct", "", "--out", out()}, {"SCENE"});
+}
+
+TEST_F(Usage, Boxes) {
+  for (const char* bad : {"0 0 0 1 1", "0 0 0 1 1 x", "nan 0 0 1 1 1", "", "0 0 0 1 1 1e999"})
+    refuse({"--box", bad}, {"--box", "six numbers"});
+  refuse({"--box", "0 0 0 1 1 1 1"}, {"--box", "follows the six numbers"});
+  refuse({"--box", "0 0 0 1 1 1x"}, {"--box"});
+  refuse({"--box", "0 0 0 1 0 1"}, {"--box", "along y"});
+}
+
+TEST_F(Usage, Views) {
+  refuse({"--views", "nobody.png"}, {"--views", "'nobody.png'"});
+  refuse({"--views", "0-99"}, {"--views", "views 0 to 15"});
+  refuse({"--views", "5-2"}, {"--views", "backwards"});
+  refuse({"--views", "1,,2"}, {"--views", "empty item"});
+  refuse({"--views", ""}, {"--views"});
+}
+
+TEST_F(Usage, AFullStandardOutputIsAFailure) {
+  RunOptions full;
+  full.output_file = "/dev/full";
+  fail(1, {"info", scene()}, {"standard output"}, full);
+  fail(1, {"reconstruct", "--help"}, {"standard output"}, full);
+}
+
+}  // namespace
+}  // namespace photohull::test
