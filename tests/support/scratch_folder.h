@@ -17,7 +17,7 @@ namespace photohull {
 class ScratchFolder {
  public:
   ScratchFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "volume_test_XXXXXX").string();
+    std::string name = (std::filesystem::temp_directory_path() / "photohull_test_XXXXXX").string();
     path_ = ::mkdtemp(name.data());
   }
   ~ScratchFolder() { std::filesystem::remove_all(path_); }
