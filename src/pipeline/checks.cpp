@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/error.h"
 
@@ -30,16 +31,12 @@ bool sees(const Camera& camera, const Box& box) {
   return seen;
 }
 
-double share_removed(const View& view, const Box& box) {
-  int removed = 0;
-  for_each_probe(box, [&](const glm::dvec3& p) {
-    const auto pixel = view.camera.project(p);
-    if (view.mask.empty() || !pixel || !view.camera.on_image(*pixel)) return;
-    const int x = std::clamp(int(std::lround(pixel->x)), 0, view.mask.width - 1);
-    const int y = std::clamp(int(std::lround(pixel->y)), 0, view.mask.height - 1);
-    removed += view.mask.coverage[std::size_t(y) * view.mask.width + x] < 128;
-  });
-  return removed / std::pow(kProbes, 3);
+bool removes(const View& view, const glm::dvec3& p) {
+  const auto pixel = view.camera.project(p);
+  if (view.mask.empty() || !pixel || !view.camera.on_image(*pixel)) return false;
+  const int x = std::clamp(int(std::lround(pixel->x)), 0, view.mask.width - 1);
+  const int y = std::clamp(int(std::lround(pixel->y)), 0, view.mask.height - 1);
+  return view.mask.coverage[std::size_t(y) * view.mask.width + x] < 128;
 }
 
 }  // namespace
@@ -77,14 +74,29 @@ void check_memory(std::int64_t bytes, const GridSpec& grid) {
                      " MiB; lower --resolution"));
 }
 
-std::string explain_empty_hull(const Box& box, std::span<const View> views) {
-  std::vector<std::pair<double, std::string>> removed;
-  for (const View& view : views) removed.emplace_back(-share_removed(view, box), view.name);
-  std::sort(removed.begin(), removed.end());
+std::string explain_empty_hull(const Box& box, std::span<const View> views, double voxel_size) {
+  std::vector<int> removed(views.size());
+  int left = 0;
+  for_each_probe(box, [&](const glm::dvec3& p) {
+    bool stays = true;
+    for (std::size_t i = 0; i < views.size(); ++i)
+      if (removes(views[i], p)) {
+        ++removed[i];
+        stays = false;
+      }
+    left += stays;
+  });
+  if (left > 0)
+    return concat("nothing is left of the box: voxels of ", voxel_size,
+                  " are too large for what the silhouettes leave; raise --resolution");
+  std::vector<std::size_t> order(views.size());
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return removed[a] > removed[b]; });
   std::string text = "nothing is left of the box: the silhouettes have no common space. ";
-  for (std::size_t i = 0; i < std::min<std::size_t>(3, removed.size()); ++i)
-    text += concat(i ? ", " : "Alone, ", removed[i].second, " removes ",
-                   std::lround(-100 * removed[i].first), " %");
+  for (std::size_t i = 0; i < std::min<std::size_t>(3, order.size()); ++i)
+    text += concat(i ? ", " : "Alone, ", views[order[i]].name, " removes ",
+                   std::lround(100 * removed[order[i]] / std::pow(kProbes, 3)), " %");
   return text + ". Check the masks (white is the object), the box and the cameras";
 }
 

@@ -18,7 +18,8 @@ std::vector<std::string> check_box(const Box& box, const std::string& source,
 /// Throws Error when `bytes` exceed the machine's memory.
 void check_memory(std::int64_t bytes, const GridSpec& grid);
 
-/// Why nothing of the box is left: the views whose silhouettes alone remove the most of it.
-std::string explain_empty_hull(const Box& box, std::span<const View> views);
+/// Why nothing of the box is left: voxels that are too large, or the views whose silhouettes alone
+/// remove the most of it.
+std::string explain_empty_hull(const Box& box, std::span<const View> views, double voxel_size);
 
 }  // namespace photohull::pipeline

@@ -66,6 +66,8 @@ Inspection inspect(const Scene& scene) {
   out.voxel_size = carving::pixel_footprint(*scene.box, cameras);
   out.grid = carving::fit_grid(*scene.box, out.voxel_size * footprint_factor(Quality::kNormal));
   estimate_cost(out);
+  if (out.grid.voxel_size > carving::voxel_size_for(*scene.box, 2))
+    out.warnings.push_back("the box is hardly larger than a pixel: check its units");
   if (out.nearest_angle < kSmallestBaseline)
     out.warnings.push_back("neighbouring views are nearly the same: depth will be uncertain");
   if (out.nearest_angle > kLargestBaseline)

@@ -54,11 +54,23 @@ std::string number(double value) {
 
 double voxel_size_of(const ReconstructOptions& options, const Box& box,
                      std::span<const Camera> cameras) {
-  if (options.voxel_size) return *options.voxel_size;
   if (options.resolution) return carving::voxel_size_for(box, *options.resolution);
+  const double largest = carving::voxel_size_for(box, 2);
+  if (options.voxel_size) {
+    if (*options.voxel_size > largest)
+      throw UsageError(concat("--voxel-size ", *options.voxel_size, ": at most ", largest,
+                              ", half of the box's longest side"));
+    return *options.voxel_size;
+  }
   const double footprint = carving::pixel_footprint(box, cameras);
   if (!(footprint > 0)) throw Error("no camera has the box's centre in front of it");
-  return footprint * footprint_factor(options.quality);
+  const double size = footprint * footprint_factor(options.quality);
+  if (size > largest)
+    throw Error(concat("a pixel is ", footprint,
+                       " world units large at the box's centre, too much for a box whose longest "
+                       "side is ",
+                       2 * largest, "; check the box's units, or give --voxel-size"));
+  return size;
 }
 
 double median_noise(std::span<const View> views) {
@@ -177,7 +189,8 @@ class Job {
     carving::HullReport counts;
     SparseVolume volume = carving::carve_silhouette(*context_, grid_, box, cameras_, silhouettes,
                                                     hull_options, progress_, &counts);
-    if (volume.inside_voxels() == 0) throw Error(explain_empty_hull(*scene_.box, views_));
+    if (volume.inside_voxels() == 0)
+      throw Error(explain_empty_hull(*scene_.box, views_, grid_.voxel_size));
     report_.nodes_tested = counts.nodes_tested;
     report_.bricks_evaluated = counts.bricks_evaluated;
     hull_samples_ = counts.samples;

@@ -56,6 +56,10 @@ TEST_F(BadMasks, ThatCarveEverythingAwayNameTheViews) {
          {"nothing is left of the box", "view3.png removes", "view7.png removes", "masks"});
 }
 
+TEST_F(BadMasks, VoxelsThatAreTooLargeAreNotBlamedOnTheMasks) {
+  fail(1, reconstruct({"--resolution", "2"}), {"voxels of 1 are too large", "--resolution"});
+}
+
 TEST_F(BadMasks, OneEmptyMaskIsNamed) {
   const std::vector<std::uint8_t> black(kWidth * kHeight, 0);
   io::write_png(mask_file(5), kWidth, kHeight, 1, black);

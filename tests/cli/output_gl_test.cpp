@@ -65,7 +65,7 @@ TEST_F(Output, FullDiskLeavesEarlierResults) {
 
 TEST_F(Output, SignalsStopTheJobAndLeaveEarlierResults) {
   put_earlier_results();
-  for (const int signal : {SIGINT, SIGTERM}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     RunOptions stopped;
     stopped.signal = signal;
     stopped.signal_after = " photo\n";

@@ -89,6 +89,7 @@ TEST_F(Usage, NumbersOutOfRange) {
     refuse({"--resolution", bad}, {"--resolution"});
   for (const char* bad : {"0", "-1", "nan", "inf"})
     refuse({"--voxel-size", bad}, {"--voxel-size", "finite and positive"});
+  refuse({"--voxel-size", "100"}, {"--voxel-size 100", "at most 1"});
   refuse({"--resolution", "32", "--voxel-size", "0.1"}, {"exclude each other"});
   refuse({"--threads", "-1"}, {"--threads -1"});
   for (const char* bad : {"0.3", "-1", "nan"}) refuse({"--pixel-center", bad}, {"--pixel-center"});
