@@ -66,8 +66,8 @@ void raw_fetches(benchmark::State& state) {
     sums.bind_storage(0);
     program.dispatch(*s.context, "raw_fetches", kThreads / 64);
   }
-  state.counters["samples"] = benchmark::Counter(double(state.iterations()) * kTaps * kViews * kThreads,
-                                                 benchmark::Counter::kIsRate);
+  state.counters["samples"] = benchmark::Counter(
+      double(state.iterations()) * kTaps * kViews * kThreads, benchmark::Counter::kIsRate);
 }
 
 void sweep_projection(benchmark::State& state) {
@@ -102,8 +102,8 @@ void sweep_projection(benchmark::State& state) {
     samples.bind_storage(6);
     program.dispatch(*s.context, "sweep_projection", items.size());
   }
-  state.counters["samples"] =
-      benchmark::Counter(double(state.iterations()) * double(values) * n * n, benchmark::Counter::kIsRate);
+  state.counters["samples"] = benchmark::Counter(
+      double(state.iterations()) * double(values) * n * n, benchmark::Counter::kIsRate);
 }
 
 BENCHMARK(raw_fetches)->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);

@@ -21,9 +21,9 @@ enum class PhotoMethod {
 struct PhotoOptions {
   PhotoMethod method = PhotoMethod::kSpaceCarving;
   /// Correlation in (0, 1) from which a voxel counts as consistent.
-  double keep_score = 0.6;
+  double keep_score = 0.7;
   /// A voxel is carved only if one behind it correlates better by this much. In [0, 1].
-  double better_by = 0.15;
+  double better_by = 0.2;
   /// Cameras that must see a voxel before its consistency means anything (>= 2).
   int min_views = 3;
   /// Standard deviation of the images' noise, in square-root-encoded units of full scale (> 0).
