@@ -21,6 +21,7 @@
 #include "pipeline/stage_clock.h"
 #include "projtex/image_set.h"
 #include "render/bake_colour.h"
+#include "render/choose_views.h"
 #include "render/preview.h"
 #include "volume/attributes.h"
 #include "volume/components.h"
@@ -96,7 +97,7 @@ class Job {
     clock_.run("device", Weights::kDevice, [&] { open_device(); });
     clock_.run("views", Weights::kViews, [&] { prepare(); });
     SparseVolume volume = clock_.run("hull", Weights::kHull, [&] { return carve_hull(); });
-    for (View& view : views_) view.mask.coverage = {};
+    for (View& view : views_) std::vector<std::uint8_t>().swap(view.mask.coverage);
     context_->release_deleted();
     images_ = clock_.run("images", Weights::kImages,
                          [&] { return std::make_unique<projtex::ImageSet>(views_); });
@@ -105,6 +106,7 @@ class Job {
     clock_.run("clean", Weights::kClean, [&] { remove_small_components(volume, kDebrisFraction); });
     TriMesh mesh = clock_.run("mesh", Weights::kMesh, [&] { return extract_mesh(volume); });
     clock_.run("colour", Weights::kColour, [&] { colour(mesh); });
+    keep_only_preview_photograph(mesh);
     images_.reset();
     context_->release_deleted();
     clock_.run("files", Weights::kFiles, [&] { write(volume, mesh, files); });
@@ -241,6 +243,13 @@ class Job {
               {{"photohull_options", option_line()}});
     progress_.check_cancelled();
     write_ply(files.open("mesh.ply"), mesh);
+  }
+
+  /// The other photographs' pixels have done their work; memory peaks in the stages to come.
+  void keep_only_preview_photograph(const TriMesh& mesh) {
+    const int kept = render::choose_main_view(mesh, views_);
+    for (int i = 0; i < int(views_.size()); ++i)
+      if (i != kept) std::vector<std::uint8_t>().swap(views_[i].image.bytes);
   }
 
   void write_preview(const TriMesh& mesh, ResultFiles& files) {

@@ -1,4 +1,4 @@
-// Private to module render: from where a preview shows the mesh.
+// From where a preview shows the mesh.
 #pragma once
 
 #include <span>
