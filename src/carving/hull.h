@@ -34,7 +34,8 @@ struct HullReport {
 };
 
 /// Truncated signed distance to the intersection of box, silhouette cones and (for min_views > 1)
-/// frusta. `box` in world coordinates lies inside the grid. When nothing is left the volume is empty.
+/// frusta. `box` in world coordinates lies inside the grid. When nothing is left the volume is
+/// empty.
 SparseVolume carve_silhouette(gpu::Context& context, const GridSpec& grid, const Box& box,
                               std::span<const Camera> cameras,
                               std::span<const Silhouette> silhouettes, const HullOptions& options,

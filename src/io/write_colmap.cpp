@@ -5,8 +5,8 @@
 #include <sstream>
 #include <vector>
 
-#include "core/error.h"
 #include "core/atomic_file.h"
+#include "core/error.h"
 #include "io/colmap_model.h"
 #include "io/write_scene.h"
 #include "io/write_scene_parts.h"

@@ -1,7 +1,7 @@
 #include <sstream>
 
-#include "core/error.h"
 #include "core/atomic_file.h"
+#include "core/error.h"
 #include "io/write_scene.h"
 #include "io/write_scene_parts.h"
 

@@ -3,8 +3,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "core/error.h"
 #include "core/atomic_file.h"
+#include "core/error.h"
 
 namespace photohull::io {
 namespace fs = std::filesystem;

@@ -14,8 +14,7 @@ View numbered_view() {
   view.mask = {100, 80, {}};
   for (int y = 0; y < 80; ++y)
     for (int x = 0; x < 100; ++x) {
-      view.image.bytes.insert(view.image.bytes.end(),
-                              {std::uint8_t(x), std::uint8_t(y), 0, 255});
+      view.image.bytes.insert(view.image.bytes.end(), {std::uint8_t(x), std::uint8_t(y), 0, 255});
       view.mask.coverage.push_back(std::uint8_t(x + y));
     }
   return view;
@@ -29,7 +28,8 @@ TEST(CropToBox, KeepsWhatEveryPointOfTheBoxSees) {
   EXPECT_LT(cropped.image.width, 50);
   EXPECT_EQ(cropped.image.width, cropped.camera.intrinsics.width);
   EXPECT_EQ(cropped.mask.height, cropped.camera.intrinsics.height);
-  EXPECT_EQ(cropped.image.bytes.size(), std::size_t(cropped.image.width) * cropped.image.height * 4);
+  EXPECT_EQ(cropped.image.bytes.size(),
+            std::size_t(cropped.image.width) * cropped.image.height * 4);
   for (int corner = 0; corner < 8; ++corner) {
     const glm::dvec3 point((corner & 1 ? box.max : box.min).x, (corner & 2 ? box.max : box.min).y,
                            (corner & 4 ? box.max : box.min).z);
@@ -45,8 +45,8 @@ TEST(CropToBox, KeepsWhatEveryPointOfTheBoxSees) {
 }
 
 TEST(CropToBox, LeavesAViewThatCannotBeCut) {
-  for (const Box& box : {Box{{-1, -1, -6}, {1, 1, 1}},        // partly behind the camera
-                         Box{{90, 90, 0}, {91, 91, 1}},       // off the image
+  for (const Box& box : {Box{{-1, -1, -6}, {1, 1, 1}},         // partly behind the camera
+                         Box{{90, 90, 0}, {91, 91, 1}},        // off the image
                          Box{{-9, -9, -0.1}, {9, 9, 0.1}}}) {  // larger than the image
     View view = numbered_view();
     crop_to_box(box, 3, view);
