@@ -3,7 +3,7 @@
 // Plane sweep, step 3: photo-consistency of the selected voxels. The statistic is the mean pairwise
 // zero-mean normalised cross-correlation of the patches around the voxel on the reference plane, over
 // the views that see the voxel; a noise floor keeps flat patches from correlating, and views far below
-// the best are left out once [Kutulakos00; Hernandez04]. One thread a selected column.
+// the best are left out once [KutulakosSeitz00; Hernandez04]. One thread a selected column.
 // Reference: carving::reference::photo_consistency.
 #include "include/projection.glsl"
 #include "include/layer.glsl"
