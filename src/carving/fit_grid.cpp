@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kMargin = 3.0;  // voxels around the box: room for the narrow band
 constexpr double kMaxBricks = 64.0 * 1024 * 1024;  // a table of 256 MiB; 4096^3 voxels fit
-constexpr double kBytesPerSurfaceBrick = 12e3;     // measured: distances, mesh, VDB copy
+constexpr double kBytesPerSurfaceBrick = 12e3;     // rough: distances, mesh, VDB copy
 
 }  // namespace
 

@@ -12,7 +12,7 @@ namespace photohull::pipeline {
 namespace {
 
 constexpr double kDegrees = 57.29577951308232;
-// Measured with bench/run_scenes.sh on a software rasterizer; they only feed the estimate.
+// Rough guesses for a software rasterizer, not fitted to a benchmark; they only feed the estimate.
 constexpr double kSecondsPerPixel = 3.5e-8;
 constexpr double kSecondsPerSurfaceVoxel = 6e-5;
 constexpr double kSmallestBaseline = 3;  // degrees: closer views tell little about depth

@@ -38,7 +38,7 @@ constexpr double kDebrisFraction = 5e-4;  // of the largest part's voxels
 constexpr int kCropMargin = 24;           // pixels around the box's projection: patches, mip levels
 constexpr double kBoxSlack = 0.5;         // voxels that the surface may stand out of the box
 
-/// Shares of a job's time, measured on the scenes of docs/benchmarks.md; they only drive the time
+/// Rough shares of a job's time, not fitted to a benchmark; they only drive the progress bar's time
 /// left.
 struct Weights {
   static constexpr double kScene = 0.1, kViews = 5, kDevice = 1, kHull = 5, kImages = 1,
