@@ -38,11 +38,11 @@ constexpr double kDebrisFraction = 5e-4;  // of the largest part's voxels
 constexpr int kCropMargin = 24;           // pixels around the box's projection: patches, mip levels
 constexpr double kBoxSlack = 0.5;         // voxels that the surface may stand out of the box
 
-/// Rough shares of a job's time, not fitted to a benchmark; they only drive the progress bar's time
-/// left.
+/// Shares of a job's time: tenths of a wall second of templeRing's stages on two cores (`photohull
+/// reconstruct templeRing --json`). They only drive the progress bar's time left.
 struct Weights {
-  static constexpr double kScene = 0.1, kViews = 5, kDevice = 1, kHull = 5, kImages = 1,
-                          kPhoto = 120, kClean = 0.2, kMesh = 2, kColour = 4, kPreview = 1,
+  static constexpr double kScene = 0.1, kViews = 3, kDevice = 0.5, kHull = 3.5, kImages = 2,
+                          kPhoto = 110, kClean = 0.2, kMesh = 0.6, kColour = 2, kPreview = 2.7,
                           kFiles = 2;
 };
 

@@ -73,7 +73,6 @@ TEST_F(Reconstruct, ReportHasTheDocumentedFields) {
                                   "mesh", "colour", "files", "preview"));
 }
 
-#ifdef VDB_PRINT
 TEST_F(Reconstruct, VolumeIsReadableByOpenVdbsOwnTool) {
   succeed(reconstruct({"--method", "hull"}));
   const Finished print = run_program({VDB_PRINT, "-l", path("out/volume.vdb")});
@@ -81,7 +80,6 @@ TEST_F(Reconstruct, VolumeIsReadableByOpenVdbsOwnTool) {
   for (const char* text : {"surface", "Cd", "confidence", "level set", "photohull_version"})
     EXPECT_THAT(print.out, HasSubstr(text));
 }
-#endif
 
 TEST_F(Reconstruct, MethodsDifferAsTheyShould) {
   double volumes[3] = {};
