@@ -214,6 +214,17 @@ struct VertexLayout {
   static bool complete(const std::array<int, 3>& triple) {
     return std::all_of(triple.begin(), triple.end(), [](int i) { return i >= 0; });
   }
+  /// Indices of the properties that have no meaning here.
+  std::vector<int> others(const Element& e) const {
+    std::vector<int> result;
+    for (int i = 0; i < int(e.properties.size()); ++i) {
+      const auto has = [i](const std::array<int, 3>& t) {
+        return std::find(t.begin(), t.end(), i) != t.end();
+      };
+      if (!has(position) && !has(normal) && !has(colour) && i != confidence) result.push_back(i);
+    }
+    return result;
+  }
   std::array<int, 3> position, normal, colour;
   int confidence;
 };
@@ -222,13 +233,18 @@ glm::dvec3 pick(const Values& values, const std::array<int, 3>& triple) {
   return {values[triple[0]][0], values[triple[1]][0], values[triple[2]][0]};
 }
 
-void read_vertices(const Element& element, bool ascii, Reader& reader, TriMesh& mesh) {
+void read_vertices(const Element& element, bool ascii, Reader& reader, TriMesh& mesh,
+                   VertexScalars* scalars) {
   constexpr double kFarthest = 1e30;  // fits a float
   if (!mesh.positions.empty()) reader.fail("it has more than one list of vertices");
   const VertexLayout layout(element);
   if (!VertexLayout::complete(layout.position)) reader.fail("its vertices have no x, y, z");
   for (const Property& property : element.properties)
     if (property.count) reader.fail("its vertices have list properties, which is not supported");
+  std::vector<std::pair<int, std::vector<double>*>> others;
+  if (scalars)
+    for (const int i : layout.others(element))
+      others.emplace_back(i, &(*scalars)[element.properties[i].name]);
   std::vector<glm::dvec3> world;
   world.reserve(element.count);
   glm::dvec3 low(INFINITY), high(-INFINITY);
@@ -248,6 +264,7 @@ void read_vertices(const Element& element, bool ascii, Reader& reader, TriMesh& 
                                 linear_from_srgb(code.b));
     }
     if (layout.confidence >= 0) mesh.confidence.push_back(float(values[layout.confidence][0]));
+    for (const auto& [property, list] : others) list->push_back(values[property][0]);
   }
   if (world.empty()) return;
   mesh.origin = 0.5 * low + 0.5 * high;
@@ -281,9 +298,7 @@ std::string read_bytes(const std::filesystem::path& path) {
   return bytes;
 }
 
-}  // namespace
-
-TriMesh read_ply(const std::filesystem::path& path) {
+TriMesh read(const std::filesystem::path& path, VertexScalars* scalars) {
   const std::string bytes = read_bytes(path);
   Reader reader(bytes, path.string());
   const Header header = parse_header(reader);
@@ -292,7 +307,7 @@ TriMesh read_ply(const std::filesystem::path& path) {
   for (const Element& element : header.elements) {
     check_count(element, header.ascii, reader);
     if (element.name == "vertex")
-      read_vertices(element, header.ascii, reader, mesh);
+      read_vertices(element, header.ascii, reader, mesh, scalars);
     else if (element.name == "face")
       read_faces(element, header.ascii, reader, mesh);
     else
@@ -300,6 +315,15 @@ TriMesh read_ply(const std::filesystem::path& path) {
         read_values(element, header.ascii, reader, skipped);
   }
   return mesh;
+}
+
+}  // namespace
+
+TriMesh read_ply(const std::filesystem::path& path) { return read(path, nullptr); }
+
+TriMesh read_ply(const std::filesystem::path& path, VertexScalars& scalars) {
+  scalars.clear();
+  return read(path, &scalars);
 }
 
 }  // namespace photohull

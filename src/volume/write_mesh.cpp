@@ -64,7 +64,7 @@ class BlockWriter {
 
  private:
   static constexpr std::size_t kBlock = std::size_t(1) << 20;
-  static constexpr std::size_t kRecord = 64;
+  static constexpr std::size_t kRecord = 80;
   AtomicFile& file_;
   std::vector<char> block_;
   std::size_t used_ = 0;
@@ -93,14 +93,16 @@ bool needs_double(const TriMesh& mesh) {
   return rounding > 1e-3 * mean_edge(mesh) && !mesh.triangles.empty();
 }
 
-void check_attributes(const TriMesh& mesh) {
+void check_attributes(const TriMesh& mesh, const VertexScalars& scalars) {
   const std::size_t count = mesh.positions.size();
   PHOTOHULL_CHECK(mesh.normals.empty() || mesh.normals.size() == count);
   PHOTOHULL_CHECK(mesh.colours.empty() || mesh.colours.size() == count);
   PHOTOHULL_CHECK(mesh.confidence.empty() || mesh.confidence.size() == count);
+  PHOTOHULL_CHECK(scalars.size() <= 4);
+  for (const auto& scalar : scalars) PHOTOHULL_CHECK(scalar.second.size() == count);
 }
 
-std::string header(const TriMesh& mesh, bool doubles) {
+std::string header(const TriMesh& mesh, const VertexScalars& scalars, bool doubles) {
   const char* real = doubles ? "double" : "float";
   std::string text = concat("ply\nformat binary_little_endian 1.0\ncomment created by photohull ",
                             PHOTOHULL_VERSION, "\nelement vertex ", mesh.positions.size(), "\n");
@@ -109,11 +111,13 @@ std::string header(const TriMesh& mesh, bool doubles) {
   if (!mesh.colours.empty())
     text += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
   if (!mesh.confidence.empty()) text += "property float confidence\n";
+  for (const auto& scalar : scalars) text += concat("property float ", scalar.first, "\n");
   return text + concat("element face ", mesh.triangles.size(),
                        "\nproperty list uchar int vertex_indices\nend_header\n");
 }
 
-void put_vertices(const TriMesh& mesh, bool doubles, BlockWriter& out) {
+void put_vertices(const TriMesh& mesh, const VertexScalars& scalars, bool doubles,
+                  BlockWriter& out) {
   static const SrgbEncoder encode;
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     out.begin_record();
@@ -127,6 +131,7 @@ void put_vertices(const TriMesh& mesh, bool doubles, BlockWriter& out) {
       out.put(std::array{encode(linear.r), encode(linear.g), encode(linear.b)});
     }
     if (!mesh.confidence.empty()) out.put(mesh.confidence[i]);
+    for (const auto& scalar : scalars) out.put(float(scalar.second[i]));
   }
 }
 
@@ -138,22 +143,29 @@ void put_faces(const TriMesh& mesh, BlockWriter& out) {
   }
 }
 
-}  // namespace
-
-void write_ply(AtomicFile& file, const TriMesh& mesh) {
-  check_attributes(mesh);
+void write(AtomicFile& file, const TriMesh& mesh, const VertexScalars& scalars) {
+  check_attributes(mesh, scalars);
   const bool doubles = needs_double(mesh);
-  const std::string text = header(mesh, doubles);
+  const std::string text = header(mesh, scalars, doubles);
   file.write(text.data(), text.size());
   BlockWriter out(file);
-  put_vertices(mesh, doubles, out);
+  put_vertices(mesh, scalars, doubles, out);
   put_faces(mesh, out);
   out.flush();
 }
 
+}  // namespace
+
+void write_ply(AtomicFile& file, const TriMesh& mesh) { write(file, mesh, {}); }
+
 void write_ply(const std::filesystem::path& path, const TriMesh& mesh) {
+  write_ply(path, mesh, VertexScalars());
+}
+
+void write_ply(const std::filesystem::path& path, const TriMesh& mesh,
+               const VertexScalars& scalars) {
   AtomicFile file(path);
-  write_ply(file, mesh);
+  write(file, mesh, scalars);
   file.commit();
 }
 
