@@ -1,0 +1,148 @@
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "commands.h"
+#include "core/error.h"
+#include "eval/error_image.h"
+#include "eval/error_mesh.h"
+#include "eval/evaluate.h"
+#include "eval/evaluation_json.h"
+#include "io/image_file.h"
+#include "terminal_progress.h"
+#include "volume/read_mesh.h"
+
+namespace photohull::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::string mesh, truth, error_mesh, error_image;
+  double error_range = 0.005;
+  eval::EvaluateOptions options;
+  bool json = false;
+};
+
+void print_scores(const std::vector<eval::Score>& all, const std::vector<eval::Score>& seen) {
+  for (std::size_t i = 0; i < all.size(); ++i)
+    std::printf("%9.4g %%  %-10.4g %9.2f %9.2f %9.2f %9.2f %9.2f\n", 100 * seen[i].threshold,
+                seen[i].distance, 100 * seen[i].precision, 100 * seen[i].recall, 100 * seen[i].f,
+                100 * all[i].precision, 100 * all[i].f);
+}
+
+void print_text(const eval::Evaluation& e) {
+  const double d = e.truth_diagonal;
+  const auto row = [d](const char* name, double seen, double all) {
+    std::printf("%-24s %11.5g %8.4f %% %11.5g %8.4f %%\n", name, seen, 100 * seen / d, all,
+                100 * all / d);
+  };
+  const auto one = [d](const char* name, double value) {
+    std::printf("%-24s %11.5g %8.4f %%\n", name, value, 100 * value / d);
+  };
+  std::printf("result      %s: %zu vertices, %zu faces%s\n", e.result_name.c_str(), e.vertices,
+              e.faces, e.points ? ", judged as points" : "");
+  std::printf("truth       %s: %zu faces, diagonal %g\n", e.truth_name.c_str(), e.truth_faces, d);
+  std::printf("counted     %s\n", e.truth_note.c_str());
+  std::printf(
+      "samples     %zu of the result, %.2f %% over seen surface; %zu of %zu of the truth\n\n",
+      e.result_samples, 100 * e.seen.share, e.truth_samples_seen, e.truth_samples);
+  std::printf("%-24s %22s %22s\n", "distance (of diagonal)", "over seen surface", "whole result");
+  const std::string accuracy = concat("accuracy (", 100 * e.options.accuracy_share, " %)");
+  row(accuracy.c_str(), e.seen.accuracy, e.all.accuracy);
+  row("result to truth, mean", e.seen.to_truth.mean, e.all.to_truth.mean);
+  row("                 median", e.seen.to_truth.median, e.all.to_truth.median);
+  row("                 RMS", e.seen.to_truth.rms, e.all.to_truth.rms);
+  row("                 signed", e.seen.mean_signed, e.all.mean_signed);
+  one("truth to result, mean", e.to_result.mean);
+  one("                 median", e.to_result.median);
+  one("                 RMS", e.to_result.rms);
+  one("Hausdorff 95 %", e.hausdorff95);
+  one("chamfer", e.chamfer);
+  std::printf("%-24s %11.2f %% of the truth within %g %% of the diagonal\n\n", "completeness",
+              100 * e.completeness, 100 * e.options.completeness_threshold);
+  std::printf("%-12s %-10s %9s %9s %9s %9s %9s\n", "threshold", "distance", "precision", "recall",
+              "F", "precision", "F, whole");
+  print_scores(e.all.scores, e.seen.scores);
+  print_scores(e.all.absolute, e.seen.absolute);
+  if (e.seen.normals)
+    std::printf("\nnormals     %.2f degrees off in the mean, %.2f %% within 10 degrees\n",
+                e.seen.normals->mean, 100 * e.seen.normals->within_10);
+  if (e.volume.known)
+    std::printf("volume      IoU %.4f: %g of the result, %g of the truth, %g of both\n",
+                e.volume.iou, e.volume.first, e.volume.second, e.volume.intersection);
+  else
+    std::printf("volume      IoU not known: %s\n", e.volume.reason.c_str());
+  for (const std::string& text : e.warnings) std::printf("warning: %s\n", text.c_str());
+}
+
+void run(const Arguments& a) {
+  a.options.validate();
+  if (!(a.error_range > 0 && a.error_range <= 1))
+    throw UsageError(concat("--error-range must be above 0 and at most 1, not ", a.error_range));
+  TerminalProgress progress(12);
+  const eval::Truth truth = eval::read_truth(a.truth);
+  const TriMesh result = read_mesh(a.mesh, Faces::kOptional);
+  if (result.triangles.empty() && !a.error_image.empty())
+    throw Error(concat(a.mesh, " has no faces; --error-image needs some"));
+  eval::Evaluation e = eval::evaluate(result, truth, a.options, &progress);
+  e.result_name = a.mesh;
+  const double range = a.error_range * truth.diagonal();
+  if (!a.error_mesh.empty()) {
+    progress.stage("error mesh", 1);
+    eval::write_error_mesh(a.error_mesh, result, truth.surface(), range, progress);
+  }
+  if (!a.error_image.empty()) {
+    progress.stage("error picture", 1);
+    const std::string title = concat(fs::path(a.mesh).filename().string(), ": F ",
+                                     std::round(10000 * e.seen.scores.back().f) / 100, " % at ",
+                                     100 * e.seen.scores.back().threshold, " % of the diagonal");
+    const eval::ErrorImage image =
+        eval::draw_error_image(result, truth, {range, 480, title}, progress);
+    io::write_png(a.error_image, image.width, image.height, 3, image.rgb);
+  }
+  progress.finish();
+  if (a.json)
+    std::printf("%s\n", eval::to_json(e).c_str());
+  else
+    print_text(e);
+}
+
+}  // namespace
+
+void add_evaluate(CLI::App& app) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* c = app.add_subcommand("evaluate", "measure a mesh against the exact surface");
+  c->add_option("mesh", a->mesh, "the result: PLY, OBJ, OFF, STL or glTF; points without faces too")
+      ->required();
+  c->add_option("--truth", a->truth,
+                "a scene folder with gt.ply and gt_visible.ply, or a mesh all of which counts")
+      ->required();
+  c->add_option("--thresholds", a->options.thresholds,
+                "distances to count within, fractions of the truth's diagonal")
+      ->delimiter(',')
+      ->capture_default_str();
+  c->add_option("--absolute", a->options.absolute, "further ones in world units")->delimiter(',');
+  c->add_option("--samples", a->options.samples, "points to measure the result at")
+      ->capture_default_str();
+  c->add_option("--seed", a->options.seed, "of the points")->capture_default_str();
+  c->add_option("--min-views", a->options.min_views,
+                "cameras that must see a part of the truth for it to count")
+      ->capture_default_str();
+  c->add_option("--error-mesh", a->error_mesh,
+                "write the result as a PLY coloured by its signed distance");
+  c->add_option("--error-image", a->error_image, "write a PNG of that from six sides");
+  c->add_option("--error-range", a->error_range,
+                "distance of the strongest colours, a fraction of the diagonal")
+      ->capture_default_str();
+  c->add_flag("--json", a->json, "print JSON (docs/evaluate.md)");
+  c->footer(
+      "Examples:\n"
+      "  photohull evaluate out/bunny/mesh.ply --truth scenes/bunny\n"
+      "  photohull evaluate scan.obj --truth cad.stl --absolute 0.1,0.5 --json\n"
+      "  photohull evaluate mesh.ply --truth scenes/bunny --error-image errors.png");
+  c->callback([a] { run(*a); });
+}
+
+}  // namespace photohull::cli

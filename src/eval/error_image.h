@@ -1,0 +1,33 @@
+// A picture of where a reconstruction is off.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/mesh.h"
+#include "core/progress.h"
+#include "eval/truth.h"
+
+namespace photohull::eval {
+
+struct ErrorImageOptions {
+  double range = 0;   ///< distance of the strongest colours, world units; > 0
+  int panel = 480;    ///< edge of a view, pixels; in [64, 4096]
+  std::string title;  ///< ASCII, drawn above the views
+};
+
+/// 8-bit sRGB, row-major from the top-left, 3 bytes a pixel.
+struct ErrorImage {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> rgb;
+};
+
+/// The result from the six directions of the world's axes, parallel projections framed on the
+/// truth, in the colours of error_colour by the exact distance at every pixel, under a headlight;
+/// and a legend. `result` must have faces. Throws Cancelled.
+ErrorImage draw_error_image(const TriMesh& result, const Truth& truth,
+                            const ErrorImageOptions& options, Progress& progress);
+
+}  // namespace photohull::eval

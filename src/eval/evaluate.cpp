@@ -1,0 +1,242 @@
+#include "eval/evaluate.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "eval/nearest_sample.h"
+#include "eval/surface_samples.h"
+#include "eval/topology.h"
+#include "raycast/closest_point.h"
+
+namespace photohull::eval {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kPointCell = 0.0005;  ///< of the diagonal: what point clouds are thinned to
+constexpr double kUnseenReach = 0.05;  ///< of the diagonal: farther results count as seen
+
+/// Calls function(i) for all i < count in parallel, in blocks between which a user can cancel.
+template <typename Function>
+void for_each_index(std::size_t count, Progress& progress, Function function) {
+  constexpr std::size_t kBlock = 16384;
+  for (std::size_t begin = 0; begin < count; begin += kBlock) {
+    progress.check_cancelled();
+    progress.update(double(begin) / double(count));
+    tbb::parallel_for(begin, std::min(count, begin + kBlock), function);
+  }
+  progress.check_cancelled();
+}
+
+/// The result's samples and what the truth says of each.
+struct Measured {
+  std::vector<double> distance, signed_distance;
+  std::vector<double> angle;  ///< degrees; empty for points
+  std::vector<char> seen;
+};
+
+Measured measure(const TriMesh& result, const SurfaceSamples& samples, const Truth& truth,
+                 int min_views, Progress& progress) {
+  const std::size_t count = samples.points.size();
+  Measured m;
+  m.distance.resize(count);
+  m.signed_distance.resize(count);
+  if (!samples.triangles.empty()) m.angle.resize(count);
+  for_each_index(count, progress, [&](std::size_t i) {
+    const SignedDistance::Value value = truth.surface().at(samples.points[i]);
+    m.signed_distance[i] = value.distance;
+    m.distance[i] = std::abs(value.distance);
+    if (m.angle.empty()) return;
+    const glm::dvec3 n = area_vector(result, samples.triangles[i]);
+    m.angle[i] =
+        180 / kPi * std::atan2(glm::length(glm::cross(n, value.normal)), glm::dot(n, value.normal));
+  });
+  m.seen.assign(count, 1);
+  if (!truth.has_views()) return m;
+  const NearestSample nearest(truth.samples());
+  for_each_index(count, progress, [&](std::size_t i) {
+    if (m.distance[i] > kUnseenReach * truth.diagonal()) return;
+    m.seen[i] = truth.views()[nearest.find(samples.points[i]).index] >= min_views;
+  });
+  return m;
+}
+
+std::vector<double> pick(const std::vector<double>& values, const std::vector<char>& wanted) {
+  std::vector<double> picked;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (wanted[i]) picked.push_back(values[i]);
+  return picked;
+}
+
+Score score_at(double distance, double diagonal, const std::vector<double>& to_truth,
+               const std::vector<double>& to_result) {
+  Score s{distance / diagonal, distance, share_within(to_truth, distance),
+          share_within(to_result, distance), 0};
+  const double sum = s.precision + s.recall;
+  s.f = sum > 0 ? 2 * s.precision * s.recall / sum : 0;
+  return s;
+}
+
+double mean_of(const std::vector<double>& values) { return distance_stats(values).mean; }
+
+Part sum_up(const Measured& m, const std::vector<char>& wanted,
+            const std::vector<double>& to_result, double diagonal, const EvaluateOptions& options) {
+  const std::vector<double> distance = pick(m.distance, wanted);
+  Part part;
+  part.share = double(distance.size()) / double(m.distance.size());
+  part.accuracy = quantile(distance, options.accuracy_share);
+  part.to_truth = distance_stats(distance);
+  part.mean_signed = mean_of(pick(m.signed_distance, wanted));
+  for (const double t : options.thresholds) {
+    part.scores.push_back(score_at(t * diagonal, diagonal, distance, to_result));
+    part.scores.back().threshold = t;
+  }
+  for (const double d : options.absolute)
+    part.absolute.push_back(score_at(d, diagonal, distance, to_result));
+  if (!m.angle.empty()) {
+    const std::vector<double> angle = pick(m.angle, wanted);
+    part.normals = {mean_of(angle), quantile(angle, 0.5), share_within(angle, 10)};
+  }
+  return part;
+}
+
+/// The samples of the truth that the result should come near to.
+std::vector<glm::dvec3> wanted_samples(const Truth& truth, const EvaluateOptions& options) {
+  if (!truth.has_views())
+    return sample_surface(truth.mesh(), std::size_t(options.samples), options.seed + 1).points;
+  std::vector<glm::dvec3> wanted;
+  for (std::size_t i = 0; i < truth.samples().size(); ++i)
+    if (truth.views()[i] >= options.min_views) wanted.push_back(truth.samples()[i]);
+  if (wanted.empty())
+    throw Error(concat("no sample of the truth is seen by ", options.min_views,
+                       " or more cameras; lower --min-views"));
+  return wanted;
+}
+
+std::vector<double> distances_to_result(const std::vector<glm::dvec3>& wanted,
+                                        const TriMesh& surface, const SurfaceSamples& samples,
+                                        Progress& progress) {
+  std::vector<double> distance(wanted.size());
+  if (!surface.triangles.empty()) {
+    const ClosestPoint nearest(surface);
+    for_each_index(wanted.size(), progress,
+                   [&](std::size_t i) { distance[i] = nearest.nearest(wanted[i]).distance; });
+  } else {
+    const NearestSample nearest(samples.points);
+    for_each_index(wanted.size(), progress,
+                   [&](std::size_t i) { distance[i] = nearest.find(wanted[i]).distance; });
+  }
+  return distance;
+}
+
+void check_result(const TriMesh& result) {
+  if (result.positions.empty()) throw Error("the result has no vertices; give a mesh");
+  for (std::size_t i = 0; i < result.positions.size(); ++i) {
+    const glm::vec3& p = result.positions[i];
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+      throw Error(concat("vertex ", i, " of the result is no finite point; repair the mesh"));
+  }
+}
+
+double signed_volume(const TriMesh& mesh) {
+  double sum = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    sum += glm::dot(glm::dvec3(mesh.positions[mesh.triangles[t][0]]), area_vector(mesh, t));
+  return sum / 6;
+}
+
+void describe(const TriMesh& result, const Truth& truth, Evaluation& e) {
+  e.truth_name = truth.name;
+  e.truth_note = truth.note;
+  e.vertices = result.positions.size();
+  e.faces = result.triangles.size();
+  e.truth_faces = truth.mesh().triangles.size();
+  e.truth_diagonal = truth.diagonal();
+  e.truth_has_views = truth.has_views();
+}
+
+void check_volume(const TriMesh& result, const Truth& truth, Evaluation& e) {
+  if (e.points) {
+    e.volume.reason = "the result has no faces";
+    return;
+  }
+  e.volume = measure_overlap(result, truth.mesh(), e.options.columns);
+  if (!e.volume.known) return;
+  if (signed_volume(result) < 0)
+    e.warnings.push_back("the result's faces look inwards: its normals count as opposite");
+  if (signed_volume(truth.mesh()) < 0)
+    e.warnings.push_back("the truth's faces look inwards: signs and normals count as opposite");
+}
+
+}  // namespace
+
+void EvaluateOptions::validate() const {
+  const auto fraction = [](const char* name, double value) {
+    if (!(value > 0 && value <= 1))
+      throw UsageError(concat(name, " must be above 0 and at most 1, not ", value));
+  };
+  if (thresholds.empty() || thresholds.size() > 1000 || absolute.size() > 1000)
+    throw UsageError("--thresholds and --absolute take up to 1000 values, the former at least one");
+  for (const double t : thresholds) fraction("--thresholds (fractions of the diagonal)", t);
+  for (const double d : absolute)
+    if (!(d > 0 && std::isfinite(d)))
+      throw UsageError(concat("--absolute (world units) must be above 0, not ", d));
+  fraction("the accuracy's share", accuracy_share);
+  fraction("the completeness threshold", completeness_threshold);
+  if (samples < 1000 || samples > 20000000)
+    throw UsageError(concat("--samples must be from 1000 to 20000000, not ", samples));
+  if (min_views < 1 || min_views > 255)
+    throw UsageError(concat("--min-views must be from 1 to 255, not ", min_views));
+  if (columns < 16 || columns > 4096)
+    throw UsageError(concat("the columns must be from 16 to 4096, not ", columns));
+}
+
+Evaluation evaluate(const TriMesh& result, const Truth& truth, const EvaluateOptions& options,
+                    Progress* given) {
+  Progress silent;
+  Progress& progress = given ? *given : silent;
+  options.validate();
+  check_result(result);
+  Evaluation e;
+  e.options = options;
+  describe(result, truth, e);
+  const TriMesh surface = without_degenerate_faces(result);
+  e.points = surface.triangles.empty();
+  if (e.points && e.faces > 0)
+    e.warnings.push_back("no face of the result has an area: it is judged as points");
+  const std::vector<glm::dvec3> wanted = wanted_samples(truth, options);
+  e.truth_samples = truth.has_views() ? truth.samples().size() : wanted.size();
+  e.truth_samples_seen = wanted.size();
+
+  progress.stage("result to truth", 4);
+  const SurfaceSamples samples =
+      e.points ? thin_points(result, kPointCell * truth.diagonal())
+               : sample_surface(surface, std::size_t(options.samples), options.seed);
+  e.result_samples = samples.points.size();
+  e.result_area = samples.area;
+  Measured measured = measure(surface, samples, truth, options.min_views, progress);
+
+  progress.stage("truth to result", 4);
+  const std::vector<double> to_result = distances_to_result(wanted, surface, samples, progress);
+
+  progress.stage("volumes", 2);
+  const std::vector<char> everything(samples.points.size(), 1);
+  const bool none_seen = std::count(measured.seen.begin(), measured.seen.end(), 1) == 0;
+  if (none_seen) {
+    e.warnings.push_back("no camera sees any of the result: 'seen' counts all of it");
+    measured.seen = everything;
+  }
+  e.all = sum_up(measured, everything, to_result, truth.diagonal(), options);
+  e.seen = sum_up(measured, measured.seen, to_result, truth.diagonal(), options);
+  if (none_seen) e.seen.share = 0;
+  e.to_result = distance_stats(to_result);
+  e.completeness = share_within(to_result, options.completeness_threshold * truth.diagonal());
+  e.hausdorff95 = std::max(e.all.to_truth.q95, e.to_result.q95);
+  e.chamfer = 0.5 * (e.all.to_truth.mean + e.to_result.mean);
+  check_volume(result, truth, e);
+  return e;
+}
+
+}  // namespace photohull::eval
