@@ -136,8 +136,8 @@ void draw_legend(cv::Mat& image, int top, double range, double diagonal) {
   }
   draw_text(image, "inside the truth", left, top + 16, Align::kLeft);
   draw_text(image, "outside the truth", left + width, top + 16, Align::kRight);
-  draw_text(image, "world units", left - 40, top + 66, Align::kRight);
-  draw_text(image, "of the diagonal", left - 40, top + 83, Align::kRight);
+  draw_text(image, "world units", left - 60, top + 66, Align::kRight);
+  draw_text(image, "of the diagonal", left - 60, top + 83, Align::kRight);
 }
 
 }  // namespace
