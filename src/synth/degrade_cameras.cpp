@@ -1,0 +1,102 @@
+#include "synth/degrade_cameras.h"
+
+#include <cmath>
+#include <functional>
+#include <glm/gtc/quaternion.hpp>
+
+#include "core/error.h"
+#include "synth/random.h"
+
+namespace photohull::synth {
+namespace {
+
+using Cameras = std::vector<LensCamera>;
+
+/// The distance at which the points lie, on average.
+double mean_depth(const LensCamera& lens, const std::vector<glm::dvec3>& points) {
+  double sum = 0;
+  for (const glm::dvec3& p : points) sum += lens.camera.to_camera(p).z;
+  return sum / double(points.size());
+}
+
+/// Turned and moved, both by about `pixels`.
+LensCamera move(const LensCamera& lens, Random random, double depth, double pixels) {
+  LensCamera moved = lens;
+  const double step = pixels / lens.camera.intrinsics.fx;
+  glm::dvec3 turn, shift;
+  for (int axis = 0; axis < 3; ++axis)
+    turn[axis] = step * random.normal(), shift[axis] = step * depth * random.normal();
+  const double angle = length(turn);
+  Pose& pose = moved.camera.cam_from_world;
+  if (angle > 0)
+    pose.rotation = glm::mat3_cast(glm::angleAxis(angle, turn / angle)) * pose.rotation;
+  pose.translation = -(pose.rotation * lens.camera.center()) + shift;
+  return moved;
+}
+
+/// `perturb(scale)` with the scale that gives the error asked for; the error grows about
+/// proportionally, so that dividing by it converges at once.
+Cameras scaled(const Cameras& exact, const std::vector<glm::dvec3>& points, double error,
+               const std::function<Cameras(double)>& perturb) {
+  double scale = error;
+  Cameras result;
+  for (int round = 0; round < 100; ++round) {
+    result = perturb(scale);
+    const double found = reprojection_error(exact, result, points);
+    if (std::abs(found - error) < 1e-10 * error) return result;
+    if (!(found > 0) || !std::isfinite(found)) break;
+    scale *= error / found;
+  }
+  throw Error(concat("degradations: cameras cannot be put off by ", error,
+                     " pixels; lower pose_error and intrinsics_error"));
+}
+
+}  // namespace
+
+double reprojection_error(const Cameras& a, const Cameras& b,
+                          const std::vector<glm::dvec3>& points) {
+  PHOTOHULL_CHECK_OP(a.size(), ==, b.size());
+  double sum = 0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    for (const glm::dvec3& point : points) {
+      const auto p = a[i].project(point), q = b[i].project(point);
+      if (!p || !q) continue;
+      sum += dot(*p - *q, *p - *q);
+      ++count;
+    }
+  return count ? std::sqrt(sum / double(count)) : 0;
+}
+
+Cameras degrade_cameras(const Cameras& cameras, const DegradationSpec& spec, std::uint64_t seed,
+                        const std::vector<glm::dvec3>& points) {
+  Cameras posed = cameras;
+  if (spec.pose_error > 0)
+    posed = scaled(cameras, points, spec.pose_error, [&](double scale) {
+      Cameras moved;
+      for (std::size_t i = 0; i < cameras.size(); ++i)
+        moved.push_back(
+            move(cameras[i], Random(seed, 0x905e, i), mean_depth(cameras[i], points), scale));
+      return moved;
+    });
+  if (spec.intrinsics_error <= 0) return posed;
+  Random random(seed, 0x1275);
+  const double focal = random.normal();
+  const glm::dvec2 principal(random.normal(), random.normal());
+  const auto with_error = [&](Cameras set, double scale) {
+    for (LensCamera& lens : set) {
+      Intrinsics& k = lens.camera.intrinsics;
+      const double zoom = 1 + 4 * scale * focal / k.height;
+      k.fx *= zoom, k.fy *= zoom;
+      k.cx += scale * principal.x, k.cy += scale * principal.y;
+    }
+    return set;
+  };
+  const Cameras off = scaled(cameras, points, spec.intrinsics_error,
+                             [&](double scale) { return with_error(cameras, scale); });
+  for (std::size_t i = 0; i < posed.size(); ++i)
+    posed[i].camera.intrinsics = off[i].camera.intrinsics;
+  return posed;
+}
+
+}  // namespace photohull::synth

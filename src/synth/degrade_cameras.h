@@ -1,0 +1,23 @@
+// Cameras as calibration gets them wrong.
+#pragma once
+
+#include <vector>
+
+#include "synth/lens.h"
+#include "synth/spec.h"
+
+namespace photohull::synth {
+
+/// Root mean square distance, over points and views, between a point's pixels in two sets of
+/// cameras. Points behind a camera do not count.
+double reprojection_error(const std::vector<LensCamera>& a, const std::vector<LensCamera>& b,
+                          const std::vector<glm::dvec3>& points);
+
+/// The cameras with errors of exactly the asked sizes over the points: poses turned and moved at
+/// random, each view by itself; focal length and principal point off by the same amounts in all
+/// views. With both, each is of its size by itself.
+std::vector<LensCamera> degrade_cameras(const std::vector<LensCamera>& cameras,
+                                        const DegradationSpec& spec, std::uint64_t seed,
+                                        const std::vector<glm::dvec3>& points);
+
+}  // namespace photohull::synth

@@ -1,0 +1,132 @@
+#include "synth/degrade_image.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/image.h"
+#include "synth/random.h"
+
+namespace photohull::synth {
+namespace {
+
+enum Stream : std::uint64_t { kGains = 0x6a105, kNoise = 0x20153 };
+
+std::vector<float> gaussian(double sigma) {
+  const int reach = std::max(1, int(std::ceil(4 * sigma)));
+  std::vector<float> weights;
+  double sum = 0;
+  for (int i = -reach; i <= reach; ++i) {
+    weights.push_back(float(std::exp(-0.5 * i * i / (sigma * sigma))));
+    sum += weights.back();
+  }
+  for (float& w : weights) w = float(w / sum);
+  return weights;
+}
+
+void vignette(std::vector<glm::vec3>& image, int width, int height, double strength) {
+  const double x0 = (width - 1) / 2.0, y0 = (height - 1) / 2.0, corner = x0 * x0 + y0 * y0;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const double r2 = ((x - x0) * (x - x0) + (y - y0) * (y - y0)) / corner;
+      image[std::size_t(y) * width + x] *= float(1 - strength * r2);
+    }
+}
+
+glm::vec3 gains(const DegradationSpec& spec, std::uint64_t seed, std::size_t view) {
+  Random random(seed, kGains, view);
+  const double stops = spec.exposure * random.normal();
+  const double red = spec.white_balance * random.normal();
+  const double blue = spec.white_balance * random.normal();
+  return {float(std::exp2(stops + red)), float(std::exp2(stops)), float(std::exp2(stops + blue))};
+}
+
+/// Linear light to 8-bit sRGB by the thresholds between the codes.
+std::uint8_t encode(float linear) {
+  static const std::vector<float> thresholds = [] {
+    std::vector<float> t;
+    for (int code = 1; code < 256; ++code) t.push_back(float(linear_from_srgb((code - 0.5) / 255)));
+    return t;
+  }();
+  return std::uint8_t(std::upper_bound(thresholds.begin(), thresholds.end(), linear) -
+                      thresholds.begin());
+}
+
+}  // namespace
+
+void blur(std::vector<glm::vec3>& image, int width, int height, double sigma) {
+  if (sigma <= 0) return;
+  const std::vector<float> weights = gaussian(sigma);
+  const int reach = int(weights.size() / 2);
+  std::vector<glm::vec3> rows(image.size());
+  const auto pass = [&](const std::vector<glm::vec3>& in, std::vector<glm::vec3>& out,
+                        bool across) {
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        glm::vec3 sum(0);
+        for (int i = -reach; i <= reach; ++i) {
+          const int u = across ? std::clamp(x + i, 0, width - 1) : x;
+          const int v = across ? y : std::clamp(y + i, 0, height - 1);
+          sum += weights[std::size_t(i + reach)] * in[std::size_t(v) * width + u];
+        }
+        out[std::size_t(y) * width + x] = sum;
+      }
+  };
+  pass(image, rows, true);
+  pass(rows, image, false);
+}
+
+std::vector<std::uint8_t> through_jpeg(std::span<const std::uint8_t> rgb, int width, int height,
+                                       int quality) {
+  const auto fail = [](const std::string& what) {
+    throw Error("a picture cannot be coded as JPEG (" + what + "); set degradations.jpeg to 0");
+  };
+  OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
+  spec.attribute("Compression", concat("jpeg:", quality));
+  std::vector<unsigned char> coded;
+  OIIO::Filesystem::IOVecOutput memory(coded);
+  const auto output = OIIO::ImageOutput::create("jpeg");
+  if (!output || !output->supports("ioproxy")) fail("OpenImageIO cannot write it to memory");
+  output->threads(1);
+  if (!output->set_ioproxy(&memory) || !output->open("memory.jpg", spec) ||
+      !output->write_image(OIIO::TypeDesc::UINT8, rgb.data()) || !output->close())
+    fail(output->geterror());
+  OIIO::Filesystem::IOMemReader stored(coded.data(), coded.size());
+  const auto input = OIIO::ImageInput::open("memory.jpg", nullptr, &stored);
+  if (!input) fail(OIIO::geterror());
+  input->threads(1);
+  std::vector<std::uint8_t> decoded(rgb.size());
+  if (input->spec().width != width || input->spec().height != height ||
+      input->spec().nchannels != 3 ||
+      !input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, decoded.data()))
+    fail(input->geterror());
+  return decoded;
+}
+
+std::vector<std::uint8_t> expose(const Picture& picture, const DegradationSpec& spec,
+                                 std::uint64_t seed, std::size_t view) {
+  std::vector<glm::vec3> image = picture.colour;
+  if (spec.vignetting > 0) vignette(image, picture.width, picture.height, spec.vignetting);
+  blur(image, picture.width, picture.height, spec.blur);
+  const glm::vec3 gain = gains(spec, seed, view);
+  const bool noisy = spec.photon_noise > 0 || spec.read_noise > 0;
+  std::vector<std::uint8_t> bytes(image.size() * 3);
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    glm::vec3 light = image[i] * gain;
+    if (noisy) {
+      Random random(seed ^ mix_bits(kNoise), view, i);
+      for (int c = 0; c < 3; ++c) {
+        const double variance = spec.read_noise * spec.read_noise +
+                                spec.photon_noise * spec.photon_noise * std::max(0.0f, light[c]);
+        light[c] += float(std::sqrt(variance) * random.normal());
+      }
+    }
+    for (int c = 0; c < 3; ++c) bytes[3 * i + std::size_t(c)] = encode(light[c]);
+  }
+  return spec.jpeg > 0 ? through_jpeg(bytes, picture.width, picture.height, spec.jpeg) : bytes;
+}
+
+}  // namespace photohull::synth

@@ -1,0 +1,26 @@
+// What lens, sensor and camera do to a photograph.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "synth/render.h"
+
+namespace photohull::synth {
+
+/// From linear light to the 8-bit sRGB picture (3 bytes a pixel) that the camera stores, in the
+/// order of a real one: vignetting, blur, exposure and white balance, noise, clipping, sRGB, JPEG.
+/// Vignetting takes a share v r^2 of the light, r = 1 in the corners; the variance of the noise is
+/// read^2 + photon^2 * light. `view` and the seed decide what differs between views.
+std::vector<std::uint8_t> expose(const Picture& picture, const DegradationSpec& spec,
+                                 std::uint64_t seed, std::size_t view);
+
+/// Convolves with a Gaussian of deviation `sigma` pixels; beyond the border its pixels repeat.
+void blur(std::vector<glm::vec3>& image, int width, int height, double sigma);
+
+/// Encodes as baseline JPEG of quality 1 to 100 and decodes again.
+std::vector<std::uint8_t> through_jpeg(std::span<const std::uint8_t> rgb, int width, int height,
+                                       int quality);
+
+}  // namespace photohull::synth

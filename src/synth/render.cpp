@@ -1,0 +1,165 @@
+#include "synth/render.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "synth/random.h"
+
+namespace photohull::synth {
+namespace {
+
+/// Pixels of the frame that the object can touch, ends excluded.
+struct Frame {
+  int x0, y0, x1, y1;
+};
+
+Frame find_frame(const Surface& surface, const LensCamera& lens) {
+  const Intrinsics& k = lens.camera.intrinsics;
+  Frame whole = {0, 0, k.width, k.height};
+  // A lens may bend an edge outward between two vertices.
+  if (lens.distortion.model != DistortionModel::kNone) return whole;
+  glm::dvec2 low(INFINITY), high(-INFINITY);
+  for (std::size_t i = 0; i < surface.mesh.positions.size(); ++i) {
+    const auto p = lens.project(surface.mesh.world(i));
+    if (!p) return whole;
+    low = min(low, *p), high = max(high, *p);
+  }
+  const auto clamped = [](double value, int last) {
+    return int(std::clamp(value, 0.0, double(last)));
+  };
+  return {clamped(std::floor(low.x) - 1, k.width), clamped(std::floor(low.y) - 1, k.height),
+          clamped(std::ceil(high.x) + 2, k.width), clamped(std::ceil(high.y) + 2, k.height)};
+}
+
+class RowRenderer {
+ public:
+  RowRenderer(const Surface& surface, const Shading& shading, const LensCamera& lens,
+              std::size_t view, int samples, std::uint64_t seed)
+      : surface_(surface),
+        shading_(shading),
+        lens_(lens),
+        frame_(find_frame(surface, lens)),
+        to_world_(transpose(lens.camera.cam_from_world.rotation)),
+        eye_(lens.camera.center()),
+        view_(view),
+        n_(samples),
+        seed_(seed) {}
+
+  void render(int y, Picture& picture) const {
+    const std::vector<glm::dvec2> above = edge(y - 0.5), below = edge(y + 0.5);
+    std::vector<Ray> centers;
+    for (int x = 0; x < picture.width; ++x)
+      centers.push_back(ray(0.25 * (above[x] + above[x + 1] + below[x] + below[x + 1])));
+    std::vector<Hit> hits(centers.size());
+    const bool touched = y >= frame_.y0 && y < frame_.y1 && frame_.x0 < frame_.x1;
+    if (touched)
+      surface_.rays->closest(std::span(centers).subspan(frame_.x0, frame_.x1 - frame_.x0),
+                             std::span(hits).subspan(frame_.x0, frame_.x1 - frame_.x0));
+    std::vector<Ray> rays(std::size_t(n_ * n_));
+    for (int x = 0; x < picture.width; ++x) {
+      const std::size_t i = std::size_t(y) * picture.width + x;
+      write_center(centers[x], hits[x], i, picture);
+      glm::vec3 sum(0);
+      int covered = 0;
+      if (touched && x >= frame_.x0 && x < frame_.x1) {
+        sample_rays(x, y, above, below, rays);
+        covered = trace(rays, sum);
+      }
+      const float share = float(covered) / float(n_ * n_);
+      sum /= float(n_ * n_);
+      // The background has no edges finer than a pixel: one look is enough.
+      if (share < 1) sum += (1 - share) * shading_.background(centers[x], view_);
+      picture.colour[i] = sum;
+      picture.coverage[i] = share;
+    }
+  }
+
+ private:
+  /// Positions on the plane z = 1 along a line between two rows of pixels, from the left border of
+  /// the first pixel to the right one of the last.
+  std::vector<glm::dvec2> edge(double y) const {
+    std::vector<glm::dvec2> points;
+    for (int x = 0; x <= lens_.camera.intrinsics.width; ++x) {
+      const auto p = lens_.undistorted({x - 0.5, y});
+      if (!p) throw Error("degradations: the lens folds over within the frame; lower k1, k2");
+      points.push_back(*p);
+    }
+    return points;
+  }
+
+  /// t along the ray is the depth.
+  Ray ray(const glm::dvec2& p) const { return {eye_, to_world_ * glm::dvec3(p, 1.0)}; }
+
+  void sample_rays(int x, int y, const std::vector<glm::dvec2>& above,
+                   const std::vector<glm::dvec2>& below, std::vector<Ray>& rays) const {
+    Random random(seed_, view_, std::uint64_t(y) << 32 | std::uint64_t(x));
+    for (int j = 0; j < n_; ++j)
+      for (int i = 0; i < n_; ++i) {
+        const std::uint64_t bits = random.bits();
+        const double u = (i + double(bits >> 32) * 0x1p-32) / n_;
+        const double v = (j + double(bits & 0xffffffffu) * 0x1p-32) / n_;
+        // Within a pixel the lens is as good as bilinear.
+        rays[std::size_t(j * n_ + i)] = ray((1 - v) * ((1 - u) * above[x] + u * above[x + 1]) +
+                                            v * ((1 - u) * below[x] + u * below[x + 1]));
+      }
+  }
+
+  /// Adds the light of the hits; returns how many there are.
+  int trace(const std::vector<Ray>& rays, glm::vec3& sum) const {
+    thread_local std::vector<Hit> hits;
+    thread_local std::vector<glm::vec3> light;
+    hits.resize(rays.size());
+    light.resize(rays.size());
+    surface_.rays->closest(rays, hits);
+    const auto count =
+        std::count_if(hits.begin(), hits.end(), [](const Hit& h) { return bool(h); });
+    if (count == 0) return 0;
+    shading_.shade(rays, hits, light);
+    for (std::size_t i = 0; i < hits.size(); ++i)
+      if (hits[i]) sum += light[i];
+    return int(count);
+  }
+
+  void write_center(const Ray& center, const Hit& hit, std::size_t i, Picture& picture) const {
+    if (!hit) return;
+    const glm::vec3 normal = surface_.normal(hit);
+    const glm::vec3& face = surface_.face_normals[hit.triangle];
+    picture.depth[i] = float(hit.t);
+    picture.normal[i] = dot(glm::dvec3(face), center.direction) > 0 ? -normal : normal;
+  }
+
+  const Surface& surface_;
+  const Shading& shading_;
+  const LensCamera& lens_;
+  Frame frame_;
+  glm::dmat3 to_world_;
+  glm::dvec3 eye_;
+  std::size_t view_;
+  int n_;
+  std::uint64_t seed_;
+};
+
+}  // namespace
+
+Picture render(const Surface& surface, const Shading& shading, const LensCamera& lens,
+               std::size_t view, int samples, std::uint64_t seed,
+               const std::function<void()>& row_done) {
+  Picture picture;
+  picture.width = lens.camera.intrinsics.width, picture.height = lens.camera.intrinsics.height;
+  const std::size_t pixels = std::size_t(picture.width) * picture.height;
+  picture.colour.resize(pixels);
+  picture.coverage.resize(pixels);
+  picture.depth.resize(pixels);
+  picture.normal.resize(pixels);
+  const RowRenderer rows(surface, shading, lens, view, samples, seed);
+  tbb::parallel_for(0, picture.height, [&](int y) {
+    rows.render(y, picture);
+    row_done();
+  });
+  return picture;
+}
+
+}  // namespace photohull::synth

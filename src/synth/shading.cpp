@@ -1,0 +1,148 @@
+#include "synth/shading.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "synth/random.h"
+#include "synth/solid_noise.h"
+
+namespace photohull::synth {
+namespace {
+
+constexpr float kAmplify = 2.0f;  ///< gradient noise to about [-1, 1]
+
+/// Axes that no face of the built-in shapes is parallel to, for the checker.
+const glm::dmat3 kSkewAxes = {
+    {0.8365, 0.4830, -0.2588}, {-0.4441, 0.8725, 0.2033}, {0.3240, -0.0551, 0.9444}};
+
+glm::vec3 tint(std::uint32_t patch, std::uint32_t seed) {
+  Random random(seed, 0xfacade, patch);
+  glm::vec3 colour;
+  for (int c = 0; c < 3; ++c) colour[c] = float(0.15 + 0.75 * random.uniform());
+  return colour;
+}
+
+float smooth_step(float low, float high, float x) {
+  const float s = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
+  return s * s * (3 - 2 * s);
+}
+
+}  // namespace
+
+Shading::Shading(const Spec& spec, const Surface& surface, double pixel)
+    : spec_(spec), surface_(surface), seed_(std::uint32_t(mix_bits(spec.seed))) {
+  for (const DirectionalLight& d : spec.light.directional)
+    lights_.push_back({normalize(d.direction), glm::vec3(d.colour), true});
+  for (const PointLight& p : spec.light.point)
+    lights_.push_back(
+        {surface.box.center() + surface.diagonal * p.position, glm::vec3(p.colour), false});
+  const MaterialSpec& m = spec.material;
+  checker_ = (m.period_pixels > 0 ? m.period_pixels * pixel : m.size * surface.diagonal) / 2;
+  double farthest = 0;
+  for (const double factor : spec.cameras.distances) farthest = std::max(farthest, factor);
+  clutter_radius_ = spec.background.distance * spec.cameras.distance * farthest * surface.diagonal;
+}
+
+glm::vec3 Shading::albedo(const glm::dvec3& world, std::uint32_t patch) const {
+  const MaterialSpec& m = spec_.material;
+  const glm::vec3 base = m.faces ? tint(patch, seed_) : glm::vec3(m.base);
+  const float contrast = float(m.contrast);
+  if (contrast == 0) return base;
+  const glm::dvec3 p = world - surface_.box.center();
+  if (m.pattern == "checker") {
+    const glm::dvec3 field = floor(kSkewAxes * p / checker_);
+    const bool odd = std::fmod(std::abs(field.x + field.y + field.z), 2.0) == 1.0;
+    return base * (odd ? 1 + contrast : 1 - contrast);
+  }
+  const glm::vec3 q = glm::vec3(p / (surface_.diagonal * m.size)) + 57.3f;
+  const float light = kAmplify * octave_noise(q, m.octaves, float(m.gain), seed_);
+  glm::vec3 colour = base * (1 + contrast * std::clamp(light, -0.95f, 1.0f));
+  if (m.chroma > 0) {
+    const float strength = float(m.chroma) * contrast * kAmplify;
+    const float a = strength * gradient_noise(1.7f * q, seed_ ^ 0x5bd1e995u);
+    const float b = strength * gradient_noise(1.7f * q, seed_ ^ 0x27d4eb2fu);
+    colour *= max(glm::vec3(1 + a, 1 - 0.5f * (a + b), 1 + b), glm::vec3(0));
+  }
+  return min(colour, glm::vec3(1));
+}
+
+/// The GGX lobe (Walter et al. 2007) scaled to 1 at its peak.
+glm::vec3 Shading::highlight(const glm::vec3& normal, const glm::vec3& to_eye,
+                             const glm::vec3& to_light) const {
+  const float cosine = std::max(0.0f, dot(normal, normalize(to_eye + to_light)));
+  const float a2 = float(spec_.material.roughness * spec_.material.roughness);
+  const float below = cosine * cosine * (a2 - 1) + 1;
+  return glm::vec3(float(spec_.material.gloss) * a2 * a2 / (below * below));
+}
+
+void Shading::shade(std::span<const Ray> rays, std::span<const Hit> hits,
+                    std::span<glm::vec3> out) const {
+  struct Point {
+    glm::dvec3 position, origin;  ///< origin: off the surface, for shadow rays
+    glm::vec3 normal, albedo, to_eye;
+    std::size_t index;
+  };
+  thread_local std::vector<Point> points;
+  thread_local std::vector<Ray> shadow;
+  thread_local std::vector<std::uint8_t> blocked;
+  points.clear();
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    if (!hits[i]) continue;
+    const glm::dvec3 at = rays[i].origin + hits[i].t * rays[i].direction;
+    const glm::vec3 to_eye(-normalize(rays[i].direction));
+    glm::vec3 face = surface_.face_normals[hits[i].triangle];
+    const float side = dot(face, to_eye) < 0 ? -1.0f : 1.0f;
+    points.push_back({at, at + 1e-5 * surface_.diagonal * glm::dvec3(side * face),
+                      side * surface_.normal(hits[i]),
+                      albedo(at, surface_.patches[hits[i].triangle]), to_eye, i});
+  }
+  const glm::vec3 ambient(spec_.light.ambient);
+  for (const Point& p : points) out[p.index] = ambient * p.albedo * (0.8f + 0.2f * p.normal.z);
+  for (const Light& light : lights_) {
+    shadow.clear();
+    for (const Point& p : points)
+      shadow.push_back({p.origin, light.directional ? light.place : light.place - p.origin, 0,
+                        light.directional ? INFINITY : 1.0});
+    blocked.assign(shadow.size(), 0);
+    if (spec_.light.shadows) surface_.rays->occluded(shadow, blocked);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Point& p = points[i];
+      const glm::vec3 to_light(normalize(shadow[i].direction));
+      const float cosine = dot(p.normal, to_light);
+      if (blocked[i] || cosine <= 0) continue;
+      glm::vec3 arriving = light.colour;
+      if (!light.directional) {
+        const double distance = length(shadow[i].direction) / surface_.diagonal;
+        arriving *= float(1 / std::max(1e-6, distance * distance));
+      }
+      glm::vec3 reflected = p.albedo;
+      if (spec_.material.gloss > 0) reflected += highlight(p.normal, p.to_eye, to_light);
+      out[p.index] += cosine * arriving * reflected;
+    }
+  }
+}
+
+glm::vec3 Shading::background(const Ray& ray, std::size_t view) const {
+  const BackgroundSpec& b = spec_.background;
+  if (b.type == "colour") return glm::vec3(b.colour);
+  // The sphere around the scene, from within.
+  const glm::dvec3 from = ray.origin - surface_.box.center(), d = normalize(ray.direction);
+  const double along = dot(from, d);
+  const double reach =
+      -along +
+      std::sqrt(std::max(0.0, along * along - dot(from, from) + clutter_radius_ * clutter_radius_));
+  const glm::vec3 q((from + reach * d) / (b.size * surface_.diagonal));
+  const std::uint32_t seed =
+      seed_ ^ 0xc1a77e45u ^ (b.moving ? std::uint32_t(mix_bits(view + 1)) : 0);
+  glm::vec3 colour;
+  for (int c = 0; c < 3; ++c) {
+    const float patch = gradient_noise(0.7f * q, seed + 17u * std::uint32_t(c));
+    const float fine = octave_noise(2.0f * q, 3, 0.6f, seed + 5u);
+    colour[c] = 0.08f + 0.55f * smooth_step(-0.08f, 0.08f, patch) *
+                            (1 + 0.8f * std::clamp(fine, -1.0f, 1.0f));
+  }
+  return colour;
+}
+
+}  // namespace photohull::synth

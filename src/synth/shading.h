@@ -1,0 +1,40 @@
+// Light from the surface and from behind it. Internal to synth.
+#pragma once
+
+#include <vector>
+
+#include "synth/surface.h"
+
+namespace photohull::synth {
+
+/// What the surface reflects at every point, and how much light reaches it. Linear light.
+class Shading {
+ public:
+  /// `pixel` is the world size of the mean camera's pixel at the middle of the box.
+  Shading(const Spec& spec, const Surface& surface, double pixel);
+
+  /// Radiance of hits towards where their rays came from; as many as rays, misses left alone.
+  void shade(std::span<const Ray> rays, std::span<const Hit> hits, std::span<glm::vec3> out) const;
+  /// Reflectance at a point of a patch.
+  glm::vec3 albedo(const glm::dvec3& world, std::uint32_t patch) const;
+  /// What is seen past the object along a ray of view `view`.
+  glm::vec3 background(const Ray& ray, std::size_t view) const;
+
+ private:
+  struct Light {
+    glm::dvec3 place;  ///< position, or unit direction towards it
+    glm::vec3 colour;
+    bool directional;
+  };
+  glm::vec3 highlight(const glm::vec3& normal, const glm::vec3& to_eye,
+                      const glm::vec3& to_light) const;
+
+  const Spec& spec_;
+  const Surface& surface_;
+  std::vector<Light> lights_;
+  double checker_ = 0;  ///< edge of a field, world units
+  double clutter_radius_ = 0;
+  std::uint32_t seed_;
+};
+
+}  // namespace photohull::synth

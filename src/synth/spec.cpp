@@ -1,0 +1,177 @@
+#include "synth/spec.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+#include "core/error.h"
+#include "synth/spec_reader.h"
+#include "synth/spec_visit.h"
+
+namespace photohull::synth {
+namespace fs = std::filesystem;
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr std::uintmax_t kLargestFile = std::uintmax_t(16) << 20;
+
+/// The visitor that writes.
+class SpecWriter {
+ public:
+  void number(const char* name, const double& value, double, double) { (*at_)[name] = value; }
+  void integer(const char* name, const int& value, int, int) { (*at_)[name] = value; }
+  void seed(const char* name, const std::uint64_t& value) { (*at_)[name] = value; }
+  void flag(const char* name, const bool& value) { (*at_)[name] = value; }
+  void text(const char* name, const std::string& value) { (*at_)[name] = value; }
+  void choice(const char* name, const std::string& value, const std::vector<std::string>&) {
+    (*at_)[name] = value;
+  }
+  template <typename Vector>
+  void vector(const char* name, const Vector& value, double, double) {
+    (*at_)[name] = Json::array();
+    for (int i = 0; i < int(Vector::length()); ++i) (*at_)[name].push_back(value[i]);
+  }
+  void numbers(const char* name, const std::vector<double>& value, double, double) {
+    (*at_)[name] = value;
+  }
+  void integers(const char* name, const std::vector<int>& value, int, int) { (*at_)[name] = value; }
+  template <typename Visit>
+  void object(const char* name, const Visit& visit) {
+    Json* outer = at_;
+    (*outer)[name] = Json::object();
+    at_ = &(*outer)[name];
+    visit();
+    at_ = outer;
+  }
+  template <typename T, typename Visit>
+  void objects(const char* name, std::vector<T>& value, const Visit& visit) {
+    Json* outer = at_;
+    Json list = Json::array();
+    for (T& one : value) {
+      Json entry = Json::object();
+      at_ = &entry;
+      visit(one);
+      list.push_back(entry);
+    }
+    at_ = outer;
+    (*at_)[name] = list;
+  }
+  void shape(GeometrySpec& geometry) {
+    if (!geometry.mesh.empty()) {
+      (*at_)["mesh"] = geometry.mesh;
+      return;
+    }
+    (*at_)["shape"] = geometry.shape;
+    (*at_)["parameters"] = Json::object();
+    for (const auto& [name, value] : geometry.parameters) (*at_)["parameters"][name] = value;
+  }
+
+  Json root = Json::object();
+
+ private:
+  Json* at_ = &root;
+};
+
+/// What no single field tells.
+void check_together(const Spec& s, const std::string& source) {
+  const auto fail = [&](const std::string& what) { throw Error(source + ": " + what); };
+  if (s.name.empty() || s.name.size() > 100 ||
+      s.name.find_first_of("/\\\n\r\t\"") != std::string::npos)
+    fail("name: expected 1 to 100 characters without slashes, quotes or line breaks");
+  if (s.cameras.layout == "rings" && s.cameras.rings.empty())
+    fail("cameras.rings: expected one ring at least, found none");
+  if (s.cameras.lowest > s.cameras.highest)
+    fail("cameras.lowest: must not be above cameras.highest");
+  if (s.cameras.distance <= 0) fail("cameras.distance: must be more than 0");
+  for (std::size_t i = 0; i < s.light.directional.size(); ++i)
+    if (length(s.light.directional[i].direction) < 1e-9)
+      fail(concat("light.directional[", i, "].direction: must not be zero"));
+  const int views = view_count(s.cameras);
+  if (views > kMostViews)
+    fail(concat("cameras: ", views, " views are more than ", kMostViews, "; ask for fewer"));
+  const double rays =
+      double(views) * s.image.width * s.image.height * s.image.samples * s.image.samples;
+  if (rays > kMostRays)
+    fail(concat("image: ", views, " views of ", s.image.width, " x ", s.image.height, " with ",
+                s.image.samples, " x ", s.image.samples, " samples need ", rays,
+                " rays, more than ", kMostRays, "; lower width, height or samples"));
+  for (const std::vector<int>* list : {&s.degradations.mask_wrong, &s.degradations.missing_views})
+    for (const int view : *list)
+      if (view >= views)
+        fail(concat("degradations: view ", view, " does not exist; the last one is ", views - 1));
+}
+
+}  // namespace
+
+Spec parse_spec(const std::string& text, const std::string& source, const fs::path& folder) {
+  nlohmann::json root;
+  try {
+    root = nlohmann::json::parse(text, nullptr, true, true);
+  } catch (const nlohmann::json::exception& e) {
+    throw Error(concat(source, ": not valid JSON: ", e.what()));
+  }
+  Spec spec;
+  SpecReader reader(root, source);
+  reader.ignore("result");
+  // The geometry's defaults hang on the shape's name, so they are there when it is not.
+  for (const ShapeParameter& p : find_shape(spec.geometry.shape)->parameters)
+    spec.geometry.parameters[p.name] = p.value;
+  visit_spec(reader, spec);
+  reader.finish();
+  check_together(spec, source);
+  if (!spec.geometry.mesh.empty() && fs::path(spec.geometry.mesh).is_relative())
+    spec.geometry.mesh = fs::absolute(folder / spec.geometry.mesh).lexically_normal().string();
+  return spec;
+}
+
+Spec read_spec(const fs::path& file) {
+  std::error_code failure;
+  const auto size = fs::file_size(file, failure);
+  if (failure || !fs::is_regular_file(file))
+    throw Error(concat(file.string(), ": there is no such file; give a JSON spec, such as one of ",
+                       "datasets/synthetic"));
+  if (size > kLargestFile)
+    throw Error(concat(file.string(), ": larger than any spec; give a JSON spec"));
+  std::ifstream in(file, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (!in) throw Error(concat(file.string(), ": cannot be read"));
+  return parse_spec(text, file.string(), file.parent_path());
+}
+
+std::string spec_text(const Spec& spec, const std::string& extra) {
+  SpecWriter writer;
+  Spec copy = spec;
+  visit_spec(writer, copy);
+  writer.root["result"] = Json::parse(extra);
+  return writer.root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+int view_count(const CameraSpec& cameras) {
+  if (cameras.layout != "rings") return cameras.count;
+  long sum = 0;
+  for (const Ring& ring : cameras.rings) sum += ring.count;
+  return int(std::min<long>(sum, kMostViews + 1));
+}
+
+void set_view_count(CameraSpec& cameras, int count) {
+  const int rings = cameras.layout == "rings" ? int(cameras.rings.size()) : 1;
+  if (count < rings || count > kMostViews)
+    throw UsageError(concat("--views ", count, ": expected a number from ", rings,
+                            rings > 1 ? " (one for every ring)" : "", " to ", kMostViews));
+  if (cameras.layout != "rings") {
+    cameras.count = count;
+    return;
+  }
+  const double before = view_count(cameras);
+  int left = count;
+  for (std::size_t i = 0; i < cameras.rings.size(); ++i) {
+    Ring& ring = cameras.rings[i];
+    const int rest = int(cameras.rings.size() - i) - 1;
+    const int share = int(std::lround(count * ring.count / before));
+    ring.count = rest == 0 ? left : std::clamp(share, 1, left - rest);
+    left -= ring.count;
+  }
+}
+
+}  // namespace photohull::synth

@@ -1,0 +1,201 @@
+#include "synth/spec_reader.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+
+namespace photohull::synth {
+
+using Json = nlohmann::json;
+
+namespace {
+
+constexpr std::size_t kLongestList = 100000;
+
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t above = row[j];
+      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] != b[j - 1])});
+      diagonal = above;
+    }
+  }
+  return row.back();
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string all;
+  for (const std::string& word : words) all += (all.empty() ? "" : ", ") + word;
+  return all;
+}
+
+/// A value as it would stand in the file, cut short.
+std::string shown(const Json& j) {
+  std::string text = j.dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (text.size() > 60) text = text.substr(0, 57) + "...";
+  return text;
+}
+
+}  // namespace
+
+std::string nearest_word(const std::string& word, const std::set<std::string>& candidates) {
+  if (word.size() > 100) return "";
+  std::string best;
+  std::size_t least = std::max<std::size_t>(2, word.size() / 2) + 1;
+  for (const std::string& candidate : candidates) {
+    const std::size_t distance = edit_distance(word, candidate);
+    if (distance < least) least = distance, best = candidate;
+  }
+  return best;
+}
+
+SpecReader::SpecReader(const Json& root, std::string source)
+    : object_(&root), source_(std::move(source)) {
+  if (!root.is_object()) fail("", "expected an object { ... }, found " + shown(root));
+}
+
+const Json* SpecReader::take(const char* name) {
+  known_.insert(name);
+  const auto found = object_->find(name);
+  return found == object_->end() ? nullptr : &*found;
+}
+
+std::string SpecReader::path(const std::string& name) const {
+  return path_.empty() ? name : path_ + "." + name;
+}
+
+void SpecReader::fail(const std::string& place, const std::string& what) const {
+  throw Error(source_ + ": " + (place.empty() ? "" : place + ": ") + what);
+}
+
+double SpecReader::checked(const Json& j, const std::string& place, double low, double high) const {
+  if (!j.is_number()) fail(place, "expected a number, found " + shown(j));
+  const double value = j.get<double>();
+  if (!(value >= low && value <= high))
+    fail(place, concat("expected a number from ", low, " to ", high, ", found ", shown(j)));
+  return value;
+}
+
+int SpecReader::checked_integer(const Json& j, const std::string& place, int low, int high) const {
+  const double value = checked(j, place, low, high);
+  if (value != std::floor(value)) fail(place, "expected a whole number, found " + shown(j));
+  return int(value);
+}
+
+std::vector<double> SpecReader::number_list(const Json& j, const std::string& place, double low,
+                                            double high) const {
+  check_list(j, place);
+  std::vector<double> values;
+  for (std::size_t i = 0; i < j.size(); ++i)
+    values.push_back(checked(j[i], place + "[" + std::to_string(i) + "]", low, high));
+  return values;
+}
+
+void SpecReader::check_list(const Json& j, const std::string& place) const {
+  if (!j.is_array()) fail(place, "expected a list [ ... ], found " + shown(j));
+  if (j.size() > kLongestList)
+    fail(place, concat("the list has ", j.size(), " entries, more than ", kLongestList));
+}
+
+void SpecReader::enter(const Json& j, const std::string& place) {
+  if (!j.is_object()) fail(place, "expected an object { ... }, found " + shown(j));
+  object_ = &j;
+  path_ = place;
+  known_.clear();
+}
+
+void SpecReader::number(const char* name, double& value, double low, double high) {
+  if (const Json* j = take(name)) value = checked(*j, path(name), low, high);
+}
+
+void SpecReader::integer(const char* name, int& value, int low, int high) {
+  if (const Json* j = take(name)) value = checked_integer(*j, path(name), low, high);
+}
+
+void SpecReader::seed(const char* name, std::uint64_t& value) {
+  const Json* j = take(name);
+  if (!j) return;
+  if (!j->is_number_unsigned())
+    fail(path(name), "expected a whole number that is not negative, found " + shown(*j));
+  value = j->get<std::uint64_t>();
+}
+
+void SpecReader::flag(const char* name, bool& value) {
+  const Json* j = take(name);
+  if (!j) return;
+  if (!j->is_boolean()) fail(path(name), "expected true or false, found " + shown(*j));
+  value = j->get<bool>();
+}
+
+void SpecReader::text(const char* name, std::string& value) {
+  const Json* j = take(name);
+  if (!j) return;
+  if (!j->is_string()) fail(path(name), "expected a text in quotes, found " + shown(*j));
+  value = j->get<std::string>();
+}
+
+void SpecReader::choice(const char* name, std::string& value, std::vector<std::string> choices) {
+  std::string text_value = value;
+  text(name, text_value);
+  if (std::find(choices.begin(), choices.end(), text_value) == choices.end()) {
+    const std::string near = nearest_word(text_value, {choices.begin(), choices.end()});
+    fail(path(name), "expected one of " + joined(choices) + ", found \"" + text_value + "\"" +
+                         (near.empty() ? "" : "; did you mean " + near + "?"));
+  }
+  value = text_value;
+}
+
+void SpecReader::numbers(const char* name, std::vector<double>& value, double low, double high) {
+  const Json* j = take(name);
+  if (!j) return;
+  value = number_list(*j, path(name), low, high);
+  if (value.empty()) fail(path(name), "expected one number at least, found none");
+}
+
+void SpecReader::integers(const char* name, std::vector<int>& value, int low, int high) {
+  const Json* j = take(name);
+  if (!j) return;
+  const std::string place = path(name);
+  check_list(*j, place);
+  value.clear();
+  for (std::size_t i = 0; i < j->size(); ++i)
+    value.push_back(checked_integer((*j)[i], place + "[" + std::to_string(i) + "]", low, high));
+}
+
+void SpecReader::shape(GeometrySpec& geometry) {
+  text("mesh", geometry.mesh);
+  if (!geometry.mesh.empty()) {
+    geometry.shape.clear();
+    std::string given;
+    text("shape", given);
+    if (!given.empty()) fail(path("mesh"), "give either a shape or a mesh, not both");
+    return;
+  }
+  std::vector<std::string> names;
+  for (const Shape& s : shapes()) names.push_back(s.name);
+  choice("shape", geometry.shape, names);
+  const Shape& chosen = *find_shape(geometry.shape);
+  geometry.parameters.clear();
+  for (const ShapeParameter& p : chosen.parameters) geometry.parameters[p.name] = p.value;
+  object("parameters", [&] {
+    for (const ShapeParameter& p : chosen.parameters)
+      number(p.name, geometry.parameters[p.name], p.low, p.high);
+  });
+}
+
+void SpecReader::finish() const {
+  for (const auto& [name, value] : object_->items()) {
+    if (known_.count(name)) continue;
+    const std::string near = nearest_word(name, known_);
+    fail(path(name), "there is no such field" +
+                         (near.empty() ? "; known are " + joined({known_.begin(), known_.end()})
+                                       : "; did you mean " + near + "?"));
+  }
+}
+
+}  // namespace photohull::synth

@@ -1,0 +1,197 @@
+#include "synth/synthesize.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "core/error.h"
+#include "synth/degrade_cameras.h"
+#include "synth/degrade_image.h"
+#include "synth/degrade_mask.h"
+#include "synth/place_cameras.h"
+#include "synth/random.h"
+#include "synth/scene_files.h"
+#include "synth/truth.h"
+
+namespace photohull::synth {
+namespace {
+
+constexpr double kBoxMargin = 0.02;  ///< of the diagonal, on every side
+
+/// Progress may be told from several threads.
+class SharedProgress {
+ public:
+  explicit SharedProgress(Progress& progress) : progress_(progress) {}
+  void update(double fraction) {
+    progress_.check_cancelled();
+    const std::lock_guard lock(mutex_);
+    progress_.update(fraction);
+  }
+
+ private:
+  Progress& progress_;
+  std::mutex mutex_;
+};
+
+/// One seed for all that degrades.
+std::uint64_t degradation_seed(const Spec& spec) {
+  return mix_bits(spec.seed) ^ mix_bits(spec.degradations.seed + 0xdea);
+}
+
+/// Indices of the views that are there.
+std::vector<std::size_t> kept_views(const Spec& spec, std::size_t count) {
+  const DegradationSpec& d = spec.degradations;
+  std::vector<bool> gone(count);
+  for (const int view : d.missing_views) gone[std::size_t(view)] = true;
+  // A share of all views, at random among them.
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  Random random(degradation_seed(spec), 0x3155);
+  for (std::size_t i = count; i > 1; --i)
+    std::swap(order[i - 1], order[std::size_t(random.uniform() * double(i))]);
+  for (std::size_t i = 0; i < std::size_t(std::floor(d.missing * double(count) + 1e-9)); ++i)
+    gone[order[i]] = true;
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < count; ++i)
+    if (!gone[i]) kept.push_back(i);
+  if (kept.empty())
+    throw Error("degradations: all views are missing; lower missing or shorten missing_views");
+  return kept;
+}
+
+std::string view_name(std::size_t index) {
+  std::string digits = std::to_string(index);
+  return std::string(digits.size() < 4 ? 4 - digits.size() : 0, '0') + digits;
+}
+
+/// World size of the mean camera's pixel at the middle of the box.
+double mean_pixel(const std::vector<LensCamera>& cameras, const glm::dvec3& middle) {
+  double sum = 0;
+  for (const LensCamera& lens : cameras)
+    sum += lens.camera.to_camera(middle).z / lens.camera.intrinsics.fx;
+  return sum / double(cameras.size());
+}
+
+/// Some thousand vertices spread over the mesh.
+std::vector<glm::dvec3> control_points(const TriMesh& mesh) {
+  std::vector<glm::dvec3> points;
+  const std::size_t stride = mesh.positions.size() / 2000 + 1;
+  for (std::size_t i = 0; i < mesh.positions.size(); i += stride) points.push_back(mesh.world(i));
+  return points;
+}
+
+void check_orientation(const TriMesh& mesh, Progress& progress) {
+  double volume = 0;
+  for (const auto& [a, b, c] : mesh.triangles)
+    volume += dot(glm::dvec3(mesh.positions[a]),
+                  cross(glm::dvec3(mesh.positions[b]), glm::dvec3(mesh.positions[c])));
+  if (volume < 0)
+    progress.warn(
+        "the mesh is inside out (its faces are clockwise seen from outside), so that no camera "
+        "counts as seeing it; turn its faces around");
+}
+
+/// Renders and writes all views; returns the largest share of a frame that is covered.
+double write_views(const Spec& spec, const Surface& surface, const std::vector<LensCamera>& cameras,
+                   const std::vector<std::size_t>& indices, const std::vector<std::string>& names,
+                   const SceneFiles& files, SharedProgress& progress) {
+  const Shading shading(spec, surface, mean_pixel(cameras, surface.box.center()));
+  const std::uint64_t seed = degradation_seed(spec);
+  const double rows = double(cameras.size()) * spec.image.height;
+  std::atomic<long> rows_done = 0;
+  std::vector<double> fill(cameras.size());
+  std::vector<Mask> masks(cameras.size());
+  tbb::parallel_for(std::size_t(0), cameras.size(), [&](std::size_t i) {
+    const Picture picture = render(surface, shading, cameras[i], indices[i], spec.image.samples,
+                                   spec.seed, [&] { progress.update(double(++rows_done) / rows); });
+    masks[i] = exact_mask(picture);
+    const auto& coverage = masks[i].coverage;
+    fill[i] =
+        std::accumulate(coverage.begin(), coverage.end(), 0.0) / (255.0 * double(coverage.size()));
+    if (fill[i] == 0)
+      throw Error(concat("view ", names[i],
+                         " sees nothing of the object; change cameras.distance, fill or "
+                         "principal_offset"));
+    files.write_picture(names[i], picture, expose(picture, spec.degradations, seed, indices[i]));
+  });
+  const auto& wrong = spec.degradations.mask_wrong;
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    const bool other = std::find(wrong.begin(), wrong.end(), int(indices[i])) != wrong.end();
+    const Mask& source = masks[other ? (i + 1) % masks.size() : i];
+    files.write_mask(names[i], degrade_mask(source, spec.degradations, seed, indices[i]));
+  }
+  return *std::max_element(fill.begin(), fill.end());
+}
+
+std::string result_text(const SynthesizedScene& scene, const std::vector<std::string>& names,
+                        const Surface& surface) {
+  const auto list = [](const glm::dvec3& p) { return nlohmann::json{p.x, p.y, p.z}; };
+  const nlohmann::json result = {{"writer", "photohull synthesize"},
+                                 {"views", names},
+                                 {"triangles", scene.triangles},
+                                 {"diagonal", scene.diagonal},
+                                 {"tight_box", {list(surface.box.min), list(surface.box.max)}},
+                                 {"seen_share", scene.seen},
+                                 {"largest_fill", scene.largest_fill}};
+  return result.dump();
+}
+
+double truth_weight(const Spec& spec) {
+  return double(spec.truth_samples) * view_count(spec.cameras) / 2e6;
+}
+
+double render_weight(const Spec& spec) {
+  return double(spec.image.width) * spec.image.height * spec.image.samples * spec.image.samples *
+         view_count(spec.cameras) / 2e7;
+}
+
+}  // namespace
+
+double total_weight(const Spec& spec) { return 1 + render_weight(spec) + truth_weight(spec); }
+
+SynthesizedScene synthesize(const Spec& spec, const std::filesystem::path& folder,
+                            Progress& progress) {
+  progress.stage("surface", 1);
+  const Surface surface = make_surface(spec.geometry);
+  check_orientation(surface.mesh, progress);
+  progress.check_cancelled();
+  const std::vector<LensCamera> all = place_cameras(spec, surface);
+  const std::vector<std::size_t> indices = kept_views(spec, all.size());
+  std::vector<LensCamera> cameras;
+  std::vector<std::string> names;
+  for (const std::size_t i : indices) cameras.push_back(all[i]), names.push_back(view_name(i));
+  const std::vector<LensCamera> written = degrade_cameras(
+      cameras, spec.degradations, degradation_seed(spec), control_points(surface.mesh));
+
+  const SceneFiles files(folder, names);
+  SharedProgress shared(progress);
+  progress.stage("photographs", render_weight(spec));
+  SynthesizedScene result;
+  result.largest_fill = write_views(spec, surface, cameras, indices, names, files, shared);
+
+  progress.stage("truth", truth_weight(spec));
+  std::vector<TruthSample> samples = sample_surface(surface, spec.truth_samples, spec.seed);
+  count_views(surface, cameras, samples, [&](double share) { shared.update(share); });
+  files.write_truth(surface.mesh, samples);
+
+  const glm::dvec3 margin(kBoxMargin * surface.diagonal);
+  const bool differ = spec.degradations.pose_error > 0 || spec.degradations.intrinsics_error > 0;
+  files.write_cameras(names, written, cameras, differ,
+                      {surface.box.min - margin, surface.box.max + margin});
+  result.views = int(cameras.size());
+  result.triangles = surface.mesh.triangles.size();
+  result.diagonal = surface.diagonal;
+  result.middlebury = cameras.front().distortion.model == DistortionModel::kNone;
+  const auto seen = std::count_if(samples.begin(), samples.end(),
+                                  [](const TruthSample& s) { return s.views > 0; });
+  result.seen = double(seen) / double(samples.size());
+  files.finish(spec_text(spec, result_text(result, names, surface)));
+  return result;
+}
+
+}  // namespace photohull::synth

@@ -1,0 +1,33 @@
+// The job: from a spec to a scene folder.
+#pragma once
+
+#include <filesystem>
+
+#include "core/box.h"
+#include "core/progress.h"
+#include "synth/spec.h"
+
+namespace photohull::synth {
+
+/// What was made.
+struct SynthesizedScene {
+  int views = 0;
+  std::size_t triangles = 0;
+  double diagonal = 0;      ///< of the object's tight box, world units
+  double seen = 0;          ///< share of the surface that a camera sees
+  double largest_fill = 0;  ///< share of a frame that the object covers, largest over the views
+  bool middlebury = true;   ///< false where lens distortion keeps that format from being written
+};
+
+/// The stages' weights, for the progress bar.
+double total_weight(const Spec& spec);
+
+/// Renders the scene and writes it to `folder`: images/, masks/, depth/, normals/, gt.ply,
+/// gt_visible.ply, the cameras in every format and bbox.txt, spec.json last. The same spec gives
+/// the same bytes, whatever the number of threads. Throws Error when the spec's mesh, cameras or
+/// folder do not serve, and when a view sees nothing of the object; Cancelled when asked to stop,
+/// the folder then being marked INCOMPLETE.
+SynthesizedScene synthesize(const Spec& spec, const std::filesystem::path& folder,
+                            Progress& progress);
+
+}  // namespace photohull::synth

@@ -1,0 +1,159 @@
+#include "synth/shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <random>
+
+#include "raycast/ray_scene.h"
+#include "synth/mesh_builder.h"
+#include "synth/surface.h"
+
+namespace photohull::synth {
+namespace {
+
+ShapeValues defaults(const Shape& shape) {
+  ShapeValues values;
+  for (const ShapeParameter& p : shape.parameters) values[p.name] = p.value;
+  return values;
+}
+
+double volume(const TriMesh& mesh) {
+  double sum = 0;
+  for (const auto& [a, b, c] : mesh.triangles)
+    sum += dot(glm::dvec3(mesh.positions[a]),
+               cross(glm::dvec3(mesh.positions[b]), glm::dvec3(mesh.positions[c])));
+  return sum / 6;
+}
+
+/// Edges that are not run through exactly once in each sense.
+int open_edges(const TriMesh& mesh) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> runs;
+  for (const auto& t : mesh.triangles)
+    for (int k = 0; k < 3; ++k) ++runs[{t[k], t[(k + 1) % 3]}];
+  int open = 0;
+  for (const auto& [edge, count] : runs) {
+    const auto back = runs.find({edge.second, edge.first});
+    open += count != 1 || back == runs.end();
+  }
+  return open;
+}
+
+/// Signs of the surface along a line from outside, each +1 entering and -1 leaving.
+std::vector<int> crossings(const Surface& s, const glm::dvec3& from, const glm::dvec3& to) {
+  std::vector<int> signs;
+  double t = 0;
+  while (const auto hit = s.rays->closest(from, to - from, t)) {
+    const glm::dvec3 n(s.face_normals[hit->triangle]);
+    signs.push_back(dot(n, to - from) < 0 ? 1 : -1);
+    t = hit->t + 1e-5;
+  }
+  return signs;
+}
+
+class EveryShape : public testing::TestWithParam<std::string> {};
+
+TEST_P(EveryShape, IsClosedAndFacesOutward) {
+  const TriMesh mesh = make_shape(*find_shape(GetParam()));
+  EXPECT_GT(mesh.triangles.size(), 20u);
+  EXPECT_EQ(open_edges(mesh), 0);
+  EXPECT_GT(volume(mesh), 0);
+}
+
+TEST_P(EveryShape, HidesNoSurfaceInside) {
+  const Surface s = make_surface(make_shape(*find_shape(GetParam())), GetParam());
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<double> share(0, 1);
+  const auto in_box = [&] {
+    return s.box.min + s.box.size() * glm::dvec3(share(engine), share(engine), share(engine));
+  };
+  int lines = 0, bad = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const glm::dvec3 inside = in_box(), toward = in_box() - inside;
+    const glm::dvec3 from = inside - 2 * s.diagonal * normalize(toward);
+    const auto signs = crossings(s, from, inside);
+    bool alternates = signs.size() % 2 == 0;
+    for (std::size_t k = 0; k < signs.size(); ++k) alternates &= signs[k] == (k % 2 ? -1 : 1);
+    lines += !signs.empty();
+    bad += !alternates;
+  }
+  EXPECT_GT(lines, 100);
+  // Rays along an edge or closer to the next layer than the step past a hit are rare.
+  EXPECT_LE(bad, lines / 200);
+}
+
+std::vector<std::string> shape_names() {
+  std::vector<std::string> names;
+  for (const Shape& s : shapes()) names.push_back(s.name);
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, EveryShape, testing::ValuesIn(shape_names()),
+                         [](const auto& one) { return one.param; });
+
+TEST(Shapes, SphereAndTorusLieOnTheirFormulas) {
+  for (const glm::vec3& p : make_shape(*find_shape("sphere"), {{"radius", 2.0}}).positions)
+    ASSERT_NEAR(length(glm::dvec3(p)), 2.0, 1e-6);
+  for (const glm::vec3& p : make_shape(*find_shape("torus")).positions)
+    ASSERT_NEAR(std::hypot(std::hypot(double(p.x), double(p.y)) - 1.0, double(p.z)), 0.4, 1e-6);
+}
+
+TEST(Shapes, SphereVolumeIsThatOfABall) {
+  const double exact = 4 * M_PI / 3;
+  const double found = volume(make_shape(*find_shape("sphere")));
+  EXPECT_LT(found, exact);
+  EXPECT_NEAR(found, exact, 3e-4 * exact);
+}
+
+TEST(Shapes, GyroidVerticesAreZerosOfItsFunction) {
+  const Shape& shape = *find_shape("gyroid");
+  const ShapeValues values = defaults(shape);
+  double worst = 0;
+  for (const glm::vec3& p : make_shape(shape).positions)
+    worst = std::max(worst, std::abs(gyroid_field(glm::dvec3(p), values)));
+  EXPECT_LT(worst, 1e-6);
+}
+
+TEST(Shapes, BlockHasExactPlanesAndHole) {
+  const TriMesh mesh = make_shape(*find_shape("block"));
+  for (const glm::vec3& p : mesh.positions) {
+    const bool corner = std::abs(std::abs(p.y) - 0.6f) < 1e-6f;
+    const double on_hole = std::hypot(p.x + 0.5, double(p.y));
+    ASSERT_TRUE(corner || std::abs(on_hole - 0.275) < 1e-6) << p.x << " " << p.y;
+  }
+  // Width x depth x height of both halves, less the hole, a polygon of 256 corners.
+  const double polygon = 128 * std::sin(2 * M_PI / 256) * 0.275 * 0.275;
+  EXPECT_NEAR(volume(mesh), 1.2 * (1.3 + 0.65) - polygon * 1.3, 1e-5);
+}
+
+TEST(Shapes, FacetsFollowTheirCurves) {
+  // Edge midpoints of ball and ring against the formula: less than 1e-4 of the diagonal.
+  const TriMesh ball = make_shape(*find_shape("sphere"));
+  for (const auto& [a, b, c] : ball.triangles) {
+    const glm::dvec3 middle = (glm::dvec3(ball.positions[a]) + glm::dvec3(ball.positions[b]) +
+                               glm::dvec3(ball.positions[c])) /
+                              3.0;
+    ASSERT_LT(1 - length(middle), 1e-4 * std::sqrt(12.0));
+  }
+}
+
+TEST(MeshBuilder, TriangulatesConcavePolygons) {
+  const std::vector<glm::dvec2> comb = {{0, 0}, {5, 0}, {5, 3}, {4, 3}, {4, 1},
+                                        {3, 1}, {3, 3}, {2, 3}, {2, 1}, {0, 1}};
+  for (const bool reversed : {false, true}) {
+    std::vector<glm::dvec2> polygon = comb;
+    if (reversed) std::reverse(polygon.begin(), polygon.end());
+    double area = 0;
+    for (const auto& [a, b, c] : triangulate(polygon)) {
+      const glm::dvec2 u = polygon[b] - polygon[a], v = polygon[c] - polygon[a];
+      const double twice = u.x * v.y - u.y * v.x;
+      EXPECT_GT(reversed ? -twice : twice, 0);
+      area += twice / 2;
+    }
+    EXPECT_NEAR(std::abs(area), 9.0, 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace photohull::synth
