@@ -41,12 +41,14 @@ int run(int argc, char** argv) {
   photohull::cli::add_info(app);
   photohull::cli::add_synthesize(app);
   photohull::cli::add_evaluate(app);
+  photohull::cli::add_chart(app);
   photohull::cli::add_devices(app);
   try {
     app.parse(argc, argv);
     if (app.get_subcommands().empty())
       throw photohull::UsageError(
-          "a command is missing: reconstruct, evaluate, synthesize, info or devices; see --help");
+          "a command is missing: reconstruct, evaluate, synthesize, chart, info or devices; see "
+          "--help");
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() != 0) throw photohull::UsageError(one_line(e.what()));
     app.exit(e);  // prints the help or the version

@@ -2,9 +2,9 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <sys/pidfd.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -75,7 +75,7 @@ struct Pipe {
 /// The child; killed with its group unless it was waited for.
 class Child {
  public:
-  explicit Child(pid_t pid) : pid_(pid), watch_(::pidfd_open(pid, 0)) {}
+  explicit Child(pid_t pid) : pid_(pid), watch_(int(::syscall(SYS_pidfd_open, pid, 0))) {}
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
   ~Child() {
