@@ -2,8 +2,10 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "commands.h"
+#include "core/atomic_file.h"
 #include "core/error.h"
 #include "eval/error_image.h"
 #include "eval/error_mesh.h"
@@ -77,31 +79,49 @@ void print_text(const eval::Evaluation& e) {
   for (const std::string& text : e.warnings) std::printf("warning: %s\n", text.c_str());
 }
 
+/// The files asked for, opened before the work so that a bad path is told at once.
+struct Outputs {
+  explicit Outputs(const Arguments& a) {
+    if (!a.error_mesh.empty()) mesh.emplace(a.error_mesh);
+    if (!a.error_image.empty()) image.emplace(a.error_image);
+  }
+  std::optional<AtomicFile> mesh, image;
+};
+
+void write_image(AtomicFile& file, const Arguments& a, const TriMesh& result,
+                 const eval::Truth& truth, const eval::Evaluation& e, Progress& progress) {
+  const eval::Score& score = e.seen.scores.back();
+  const std::string title =
+      concat(fs::path(a.mesh).filename().string(), ": F ", std::round(10000 * score.f) / 100,
+             " % within ", 100 * score.threshold, " % of the diagonal");
+  const eval::ErrorImage image = eval::draw_error_image(
+      result, truth, {a.error_range * truth.diagonal(), 480, title}, progress);
+  io::write_png(file, image.width, image.height, 3, image.rgb);
+}
+
 void run(const Arguments& a) {
   a.options.validate();
   if (!(a.error_range > 0 && a.error_range <= 1))
     throw UsageError(concat("--error-range must be above 0 and at most 1, not ", a.error_range));
+  Outputs outputs(a);
   TerminalProgress progress(12);
   const eval::Truth truth = eval::read_truth(a.truth);
   const TriMesh result = read_mesh(a.mesh, Faces::kOptional);
-  if (result.triangles.empty() && !a.error_image.empty())
+  if (result.triangles.empty() && outputs.image)
     throw Error(concat(a.mesh, " has no faces; --error-image needs some"));
   eval::Evaluation e = eval::evaluate(result, truth, a.options, &progress);
   e.result_name = a.mesh;
-  const double range = a.error_range * truth.diagonal();
-  if (!a.error_mesh.empty()) {
+  if (outputs.mesh) {
     progress.stage("error mesh", 1);
-    eval::write_error_mesh(a.error_mesh, result, truth.surface(), range, progress);
+    eval::write_error_mesh(*outputs.mesh, result, truth.surface(), a.error_range * truth.diagonal(),
+                           progress);
   }
-  if (!a.error_image.empty()) {
+  if (outputs.image) {
     progress.stage("error picture", 1);
-    const std::string title = concat(fs::path(a.mesh).filename().string(), ": F ",
-                                     std::round(10000 * e.seen.scores.back().f) / 100, " % at ",
-                                     100 * e.seen.scores.back().threshold, " % of the diagonal");
-    const eval::ErrorImage image =
-        eval::draw_error_image(result, truth, {range, 480, title}, progress);
-    io::write_png(a.error_image, image.width, image.height, 3, image.rgb);
+    write_image(*outputs.image, a, result, truth, e, progress);
   }
+  for (std::optional<AtomicFile>* file : {&outputs.mesh, &outputs.image})
+    if (*file) (*file)->commit();
   progress.finish();
   if (a.json)
     std::printf("%s\n", eval::to_json(e).c_str());

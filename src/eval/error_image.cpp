@@ -52,54 +52,62 @@ struct Stage {
   RayScene rays;
   glm::dvec3 centre;
   double reach;  ///< rays start so far in front of the centre
-  double pixel;  ///< world units of a fine pixel
-  int edge;      ///< fine pixels along a panel
+  double frame;  ///< world units along a panel's edge
   double range;
 };
-
-/// Linear light of one row of fine pixels.
-void trace_row(const Stage& stage, const Viewpoint& view, int row, glm::dvec3* out) {
-  const glm::dvec3 right = glm::cross(view.up, view.back);
-  std::vector<Ray> rays(std::size_t(stage.edge));
-  std::vector<Hit> hits(rays.size());
-  for (int x = 0; x < stage.edge; ++x) {
-    const double u = (x + 0.5 - 0.5 * stage.edge) * stage.pixel;
-    const double v = (0.5 * stage.edge - row - 0.5) * stage.pixel;
-    rays[x] = {stage.centre + u * right + v * view.up + stage.reach * view.back, -view.back, 0,
-               INFINITY};
-  }
-  stage.rays.closest(rays, hits);
-  for (int x = 0; x < stage.edge; ++x) {
-    glm::dvec3 code = kBackground;
-    double light = 1;
-    if (hits[x]) {
-      const glm::dvec3 p = rays[x].origin + hits[x].t * rays[x].direction;
-      const glm::dvec3 normal = area_vector(stage.result, hits[x].triangle);
-      const double length = glm::length(normal);
-      const double facing = length > 0 ? std::abs(glm::dot(normal, view.back)) / length : 0;
-      code = error_colour(stage.truth.surface().at(p).distance, stage.range);
-      light = 0.25 + 0.75 * facing;
-    }
-    for (int c = 0; c < 3; ++c) out[x][c] = light * linear_from_srgb(code[c] / 255);
-  }
-}
 
 std::uint8_t encode(double linear) {
   return std::uint8_t(std::lround(255 * srgb_from_linear(std::clamp(linear, 0.0, 1.0))));
 }
 
-void draw_panel(const Stage& stage, const Viewpoint& view, cv::Mat panel) {
-  std::vector<glm::dvec3> fine(std::size_t(stage.edge) * std::size_t(stage.edge));
-  tbb::parallel_for(0, stage.edge, [&](int row) {
-    trace_row(stage, view, row, &fine[std::size_t(row) * stage.edge]);
-  });
-  for (int y = 0; y < panel.rows; ++y)
-    for (int x = 0; x < panel.cols; ++x) {
-      glm::dvec3 sum(0);
-      for (int i = 0; i < kFine * kFine; ++i)
-        sum += fine[std::size_t(kFine * y + i / kFine) * stage.edge + kFine * x + i % kFine];
-      for (int c = 0; c < 3; ++c) panel.at<cv::Vec3b>(y, x)[c] = encode(sum[c] / (kFine * kFine));
+/// 8-bit sRGB to linear light.
+glm::dvec3 decode(const glm::dvec3& code) {
+  return {linear_from_srgb(code.r / 255), linear_from_srgb(code.g / 255),
+          linear_from_srgb(code.b / 255)};
+}
+
+/// Linear light of a pixel from the hits of its rays: the distance is asked for once, at the first
+/// hit; light and coverage are the rays' own.
+glm::dvec3 shade(const Stage& stage, const Ray* rays, const Hit* hits) {
+  const Hit* end = hits + kFine * kFine;
+  const Hit* first = std::find_if(hits, end, [](const Hit& hit) { return bool(hit); });
+  if (first == end) return decode(kBackground);
+  const Ray& ray = rays[first - hits];
+  const glm::dvec3 p = ray.origin + first->t * ray.direction;
+  const glm::dvec3 colour = decode(error_colour(stage.truth.surface().at(p).distance, stage.range));
+  glm::dvec3 sum(0);
+  for (const Hit* hit = hits; hit != end; ++hit) {
+    if (!*hit) {
+      sum += decode(kBackground);
+      continue;
     }
+    const glm::dvec3 normal = area_vector(stage.result, hit->triangle);
+    const double length = glm::length(normal);
+    const double facing = length > 0 ? std::abs(glm::dot(normal, ray.direction)) / length : 0;
+    sum += (0.25 + 0.75 * facing) * colour;
+  }
+  return sum / double(kFine * kFine);
+}
+
+void draw_row(const Stage& stage, const Viewpoint& view, int y, cv::Mat panel) {
+  const glm::dvec3 right = glm::cross(view.up, view.back);
+  const int edge = kFine * panel.cols;
+  std::vector<Ray> rays;
+  for (int x = 0; x < panel.cols; ++x)
+    for (int i = 0; i < kFine * kFine; ++i) {
+      const double u = (kFine * x + i % kFine + 0.5) / edge - 0.5;
+      const double v = 0.5 - (kFine * y + i / kFine + 0.5) / edge;
+      rays.push_back(
+          {stage.centre + stage.frame * (u * right + v * view.up) + stage.reach * view.back,
+           -view.back, 0, INFINITY});
+    }
+  std::vector<Hit> hits(rays.size());
+  stage.rays.closest(rays, hits);
+  for (int x = 0; x < panel.cols; ++x) {
+    const std::size_t first = std::size_t(x) * kFine * kFine;
+    const glm::dvec3 light = shade(stage, &rays[first], &hits[first]);
+    for (int c = 0; c < 3; ++c) panel.at<cv::Vec3b>(y, x)[c] = encode(light[c]);
+  }
 }
 
 enum class Align { kLeft, kCentre, kRight };
@@ -148,10 +156,8 @@ ErrorImage draw_error_image(const TriMesh& result, const Truth& truth,
   const Box box = bounds_of(truth.mesh()), all = bounds_of(result);
   const glm::dvec3 size = box.size();
   const double frame = 1.12 * std::max({size.x, size.y, size.z});
-  const int edge = kFine * options.panel;
   const double reach = glm::length(all.center() - box.center()) + all.diagonal() + box.diagonal();
-  const Stage stage{result,       truth, RayScene(result), box.center(), reach,
-                    frame / edge, edge,  options.range};
+  const Stage stage{result, truth, RayScene(result), box.center(), reach, frame, options.range};
   cv::Mat image(kTitleHeight + 2 * options.panel + kLegendHeight, 3 * options.panel, CV_8UC3,
                 cv::Scalar(kBackground.r, kBackground.g, kBackground.b));
   for (int i = 0; i < 6; ++i) {
@@ -159,7 +165,8 @@ ErrorImage draw_error_image(const TriMesh& result, const Truth& truth,
     progress.update(i / 6.0);
     const cv::Rect area((i % 3) * options.panel, kTitleHeight + (i / 3) * options.panel,
                         options.panel, options.panel);
-    draw_panel(stage, kViewpoints[i], image(area));
+    const cv::Mat panel = image(area);
+    tbb::parallel_for(0, panel.rows, [&](int y) { draw_row(stage, kViewpoints[i], y, panel); });
     draw_text(image, kViewpoints[i].name, area.x + 12, area.y + 18, Align::kLeft);
   }
   draw_text(image, options.title, 12, 26, Align::kLeft);

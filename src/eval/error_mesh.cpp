@@ -34,9 +34,8 @@ std::vector<double> vertex_distances(const TriMesh& result, const SignedDistance
   return distance;
 }
 
-void write_error_mesh(const std::filesystem::path& path, const TriMesh& result,
-                      const SignedDistance& truth, double range, Progress& progress) {
-  AtomicFile probe(path);  // a bad path is told before the work
+void write_error_mesh(AtomicFile& file, const TriMesh& result, const SignedDistance& truth,
+                      double range, Progress& progress) {
   TriMesh mesh = result;
   mesh.confidence.clear();
   mesh.colours.clear();
@@ -46,7 +45,7 @@ void write_error_mesh(const std::filesystem::path& path, const TriMesh& result,
     mesh.colours.emplace_back(linear_from_srgb(code.r), linear_from_srgb(code.g),
                               linear_from_srgb(code.b));
   }
-  write_ply(path, mesh, {{"distance", std::move(distance)}});
+  write_ply(file, mesh, {{"distance", std::move(distance)}});
 }
 
 }  // namespace photohull::eval

@@ -1,9 +1,9 @@
 // Where a reconstruction is off, in colours.
 #pragma once
 
-#include <filesystem>
 #include <vector>
 
+#include "core/atomic_file.h"
 #include "core/mesh.h"
 #include "core/progress.h"
 #include "eval/signed_distance.h"
@@ -19,8 +19,8 @@ std::vector<double> vertex_distances(const TriMesh& result, const SignedDistance
                                      Progress& progress);
 
 /// Writes `result` as a PLY whose vertices have error_colour as colour and their distance as the
-/// property `distance`. Throws Error when the file cannot be written, and Cancelled.
-void write_error_mesh(const std::filesystem::path& path, const TriMesh& result,
-                      const SignedDistance& truth, double range, Progress& progress);
+/// property `distance`; the caller commits. Throws Error when it cannot be written, and Cancelled.
+void write_error_mesh(AtomicFile& file, const TriMesh& result, const SignedDistance& truth,
+                      double range, Progress& progress);
 
 }  // namespace photohull::eval

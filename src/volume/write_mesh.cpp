@@ -143,7 +143,9 @@ void put_faces(const TriMesh& mesh, BlockWriter& out) {
   }
 }
 
-void write(AtomicFile& file, const TriMesh& mesh, const VertexScalars& scalars) {
+}  // namespace
+
+void write_ply(AtomicFile& file, const TriMesh& mesh, const VertexScalars& scalars) {
   check_attributes(mesh, scalars);
   const bool doubles = needs_double(mesh);
   const std::string text = header(mesh, scalars, doubles);
@@ -154,9 +156,7 @@ void write(AtomicFile& file, const TriMesh& mesh, const VertexScalars& scalars) 
   out.flush();
 }
 
-}  // namespace
-
-void write_ply(AtomicFile& file, const TriMesh& mesh) { write(file, mesh, {}); }
+void write_ply(AtomicFile& file, const TriMesh& mesh) { write_ply(file, mesh, VertexScalars()); }
 
 void write_ply(const std::filesystem::path& path, const TriMesh& mesh) {
   write_ply(path, mesh, VertexScalars());
@@ -165,7 +165,7 @@ void write_ply(const std::filesystem::path& path, const TriMesh& mesh) {
 void write_ply(const std::filesystem::path& path, const TriMesh& mesh,
                const VertexScalars& scalars) {
   AtomicFile file(path);
-  write(file, mesh, scalars);
+  write_ply(file, mesh, scalars);
   file.commit();
 }
 

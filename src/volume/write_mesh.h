@@ -27,6 +27,7 @@ void write_ply(AtomicFile& file, const TriMesh& mesh);
 /// each as long as mesh.positions.
 void write_ply(const std::filesystem::path& path, const TriMesh& mesh,
                const VertexScalars& scalars);
+void write_ply(AtomicFile& file, const TriMesh& mesh, const VertexScalars& scalars);
 
 /// Reads a PLY, ascii or binary little-endian, with the properties that write_ply writes in any
 /// order and any scalar type; other properties and elements are skipped, polygons become fans of

@@ -27,7 +27,9 @@ TEST(ErrorMesh, CarriesSignedDistancesAndTheirColours) {
   TriMesh result = test::sphere({0, 0, 0}, 1, 3);
   for (glm::vec3& p : result.positions) p *= p.z > 0 ? 1.5f : 0.75f;
   const Truth truth(test::sphere({0, 0, 0}, 1, 3));
-  write_error_mesh(folder / "e.ply", result, truth.surface(), 0.5, progress);
+  AtomicFile file(folder / "e.ply");
+  write_error_mesh(file, result, truth.surface(), 0.5, progress);
+  file.commit();
   VertexScalars scalars;
   const TriMesh back = read_ply(folder / "e.ply", scalars);
   EXPECT_EQ(back.triangles, result.triangles);
@@ -41,12 +43,15 @@ TEST(ErrorMesh, CarriesSignedDistancesAndTheirColours) {
   }
 }
 
-TEST(ErrorMesh, BadPathsAreErrorsAndLeaveNothing) {
+TEST(ErrorMesh, AFullDiskIsAnError) {
   const ScratchFolder folder;
   Progress progress;
-  const TriMesh mesh = test::sphere({0, 0, 0}, 1, 2);
-  EXPECT_THROW(write_error_mesh(folder / "none/e.ply", mesh, SignedDistance(mesh), 0.5, progress),
-               Error);
+  const TriMesh mesh = test::sphere({0, 0, 0}, 1, 4);
+  {
+    AtomicFile file(folder / "e.ply");
+    const FileSizeLimit limit(5000);
+    EXPECT_THROW(write_error_mesh(file, mesh, SignedDistance(mesh), 0.5, progress), Error);
+  }
   EXPECT_EQ(folder.file_count(), 0u);
 }
 

@@ -1,0 +1,87 @@
+// photohull evaluate as a user runs it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "child_process.h"
+#include "support/scratch_folder.h"
+
+namespace photohull::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+/// A box [0, edge] x [0, 1] x [0, 1].
+std::string box_obj(double edge) {
+  std::string text;
+  for (int i = 0; i < 8; ++i)
+    text += "v " + std::to_string(i & 1 ? edge : 0.0) + (i & 2 ? " 1" : " 0") +
+            (i & 4 ? " 1\n" : " 0\n");
+  return text + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+}
+
+class Evaluate : public testing::Test {
+ protected:
+  void SetUp() override {
+    write_text(folder_ / "truth.obj", box_obj(1));
+    write_text(folder_ / "result.obj", box_obj(1.25));
+  }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  Finished evaluate(const Arguments& more, const std::string& mesh = "result.obj") const {
+    Arguments arguments = {"evaluate",        path(mesh),  "--truth",
+                           path("truth.obj"), "--samples", "5000"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_photohull(arguments);
+  }
+  void fail(int code, const Finished& run, const std::string& part) const {
+    EXPECT_EQ(run.code, code) << run.err;
+    EXPECT_THAT(run.err, HasSubstr(part));
+    EXPECT_EQ(run.error_lines("photohull: ").size(), 1u) << run.err;
+    EXPECT_EQ(run.out, "");
+  }
+  ScratchFolder folder_;
+};
+
+TEST_F(Evaluate, TextAndJsonTellTheSame) {
+  const Finished text = evaluate({});
+  ASSERT_EQ(text.code, 0) << text.err;
+  for (const char* part : {"8 vertices, 12 faces", "all surface counts", "accuracy (90 %)",
+                           "completeness", "IoU 0.80"})
+    EXPECT_THAT(text.out, HasSubstr(part));
+  const Finished run = evaluate({"--json", "--thresholds", "0.01,0.2", "--absolute", "0.3"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const json j = json::parse(run.out);
+  EXPECT_EQ(j["f"].size(), 2u);
+  EXPECT_EQ(j["f"][1]["precision"], 1);
+  EXPECT_EQ(j["f_absolute"][0]["precision"], 1);
+  EXPECT_LT(j["f"][0]["precision"], 0.9);
+  EXPECT_NEAR(j["recon_to_gt"]["max"], 0.25, 1e-6);
+  EXPECT_NEAR(j["volume"]["iou"], 0.8, 0.005);
+  EXPECT_FALSE(j["visibility"]);
+}
+
+TEST_F(Evaluate, WritesItsFilesTogether) {
+  ASSERT_EQ(evaluate({"--error-mesh", path("e.ply"), "--error-image", path("e.png")}).code, 0);
+  EXPECT_THAT(read_text(folder_ / "e.ply"), HasSubstr("property float distance"));
+  EXPECT_EQ(read_text(folder_ / "e.png").substr(1, 3), "PNG");
+  EXPECT_EQ(folder_.file_count(), 4u);
+}
+
+TEST_F(Evaluate, WrongUsageAndBadFiles) {
+  fail(2, run_photohull({"evaluate", path("result.obj")}), "--truth");
+  fail(2, evaluate({"--thresholds", "0.1,2"}), "--thresholds");
+  fail(2, evaluate({"--thresholds", "a"}), "--thresholds");
+  fail(2, evaluate({"--samples", "5"}), "--samples");
+  fail(2, evaluate({"--error-range", "0"}), "--error-range");
+  fail(1, evaluate({}, "missing.obj"), "missing.obj: it is no file");
+  fail(1, evaluate({"--error-mesh", path("none/e.ply")}), "none");
+  write_text(folder_ / "points.obj", "v 0 0 0\nv 1 1 1\n");
+  fail(1, evaluate({"--error-image", path("e.png")}, "points.obj"), "points.obj");
+  fail(1, run_photohull({"evaluate", path("result.obj"), "--truth", path("")}), "no gt.ply");
+  EXPECT_EQ(folder_.file_count(), 3u);
+}
+
+}  // namespace
+}  // namespace photohull::test
