@@ -31,14 +31,13 @@ struct Columns {
 };
 
 /// On which side of the line from a to b the point p lies: +1 left, -1 right, 0 when a = b. Swapped
-/// ends give the opposite, to the last bit; a point on the line counts as moved by (e, e^2).
+/// ends give the opposite, to the last bit; a point on the line counts as moved by (-e^2, e), which
+/// is left of every line taken from its lower end to its higher one.
 int side_of(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& p) {
+  if (a == b) return 0;
   if (a.x > b.x || (a.x == b.x && a.y > b.y)) return -side_of(b, a, p);
-  const glm::dvec2 d = b - a;
-  const double cross = d.x * (p.y - a.y) - d.y * (p.x - a.x);
-  if (cross != 0) return cross > 0 ? 1 : -1;
-  if (d.y != 0) return d.y < 0 ? 1 : -1;
-  return d.x > 0 ? 1 : 0;
+  const double cross = (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
+  return cross >= 0 ? 1 : -1;
 }
 
 double height_at(const std::array<glm::dvec3, 3>& t, const glm::dvec2& p) {

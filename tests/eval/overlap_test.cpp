@@ -34,9 +34,10 @@ TEST(Overlap, LinesThroughEdgesAndCornersCountOnce) {
   for (int x = 0; x < 8; ++x)
     for (int y = 0; y < 8; ++y) fine = test::together(fine, box({x, y, 0}, {x + 1, y + 1, 1}));
   const TriMesh whole = box({-0.5, -0.5, 0}, {8.5, 8.5, 1});
-  for (const int columns : {9, 18, 27}) {
+  for (const int columns : {9, 18, 36}) {
     const Overlap both = measure_overlap(fine, whole, columns);
     ASSERT_TRUE(both.known);
+    EXPECT_NEAR(both.first, 64, 1e-6);
     EXPECT_NEAR(both.first, both.intersection, 1e-9);
     EXPECT_NEAR(both.second, 81, 1e-6);
     EXPECT_EQ(both.together, both.second);

@@ -123,6 +123,24 @@ TEST(ClosestPoint, AgreesWithBruteForceNearAndFar) {
   }
 }
 
+TEST(ClosestPoint, ExactWhereTheTreesOwnPrecisionIsTooCoarse) {
+  // A thousand from the mesh's origin, floats are 6e-5 apart: as much as these distances.
+  RandomPoints random(9);
+  const glm::dvec3 centre(1000, -1000, 1000);
+  TriMesh mesh;
+  for (std::uint32_t i = 0; i < 900; ++i) {
+    mesh.positions.emplace_back(centre + random.point(0.002));
+    if (i % 3 == 2) mesh.triangles.push_back({i - 2, i - 1, i});
+  }
+  const ClosestPoint surface(mesh);
+  for (int i = 0; i < 3000; ++i) {
+    const glm::dvec3 p = centre + random.point(0.003);
+    const NearestPoint expected = brute_force(mesh, p), found = surface.nearest(p);
+    ASSERT_EQ(found.distance, expected.distance) << i;
+    ASSERT_EQ(found.triangle, expected.triangle) << i;
+  }
+}
+
 TEST(ClosestPoint, MeshesOfAnyScaleAndWithoutExtent) {
   for (const float scale : {1e-12f, 1.0f, 1e12f}) {
     TriMesh mesh;
