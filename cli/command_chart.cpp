@@ -46,7 +46,7 @@ void print_summary(const chart::ChartSummary& summary, const chart::Plan& plan,
   std::printf("%d runs made, %d there already, %d of all failed\n", summary.made, summary.reused,
               summary.failed);
   std::printf("  %s/index.html, results.json and %zu charts as SVG and PNG\n", out.c_str(),
-              (summary.files.size() - 2) / 2);
+              (summary.files.size() - 1) / 2);
 }
 
 void run(const Arguments& a) {
@@ -63,7 +63,8 @@ void run(const Arguments& a) {
   TerminalProgress progress(job.total_weight());
   for (const std::string& warning : job.warnings()) progress.warn(warning);
   if (a.dry_run) return print_plan(job);
-  const chart::ChartSummary summary = job.run(progress);
+  chart::ChartSummary summary = job.run(progress);
+  job.draw(summary, progress);
   progress.finish();
   print_summary(summary, job.plan(), a.out);
   if (summary.failed == summary.made + summary.reused)

@@ -192,10 +192,12 @@ ChartSummary ChartJob::run(Progress& progress) {
   }
   summary.outcomes = collect(all);
   for (const RunRecord& record : all) summary.failed += record.failure.has_value();
+  return summary;
+}
+
+void ChartJob::draw(ChartSummary& summary, Progress& progress) const {
   progress.stage("charts", kDrawWeight);
   summary.files = draw_charts(plan_, summary.outcomes, store_.folder(), progress);
-  summary.files.push_back("results.json");
-  return summary;
 }
 
 }  // namespace photohull::chart

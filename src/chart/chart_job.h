@@ -30,7 +30,7 @@ struct ChartSummary {
   int reused = 0;                  ///< runs that were there
   int failed = 0;                  ///< of all
   std::vector<Outcome> outcomes;   ///< of the plan's runs, then the external ones
-  std::vector<std::string> files;  ///< in the output folder
+  std::vector<std::string> files;  ///< in the output folder, the page first
 };
 
 /// A plan and what is left to do of it. A run is done when its record is there for the same scene
@@ -53,12 +53,14 @@ class ChartJob {
   const std::vector<Run>& runs() const { return runs_; }
   /// Records that could not be used, and why.
   const std::vector<std::string>& warnings() const { return warnings_; }
-  /// Sum of the stages' weights that run() will report.
+  /// Sum of the stages' weights that run() and draw() will report.
   double total_weight() const;
 
-  /// Does what is left and draws. Every run that finished is kept, whatever happens after it.
-  /// Throws Cancelled, and Error when the output folder cannot be written.
+  /// Does what is left and writes results.json. Every run that finished is kept, whatever happens
+  /// after it. Throws Cancelled, and Error when the output folder cannot be written.
   ChartSummary run(Progress& progress);
+  /// Draws what run() gave, and adds the names of the files to it.
+  void draw(ChartSummary& summary, Progress& progress) const;
 
  private:
   void plan_runs();

@@ -16,9 +16,8 @@ constexpr int kMaxResolution = 16384;
 
 class PlanReader {
  public:
-  explicit PlanReader(const fs::path& file) : json_(read_json(file)), root_(plan_.file, "", json_) {
-    plan_.file = file;
-  }
+  explicit PlanReader(const fs::path& file)
+      : plan_{.file = file}, json_(read_json(file)), root_(plan_.file, "", json_) {}
 
   Plan read() {
     root_.allow_only({"title", "scenes", "methods", "resolutions", "variants", "arguments",

@@ -4,6 +4,7 @@
 #include <duktape.h>
 
 #include <cstdlib>
+#include <regex>
 
 #include "chart/embedded_files.h"
 #include "core/error.h"
@@ -59,13 +60,22 @@ void on_fatal(void*, const char* message) {
   check_failed("duktape", 0, message ? message : "fatal error");
 }
 
-/// librsvg before 2.56 ignores dominant-baseline; a shift by part of the font's size does the same
-/// everywhere.
-std::string with_shifted_baselines(std::string svg) {
-  const std::string from = "dominant-baseline=\"central\"", to = "dy=\"0.35em\"";
-  for (std::size_t at = svg.find(from); at != std::string::npos;
-       at = svg.find(from, at + to.size()))
-    svg.replace(at, from.size(), to);
+/// Fit for a file: what only a pointing hand would see goes, with the running numbers in its names.
+std::string static_svg(std::string svg) {
+  static const std::regex classes(R"( class="zr[0-9]+-cls-[0-9]+")");
+  static const std::regex ids(R"((id="|url\(#)zr[0-9]+-)");
+  // librsvg before 2.56 ignores dominant-baseline; a shift by part of the font's size does the same
+  // everywhere.
+  static const std::regex baselines(R"( dominant-baseline="central")");
+  svg = std::regex_replace(svg, classes, "");
+  svg = std::regex_replace(svg, ids, "$1");
+  svg = std::regex_replace(svg, baselines, R"( dy="0.35em")");
+  const std::string open = "<style", close = "</style>";
+  for (std::size_t at = svg.find(open); at != std::string::npos; at = svg.find(open, at)) {
+    const std::size_t end = svg.find(close, at);
+    if (end == std::string::npos) break;
+    svg.erase(at, end + close.size() - at);
+  }
   return svg;
 }
 
@@ -115,7 +125,7 @@ std::string SvgRenderer::render(const nlohmann::ordered_json& option, int width,
   if (duk_pcall(context, 3) != 0) heap_->fail("ECharts");
   std::string svg = duk_safe_to_string(context, -1);
   duk_pop(context);
-  return with_shifted_baselines(std::move(svg));
+  return static_svg(std::move(svg));
 }
 
 }  // namespace photohull::chart
