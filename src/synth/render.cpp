@@ -51,8 +51,7 @@ class RowRenderer {
   void render(int y, Picture& picture) const {
     const std::vector<glm::dvec2> above = edge(y - 0.5), below = edge(y + 0.5);
     std::vector<Ray> centers;
-    for (int x = 0; x < picture.width; ++x)
-      centers.push_back(ray(0.25 * (above[x] + above[x + 1] + below[x] + below[x + 1])));
+    for (int x = 0; x < picture.width; ++x) centers.push_back(ray(undistorted({x, y})));
     std::vector<Hit> hits(centers.size());
     const bool touched = y >= frame_.y0 && y < frame_.y1 && frame_.x0 < frame_.x1;
     if (touched)
@@ -82,12 +81,15 @@ class RowRenderer {
   /// the first pixel to the right one of the last.
   std::vector<glm::dvec2> edge(double y) const {
     std::vector<glm::dvec2> points;
-    for (int x = 0; x <= lens_.camera.intrinsics.width; ++x) {
-      const auto p = lens_.undistorted({x - 0.5, y});
-      if (!p) throw Error("degradations: the lens folds over within the frame; lower k1, k2");
-      points.push_back(*p);
-    }
+    for (int x = 0; x <= lens_.camera.intrinsics.width; ++x)
+      points.push_back(undistorted({x - 0.5, y}));
     return points;
+  }
+
+  glm::dvec2 undistorted(const glm::dvec2& pixel) const {
+    const auto p = lens_.undistorted(pixel);
+    if (!p) throw Error("degradations: the lens folds over within the frame; lower k1, k2");
+    return *p;
   }
 
   /// t along the ray is the depth.

@@ -88,6 +88,7 @@ void write_exr(const fs::path& path, int width, int height, int channels, const 
   OIIO::ImageSpec spec(width, height, channels, OIIO::TypeDesc::FLOAT);
   if (channels == 1) spec.channelnames = {"Z"};
   spec.attribute("compression", "zips");
+  spec.attribute("DateTime", "1970:01:01 00:00:00");  // else the time now: other bytes every time
   std::vector<unsigned char> coded;
   OIIO::Filesystem::IOVecOutput memory(coded);
   const auto output = OIIO::ImageOutput::create("openexr");

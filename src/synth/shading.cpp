@@ -100,10 +100,12 @@ void Shading::shade(std::span<const Ray> rays, std::span<const Hit> hits,
   const glm::vec3 ambient(spec_.light.ambient);
   for (const Point& p : points) out[p.index] = ambient * p.albedo * (0.8f + 0.2f * p.normal.z);
   for (const Light& light : lights_) {
-    shadow.clear();
-    for (const Point& p : points)
-      shadow.push_back({p.origin, light.directional ? light.place : light.place - p.origin, 0,
-                        light.directional ? INFINITY : 1.0});
+    shadow.resize(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      shadow[i].origin = points[i].origin;
+      shadow[i].direction = light.directional ? light.place : light.place - points[i].origin;
+      shadow[i].tfar = light.directional ? INFINITY : 1.0;
+    }
     blocked.assign(shadow.size(), 0);
     if (spec_.light.shadows) surface_.rays->occluded(shadow, blocked);
     for (std::size_t i = 0; i < points.size(); ++i) {

@@ -7,30 +7,37 @@
 
 namespace photohull::synth {
 
+/// The largest integer not above x; the library's floor is a call where the instruction is missing.
+inline std::int32_t whole(float x) {
+  const auto i = std::int32_t(x);
+  return i - (float(i) > x);
+}
+
 /// Smooth noise of period-free lattice cells of size 1, in about [-1, 1], 0 on average.
 inline float gradient_noise(const glm::vec3& p, std::uint32_t seed) {
-  const glm::vec3 cell = floor(p), f = p - cell;
-  const auto x = std::uint32_t(std::int32_t(cell.x)), y = std::uint32_t(std::int32_t(cell.y)),
-             z = std::uint32_t(std::int32_t(cell.z));
-  const auto corner = [&](std::uint32_t i, std::uint32_t j, std::uint32_t k) {
-    std::uint32_t h = (x + i) * 0x8da6b343u ^ (y + j) * 0xd8163841u ^ (z + k) * 0xcb1ab31fu ^ seed;
+  const std::int32_t i = whole(p.x), j = whole(p.y), k = whole(p.z);
+  const glm::vec3 f = p - glm::vec3(float(i), float(j), float(k));
+  const auto x = std::uint32_t(i), y = std::uint32_t(j), z = std::uint32_t(k);
+  const auto corner = [&](std::uint32_t dx, std::uint32_t dy, std::uint32_t dz) {
+    std::uint32_t h =
+        (x + dx) * 0x8da6b343u ^ (y + dy) * 0xd8163841u ^ (z + dz) * 0xcb1ab31fu ^ seed;
     h = (h ^ (h >> 15)) * 0x2c1b3c6du;
     h ^= h >> 13;
     // One of the twelve directions to a cube's edges.
-    const float a = f.x - float(i), b = f.y - float(j), c = f.z - float(k);
-    const std::uint32_t pick = (h >> 8) % 12;
+    const float a = f.x - float(dx), b = f.y - float(dy), c = f.z - float(dz);
+    const std::uint32_t pick = ((h >> 16) * 12) >> 16;
     const float u = pick < 8 ? a : b;
     const float v = pick < 4 ? b : c;
     return (h & 1 ? u : -u) + (h & 2 ? v : -v);
   };
   const glm::vec3 w = f * f * f * (f * (f * 6.0f - 15.0f) + 10.0f);
-  const auto row = [&](std::uint32_t j, std::uint32_t k) {
-    const float a = corner(0, j, k);
-    return a + w.x * (corner(1, j, k) - a);
+  const auto row = [&](std::uint32_t dy, std::uint32_t dz) {
+    const float a = corner(0, dy, dz);
+    return a + w.x * (corner(1, dy, dz) - a);
   };
-  const auto plane = [&](std::uint32_t k) {
-    const float a = row(0, k);
-    return a + w.y * (row(1, k) - a);
+  const auto plane = [&](std::uint32_t dz) {
+    const float a = row(0, dz);
+    return a + w.y * (row(1, dz) - a);
   };
   const float a = plane(0);
   return a + w.z * (plane(1) - a);

@@ -1,0 +1,203 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "core/image.h"
+#include "synth/degrade_cameras.h"
+#include "synth/degrade_image.h"
+#include "synth/degrade_mask.h"
+#include "synth/place_cameras.h"
+
+namespace photohull::synth {
+namespace {
+
+Picture flat(int width, int height, float light) {
+  Picture p;
+  p.width = width, p.height = height;
+  p.colour.assign(std::size_t(width) * height, glm::vec3(light));
+  return p;
+}
+
+struct Moments {
+  double mean = 0, deviation = 0;
+};
+
+/// Of one channel, in linear light.
+Moments moments(const std::vector<std::uint8_t>& rgb, int channel) {
+  double sum = 0, squares = 0;
+  for (std::size_t i = std::size_t(channel); i < rgb.size(); i += 3) {
+    const double v = linear_from_srgb(rgb[i] / 255.0);
+    sum += v, squares += v * v;
+  }
+  const double n = double(rgb.size() / 3);
+  return {sum / n, std::sqrt(squares / n - sum * sum / (n * n))};
+}
+
+TEST(Noise, HasTheDeviationAskedFor) {
+  DegradationSpec spec;
+  spec.read_noise = 0.01, spec.photon_noise = 0.03;
+  for (const float light : {0.2f, 0.6f}) {
+    const auto rgb = expose(flat(200, 150, light), spec, 5, 0);
+    const double expected = std::sqrt(0.01 * 0.01 + 0.03 * 0.03 * light);
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(moments(rgb, c).deviation, expected, 0.03 * expected) << light;
+      EXPECT_NEAR(moments(rgb, c).mean, light, 0.002);
+    }
+  }
+  EXPECT_NE(expose(flat(20, 20, 0.5f), spec, 5, 0), expose(flat(20, 20, 0.5f), spec, 5, 1));
+  EXPECT_NE(expose(flat(20, 20, 0.5f), spec, 5, 0), expose(flat(20, 20, 0.5f), spec, 6, 0));
+  EXPECT_EQ(expose(flat(20, 20, 0.5f), spec, 5, 3), expose(flat(20, 20, 0.5f), spec, 5, 3));
+}
+
+TEST(Exposure, WithoutDegradationTheCodesAreExact) {
+  for (int code = 0; code < 256; ++code) {
+    const auto rgb = expose(flat(1, 1, float(linear_from_srgb(code / 255.0))), {}, 1, 0);
+    EXPECT_EQ(rgb, std::vector<std::uint8_t>(3, std::uint8_t(code)));
+  }
+}
+
+TEST(Exposure, GainsSpreadAsAskedFor) {
+  DegradationSpec spec;
+  spec.exposure = 0.3, spec.white_balance = 0.1;
+  double green = 0, red = 0;
+  constexpr int kViews = 2000;
+  for (int view = 0; view < kViews; ++view) {
+    const auto rgb = expose(flat(1, 1, 0.2f), spec, 9, std::size_t(view));
+    const double g = std::log2(linear_from_srgb(rgb[1] / 255.0) / 0.2);
+    const double r = std::log2(linear_from_srgb(rgb[0] / 255.0) / 0.2) - g;
+    green += g * g, red += r * r;
+  }
+  EXPECT_NEAR(std::sqrt(green / kViews), 0.3, 0.02);
+  EXPECT_NEAR(std::sqrt(red / kViews), 0.1, 0.01);
+}
+
+TEST(Vignetting, TakesItsShareInTheCorners) {
+  DegradationSpec spec;
+  spec.vignetting = 0.4;
+  const auto rgb = expose(flat(65, 49, 0.5f), spec, 1, 0);
+  EXPECT_NEAR(linear_from_srgb(rgb[0] / 255.0), 0.3, 0.004);
+  EXPECT_NEAR(linear_from_srgb(rgb[3 * (24 * 65 + 32)] / 255.0), 0.5, 0.004);
+}
+
+TEST(Blur, SpreadsAPointAsAGaussian) {
+  std::vector<glm::vec3> image(41 * 41, glm::vec3(0));
+  image[20 * 41 + 20] = glm::vec3(1);
+  blur(image, 41, 41, 1.7);
+  double sum = 0, variance = 0;
+  for (int y = 0; y < 41; ++y)
+    for (int x = 0; x < 41; ++x) {
+      sum += image[std::size_t(y) * 41 + x].g;
+      variance += image[std::size_t(y) * 41 + x].g * (x - 20) * (x - 20);
+    }
+  EXPECT_NEAR(sum, 1, 1e-5);
+  EXPECT_NEAR(std::sqrt(variance), 1.7, 0.01);
+}
+
+TEST(Jpeg, LosesMoreAtLowerQuality) {
+  std::vector<std::uint8_t> rgb(64 * 48 * 3);
+  for (std::size_t i = 0; i < rgb.size(); ++i)
+    rgb[i] = std::uint8_t(128 + 60 * std::sin(0.01 * double(i % 997)) + double(i * 7919 % 31));
+  const auto error = [&](int quality) {
+    const auto coded = through_jpeg(rgb, 64, 48, quality);
+    double sum = 0;
+    for (std::size_t i = 0; i < rgb.size(); ++i)
+      sum += (double(coded[i]) - rgb[i]) * (double(coded[i]) - rgb[i]);
+    return std::sqrt(sum / double(rgb.size()));
+  };
+  EXPECT_GT(error(95), 0);
+  EXPECT_LT(error(95), 20);
+  EXPECT_GT(error(10), 1.2 * error(95));
+  EXPECT_EQ(through_jpeg(rgb, 64, 48, 50), through_jpeg(rgb, 64, 48, 50));
+}
+
+/// A soft-edged disc.
+Mask disc(double radius) {
+  Mask mask{120, 100, {}};
+  for (int y = 0; y < 100; ++y)
+    for (int x = 0; x < 120; ++x)
+      mask.coverage.push_back(std::uint8_t(
+          std::lround(255 * std::clamp(radius - std::hypot(x - 60, y - 50) + 0.5, 0.0, 1.0))));
+  return mask;
+}
+
+double area(const Mask& mask) {
+  return std::accumulate(mask.coverage.begin(), mask.coverage.end(), 0.0) / 255;
+}
+
+TEST(MaskErrors, GrowAndShrinkByThePixelsAskedFor) {
+  for (const double pixels : {-4.0, -1.5, 1.0, 3.0, 6.5}) {
+    DegradationSpec spec;
+    spec.mask_grow = pixels;
+    const double radius = std::sqrt(area(degrade_mask(disc(30), spec, 1, 0)) / M_PI);
+    EXPECT_NEAR(radius, 30 + pixels, 0.06) << pixels;
+  }
+}
+
+TEST(MaskErrors, HolesHaveTheirSizeAndNumber) {
+  DegradationSpec spec;
+  spec.mask_holes = 1, spec.mask_hole_radius = 5;
+  double lost = 0;
+  int whole = 0;
+  for (std::size_t view = 0; view < 40; ++view) {
+    const double taken = area(disc(40)) - area(degrade_mask(disc(40), spec, 1, view));
+    lost = std::max(lost, taken);
+    whole += taken > M_PI * 25 - 1;
+    EXPECT_GT(taken, 0.3 * M_PI * 25);  // centred on the foreground
+  }
+  EXPECT_NEAR(lost, M_PI * 25, 1.0);
+  EXPECT_GT(whole, 20);
+  spec.mask_holes = 5;
+  EXPECT_GT(area(disc(40)) - area(degrade_mask(disc(40), spec, 1, 0)), 1.5 * M_PI * 25);
+}
+
+TEST(MaskErrors, NoneLeavesTheMaskAlone) {
+  EXPECT_EQ(degrade_mask(disc(20), {}, 1, 0).coverage, disc(20).coverage);
+}
+
+class CameraErrors : public testing::Test {
+ protected:
+  CameraErrors() {
+    const Spec spec = parse_spec(R"({"geometry": {"shape": "block"}})", "test", "");
+    const Surface surface = make_surface(spec.geometry);
+    cameras_ = place_cameras(spec, surface);
+    for (std::size_t i = 0; i < surface.mesh.positions.size(); ++i)
+      points_.push_back(surface.mesh.world(i));
+  }
+  std::vector<LensCamera> cameras_;
+  std::vector<glm::dvec3> points_;
+};
+
+TEST_F(CameraErrors, PosesAreOffByThePixelsAskedFor) {
+  for (const double pixels : {0.25, 2.0, 10.0}) {
+    DegradationSpec spec;
+    spec.pose_error = pixels;
+    const auto off = degrade_cameras(cameras_, spec, 3, points_);
+    EXPECT_NEAR(reprojection_error(cameras_, off, points_), pixels, 1e-6);
+    for (std::size_t i = 0; i < off.size(); ++i) {
+      const glm::dmat3 r = off[i].camera.cam_from_world.rotation;
+      EXPECT_NEAR(determinant(r), 1, 1e-12);
+      EXPECT_EQ(off[i].camera.intrinsics.fx, cameras_[i].camera.intrinsics.fx);
+    }
+  }
+}
+
+TEST_F(CameraErrors, IntrinsicsAreOffByThePixelsAskedForAndAlikeInAllViews) {
+  DegradationSpec spec;
+  spec.intrinsics_error = 1.5;
+  const auto off = degrade_cameras(cameras_, spec, 3, points_);
+  EXPECT_NEAR(reprojection_error(cameras_, off, points_), 1.5, 1e-6);
+  for (const LensCamera& lens : off) {
+    EXPECT_EQ(lens.camera.intrinsics.fx, off[0].camera.intrinsics.fx);
+    EXPECT_EQ(lens.camera.intrinsics.cx, off[0].camera.intrinsics.cx);
+  }
+  EXPECT_EQ(off[5].camera.cam_from_world.translation,
+            cameras_[5].camera.cam_from_world.translation);
+}
+
+TEST_F(CameraErrors, NoneLeavesThemAlone) {
+  EXPECT_EQ(reprojection_error(cameras_, degrade_cameras(cameras_, {}, 3, points_), points_), 0);
+}
+
+}  // namespace
+}  // namespace photohull::synth

@@ -1,0 +1,123 @@
+#include "synth/spec.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+
+namespace photohull::synth {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+std::string message_of(const std::string& text) {
+  try {
+    parse_spec(text, "wrong.json", "");
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "accepted";
+}
+
+TEST(Spec, NothingSaidGivesTheDefaults) {
+  const Spec spec = parse_spec("{}", "spec", "");
+  EXPECT_EQ(spec.geometry.shape, "sphere");
+  EXPECT_EQ(spec.geometry.parameters.at("radius"), 1.0);
+  EXPECT_EQ(spec.image.width, 640);
+  EXPECT_EQ(view_count(spec.cameras), 36);
+}
+
+TEST(Spec, WrittenOutItReadsBackEqual) {
+  const std::string text = R"({"name": "x", "seed": 18446744073709551615,
+    "geometry": {"shape": "torus", "parameters": {"tube": 0.3}, "rotate": [1, 2, 3]},
+    "light": {"point": [{"position": [1, 2, 3]}], "directional": []},
+    "cameras": {"layout": "arc", "count": 7, "distances": [1, 2]},
+    "degradations": {"mask_wrong": [1], "jpeg": 80, "k1": -0.1}})";
+  const std::string once = spec_text(parse_spec(text, "a", ""), R"({"views": ["0000"]})");
+  const Spec again = parse_spec(once, "b", "");
+  EXPECT_EQ(spec_text(again, R"({"views": ["0000"]})"), once);
+  EXPECT_EQ(again.seed, 18446744073709551615ull);
+  EXPECT_EQ(again.geometry.parameters.at("tube"), 0.3);
+  EXPECT_EQ(again.geometry.parameters.at("radius"), 1.0);
+  EXPECT_EQ(again.light.directional.size(), 0u);
+  EXPECT_EQ(again.light.point.at(0).position.y, 2.0);
+  EXPECT_EQ(again.degradations.mask_wrong, std::vector<int>{1});
+}
+
+TEST(Spec, UnknownFieldsAreNamedWithTheNearestKnownOne) {
+  EXPECT_THAT(message_of(R"({"material": {"contrats": 1}})"),
+              AllOf(HasSubstr("wrong.json"), HasSubstr("material.contrats"),
+                    HasSubstr("did you mean contrast?")));
+  EXPECT_THAT(message_of(R"({"geometry": {"shape": "sphere", "parameters": {"radios": 1}}})"),
+              AllOf(HasSubstr("geometry.parameters.radios"), HasSubstr("radius")));
+  EXPECT_THAT(message_of(R"({"cameras": {"rings": [{"count": 3}, {"elevatoin": 3}]}})"),
+              AllOf(HasSubstr("cameras.rings[1].elevatoin"), HasSubstr("elevation")));
+  EXPECT_THAT(message_of(R"({"zzzzzzzzzzz": 1})"), HasSubstr("known are"));
+}
+
+TEST(Spec, WrongTypesAndRangesAreNamed) {
+  EXPECT_THAT(message_of(R"({"image": {"width": "wide"}})"),
+              AllOf(HasSubstr("image.width"), HasSubstr("expected a number"), HasSubstr("wide")));
+  EXPECT_THAT(message_of(R"({"image": {"width": 99999}})"),
+              AllOf(HasSubstr("image.width"), HasSubstr("16384"), HasSubstr("99999")));
+  EXPECT_THAT(message_of(R"({"image": {"width": 64.5}})"), HasSubstr("whole number"));
+  EXPECT_THAT(message_of(R"({"image": 3})"), AllOf(HasSubstr("image"), HasSubstr("object")));
+  EXPECT_THAT(message_of(R"({"material": {"base": [1, 2]}})"), HasSubstr("material.base"));
+  EXPECT_THAT(message_of(R"({"material": {"base": [0.1, 0.2]}})"), HasSubstr("expected 3 numbers"));
+  EXPECT_THAT(message_of(R"({"material": {"pattern": "nois"}})"),
+              AllOf(HasSubstr("noise, checker"), HasSubstr("did you mean noise?")));
+  EXPECT_THAT(message_of(R"({"light": {"shadows": 1}})"), HasSubstr("true or false"));
+  EXPECT_THAT(message_of(R"({"seed": -1})"), HasSubstr("seed"));
+  EXPECT_THAT(message_of(R"({"cameras": {"distances": []}})"), HasSubstr("one number at least"));
+  EXPECT_THAT(message_of(R"({"cameras": {"rings": []}})"), HasSubstr("cameras.rings"));
+  EXPECT_THAT(message_of("[1]"), HasSubstr("object"));
+  EXPECT_THAT(message_of("{"), HasSubstr("not valid JSON"));
+  EXPECT_THAT(message_of(R"({"name": "a/b"})"), HasSubstr("name"));
+}
+
+TEST(Spec, WorkWithoutBoundIsRefused) {
+  EXPECT_THAT(message_of(R"({"cameras": {"rings": [{"count": 2000}, {"count": 2000}]}})"),
+              HasSubstr("2000"));
+  EXPECT_THAT(message_of(R"({"cameras": {"layout": "arc", "count": 2000},
+                             "image": {"width": 16384, "height": 16384, "samples": 16}})"),
+              HasSubstr("lower width, height or samples"));
+  EXPECT_THAT(message_of(R"({"degradations": {"missing_views": [36]}})"), HasSubstr("view 36"));
+}
+
+TEST(Spec, ShapeOrMeshButNotBoth) {
+  EXPECT_THAT(message_of(R"({"geometry": {"shape": "cube", "mesh": "a.ply"}})"),
+              HasSubstr("not both"));
+  EXPECT_THAT(message_of(R"({"geometry": {"shape": "spere"}})"), HasSubstr("did you mean sphere?"));
+  const Spec spec = parse_spec(R"({"geometry": {"mesh": "a.ply"}})", "s", "/data/scans");
+  EXPECT_EQ(spec.geometry.mesh, "/data/scans/a.ply");
+}
+
+TEST(Spec, EveryDatasetParses) {
+  int count = 0;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::string(PHOTOHULL_DATASETS) + "/synthetic")) {
+    if (entry.path().extension() != ".json") continue;
+    const Spec spec = read_spec(entry.path());
+    EXPECT_EQ(spec.name, entry.path().stem().string());
+    EXPECT_GE(view_count(spec.cameras), 18) << spec.name;
+    EXPECT_LE(view_count(spec.cameras), 36) << spec.name;
+    ++count;
+  }
+  EXPECT_GE(count, 12);
+}
+
+TEST(Spec, ViewCountIsDealtToTheRings) {
+  CameraSpec cameras;
+  cameras.rings = {{12, 0, 0}, {6, 30, 0}, {6, 60, 0}};
+  set_view_count(cameras, 9);
+  EXPECT_EQ(view_count(cameras), 9);
+  EXPECT_GT(cameras.rings[0].count, cameras.rings[1].count);
+  set_view_count(cameras, 3);
+  for (const Ring& ring : cameras.rings) EXPECT_EQ(ring.count, 1);
+  EXPECT_THROW(set_view_count(cameras, 2), UsageError);
+  EXPECT_THROW(set_view_count(cameras, kMostViews + 1), UsageError);
+}
+
+}  // namespace
+}  // namespace photohull::synth
