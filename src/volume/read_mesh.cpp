@@ -1,6 +1,5 @@
 #include "volume/read_mesh.h"
 
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include <algorithm>
@@ -94,15 +93,15 @@ void add_mesh(const std::filesystem::path& path, const aiMesh& mesh, const glm::
   const bool mirrored = glm::determinant(glm::dmat3(world)) < 0;
   for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
     const aiFace& face = mesh.mFaces[f];
-    if (face.mNumIndices != 3) continue;  // points and lines
-    std::array<std::uint32_t, 3> triangle;
-    for (int i = 0; i < 3; ++i) {
+    for (unsigned i = 0; i < face.mNumIndices; ++i)
       if (face.mIndices[i] >= mesh.mNumVertices)
         fail(path, concat("face ", f, " has a vertex index out of range"), "repair the file");
-      triangle[i] = std::uint32_t(first + face.mIndices[i]);
+    for (unsigned i = 2; i < face.mNumIndices; ++i) {  // none for points and lines
+      const auto corner = [&](unsigned k) { return std::uint32_t(first + face.mIndices[k]); };
+      const std::uint32_t second = corner(mirrored ? i : i - 1),
+                          third = corner(mirrored ? i - 1 : i);
+      soup.triangles.push_back({corner(0), second, third});
     }
-    if (mirrored) std::swap(triangle[1], triangle[2]);
-    soup.triangles.push_back(triangle);
   }
 }
 
@@ -129,7 +128,7 @@ Soup read_with_assimp(const std::filesystem::path& path) {
   Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
   Assimp::DefaultLogger::get()->attachStream(&complaints, kSeverities);
   Assimp::Importer importer;
-  const aiScene* scene = importer.ReadFile(path.string(), aiProcess_Triangulate);
+  const aiScene* scene = importer.ReadFile(path.string(), 0);
   Assimp::DefaultLogger::get()->detachStream(&complaints, kSeverities);
   Assimp::DefaultLogger::kill();
   if (complaints.found)

@@ -19,10 +19,10 @@ enum class Faces {
 ///   .obj .off .stl .glb .gltf   through assimp: positions and faces only, as floats; transforms of
 ///                 nodes applied (in double), vertices at the same position joined
 ///
-/// Polygons become triangles. The mesh's origin is the middle of its bounds; coordinates are the
-/// file's own (glTF stays y-up). Throws Error naming the file when it cannot be read, has another
-/// extension, no vertices, no faces where they are needed, positions that are no numbers below
-/// 1e30, or indices out of range.
+/// Polygons become fans of triangles, as in read_ply. The mesh's origin is the middle of its
+/// bounds; coordinates are the file's own (glTF stays y-up). Throws Error naming the file when it
+/// cannot be read, has another extension, no vertices, no faces where they are needed, positions
+/// that are no numbers below 1e30, or indices out of range.
 TriMesh read_mesh(const std::filesystem::path& path, Faces faces = Faces::kNeeded);
 
 }  // namespace photohull

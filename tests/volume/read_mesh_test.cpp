@@ -158,6 +158,7 @@ TEST(ReadMesh, BadFilesAreErrorsThatNameThem) {
       {"index.off", "out of range", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n"},
       {"short.off", "too short", "OFF\n4000000000 1 0\n0 0 0\n"},
       {"word.off", "header", "hello\n"},
+      {"line.off", "it has no faces", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n"},
       {"cut.stl", "cut.stl", stl_box().substr(0, 200)},
       {"cut.glb", "cut.glb", glb(gltf_json("", buffer.size()), buffer).substr(0, 700)},
       {"index.glb", "index.glb", glb(gltf_json("", buffer.size()), gltf_buffer(4000))},
