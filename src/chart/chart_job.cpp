@@ -55,6 +55,11 @@ ChartJob::ChartJob(ChartOptions options)
     return std::none_of(plan_.scenes.begin(), plan_.scenes.end(),
                         [&](const PlanScene& s) { return s.name == name; });
   });
+  if (!plan_.mean_over.empty()) {
+    std::string names;
+    for (const std::string& name : plan_.mean_over) names += (names.empty() ? "" : ", ") + name;
+    plan_.notes.push_back("the mean is over " + names);
+  }
   if (!options_.draw_only) plan_runs();
 }
 

@@ -1,6 +1,7 @@
 #include "chart/label_layout.h"
 
 #include <algorithm>
+#include <cstring>
 
 namespace photohull::chart {
 namespace {
@@ -16,8 +17,9 @@ Rect box_at(const glm::dvec2& centre, const glm::dvec2& size) {
 }  // namespace
 
 std::vector<std::optional<glm::dvec2>> place_labels(const std::vector<LabelRequest>& requests,
-                                                    const Rect& area, double marker) {
-  std::vector<Rect> taken;
+                                                    const Rect& area, double marker,
+                                                    const std::vector<Rect>& obstacles) {
+  std::vector<Rect> taken = obstacles;
   for (const LabelRequest& r : requests) taken.push_back(box_at(r.anchor, glm::dvec2(marker)));
   // Right, left, above, below, then the corners.
   constexpr int kSides[][2] = {{1, 0},  {-1, 0}, {0, -1},  {0, 1},
@@ -44,11 +46,17 @@ std::vector<std::optional<glm::dvec2>> place_labels(const std::vector<LabelReque
 }
 
 glm::dvec2 text_size(const std::string& text, double font_pixels) {
-  // Bytes that continue a UTF-8 character take no room.
-  const auto characters = std::count_if(text.begin(), text.end(), [](char c) {
-    return (static_cast<unsigned char>(c) & 0xc0) != 0x80;
-  });
-  return {0.62 * font_pixels * double(characters), 1.2 * font_pixels};
+  double width = 0;  // in sizes of the font; as in DejaVu Sans, which is a wide one
+  for (const unsigned char c : text) {
+    if ((c & 0xc0) == 0x80) continue;  // continues a UTF-8 character
+    if (std::strchr("ijl|!.,:;'()[]- ", c))
+      width += 0.36;
+    else if (std::strchr("mwMW%@", c))
+      width += 0.92;
+    else
+      width += c >= 'A' && c <= 'Z' ? 0.7 : 0.62;
+  }
+  return {width * font_pixels, 1.2 * font_pixels};
 }
 
 }  // namespace photohull::chart

@@ -26,11 +26,13 @@ struct LabelRequest {
 
 /// For each request, in order, the centre of its label: the first free place on rings around its
 /// point, of those inside `area` that cover no marker (squares of `marker` pixels about the
-/// anchors) and no label placed before. Nothing where no place within a few rings is free.
+/// anchors), none of the `obstacles` and no label placed before. Nothing where no place within a
+/// few rings is free.
 std::vector<std::optional<glm::dvec2>> place_labels(const std::vector<LabelRequest>& requests,
-                                                    const Rect& area, double marker);
+                                                    const Rect& area, double marker,
+                                                    const std::vector<Rect>& obstacles = {});
 
-/// Rough size of a text in a sans-serif font, on the wide side.
+/// Size of a text in a wide sans-serif font, about right.
 glm::dvec2 text_size(const std::string& text, double font_pixels);
 
 }  // namespace photohull::chart

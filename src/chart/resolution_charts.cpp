@@ -54,15 +54,13 @@ class TwoPanels {
   }
 
   void add(const Panel& panel) {
-    const int left = panels_ == 0 ? 72 : 572, width = 390;
+    const int left = panels_ == 0 ? 80 : 584, width = 382;
     chart_.option["grid"].push_back(
         {{"left", left}, {"width", width}, {"top", kTop}, {"bottom", kBottom}});
     add_axes(panel);
     Json crosses = Json::array();
     int line = 0;
-    for (const SeriesStyle& s : in_.styles) {
-      add_variant(panel, s, left, line, crosses);
-    }
+    for (const SeriesStyle& s : in_.styles) add_variant(panel, s, left, line, crosses);
     if (any_failed_) {
       Json failed = failed_series(crosses);
       on_panel(failed);
@@ -109,7 +107,7 @@ class TwoPanels {
       y.erase("axisTick");
       y["axisLabel"] = {{"color", "#222"}};
     }
-    y["nameGap"] = 46;
+    y["nameGap"] = 52;
     y["splitLine"] = {{"show", true}, {"lineStyle", {{"color", "#e4e4e4"}}}};
     y["gridIndex"] = panels_;
     chart_.option["xAxis"].push_back(x);
@@ -128,9 +126,11 @@ class TwoPanels {
       const Json hover = {{"formatter", hover_text(*o)}};
       const auto value = panel.value(*o);
       if (o->failed || o->failed_scenes) {
-        crosses.push_back({{"name", o->label() + " failed"},
-                           {"value", {*o->resolution, panel.bad_low ? low_ : high_}},
-                           {"tooltip", hover}});
+        crosses.push_back(
+            {{"name", o->label() + " failed"},
+             {"value", {*o->resolution, panel.bad_low ? low_ : high_}},
+             {"itemStyle", {{"color", "none"}, {"borderColor", s.colour}, {"borderWidth", 2}}},
+             {"tooltip", hover}});
       } else if (o->complete() && value && (!panel.log || *value > 0)) {
         data.push_back(
             {{"name", o->label()}, {"value", {*o->resolution, *value}}, {"tooltip", hover}});
@@ -144,8 +144,8 @@ class TwoPanels {
                    {"symbolSize", kMarker - 1},
                    {"showAllSymbol", true},
                    {"z", 4},
-                   {"itemStyle", {{"color", s.colour}}},
-                   {"lineStyle", {{"width", panel.log ? 0 : 1.6}}},
+                   {"itemStyle", item_style(s)},
+                   {"lineStyle", {{"color", s.colour}, {"width", panel.log ? 0 : 1.6}}},
                    {"data", data}};
     on_panel(series);
     chart_.option["series"].push_back(series);
@@ -168,25 +168,24 @@ class TwoPanels {
                   {samples.back().x, law->at(samples.back().x)}}}};
     on_panel(fit);
     chart_.option["series"].push_back(fit);
-    laws_.push_back({{"type", "text"},
-                     {"silent", true},
-                     {"z", 6},
-                     {"left", left + 10},
-                     {panel.text_at_top ? "top" : "bottom",
-                      panel.text_at_top ? kTop + 6 + 16 * line : kBottom + 8 + 16 * line},
-                     {"style",
-                      {{"text", law_text(s.name, panel.law, *law)},
-                       {"fill", s.colour},
-                       {"fontSize", 12},
-                       {"fontFamily", "sans-serif"}}}});
-    chart_.option["graphic"].push_back(laws_.back());
+    chart_.option["graphic"].push_back(
+        {{"type", "text"},
+         {"silent", true},
+         {"z", 6},
+         {"left", left + 10},
+         {panel.text_at_top ? "top" : "bottom",
+          panel.text_at_top ? kTop + 6 + 16 * line : kBottom + 8 + 16 * line},
+         {"style",
+          {{"text", law_text(s.name, panel.law, *law)},
+           {"fill", s.colour},
+           {"fontSize", 12},
+           {"fontFamily", "sans-serif"}}}});
     ++line;
   }
 
   const ChartInput& in_;
   Chart chart_;
   std::vector<double> ticks_;
-  std::vector<Json> laws_;
   int panels_ = 0;
   bool any_failed_ = false;
   double low_ = 1, high_ = 10;

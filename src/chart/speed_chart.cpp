@@ -36,7 +36,7 @@ class SpeedChart {
     std::vector<std::string> legend;
     for (const SeriesStyle& s : in_.styles)
       if (uses(s)) legend.push_back(s.name);
-    legend.push_back("Pareto front");
+    legend.push_back(kFrontName);
     if (any_failed()) legend.push_back("failed");
     c.option = base_option("Speed against accuracy: " + in_.heading, legend);
     c.option["grid"] = {{"left", kLeft}, {"right", kRight}, {"top", kTop}, {"bottom", kBottom}};
@@ -98,9 +98,10 @@ class SpeedChart {
     return axis;
   }
 
-  glm::dvec2 pixel(const Point& p) const {
-    const double x = std::log(p.cpu / low_) / std::log(high_ / low_);
-    const double y = std::log(p.lack / top_) / std::log(bottom_ / top_);
+  glm::dvec2 pixel(const Point& p) const { return pixel_of(p.cpu, p.lack); }
+  glm::dvec2 pixel_of(double cpu, double lack) const {
+    const double x = std::log(cpu / low_) / std::log(high_ / low_);
+    const double y = std::log(lack / top_) / std::log(bottom_ / top_);
     return {kLeft + x * (1000 - kLeft - kRight), kTop + y * (640 - kTop - kBottom)};
   }
 
@@ -126,8 +127,7 @@ class SpeedChart {
     std::vector<LabelRequest> requests;
     for (const std::size_t i : order)
       requests.push_back({pixel(points_[i]), text_size(label(*points_[i].outcome), kFont)});
-    const auto places =
-        place_labels(requests, {kLeft + 2, kTop - 14, 998, 640 - kBottom + 8}, kMarker);
+    const auto places = find_places(requests);
     labels_.assign(points_.size(), Json{{"show", false}});
     for (std::size_t k = 0; k < order.size(); ++k) {
       if (!places[k]) continue;
@@ -138,9 +138,59 @@ class SpeedChart {
                            {"offset", {std::round(offset.x), std::round(offset.y)}},
                            {"formatter", label(*p.outcome)},
                            {"fontSize", kFont},
-                           {"color", p.outcome->failed ? kFailedColour : "#222"}};
+                           {"color", p.outcome->failed ? kFailedColour : "#222"},
+                           {"textBorderColor", "#fff"},
+                           {"textBorderWidth", 2}};
       add_leader(requests[k], *places[k]);
     }
+  }
+
+  /// Labels keep clear of all lines; those that cannot may lie on lines of equal quality.
+  std::vector<std::optional<glm::dvec2>> find_places(
+      const std::vector<LabelRequest>& requests) const {
+    const Rect area{kLeft + 2, kTop - 14, 998, 640 - kBottom + 8};
+    const std::vector<Rect> front = front_boxes();
+    std::vector<Rect> obstacles = front;
+    for (const double level : kLevels) {
+      const double y = pixel_of(low_, 100 - level).y;
+      if (100 - level <= bottom_ * 1.0001 && 100 - level >= top_ * 0.9999)
+        obstacles.push_back({kLeft, y - 0.5, 1000 - kRight, y + 0.5});
+    }
+    auto places = place_labels(requests, area, kMarker, obstacles);
+    std::vector<LabelRequest> left;
+    obstacles = front;
+    for (std::size_t i = 0; i < requests.size(); ++i) {
+      if (!places[i]) left.push_back(requests[i]);
+      const glm::dvec2 half = 0.5 * (places[i] ? requests[i].size : glm::dvec2(kMarker));
+      const glm::dvec2 at = places[i] ? *places[i] : requests[i].anchor;
+      obstacles.push_back({at.x - half.x, at.y - half.y, at.x + half.x, at.y + half.y});
+      const glm::dvec2 marker = requests[i].anchor;
+      obstacles.push_back({marker.x - kMarker / 2, marker.y - kMarker / 2, marker.x + kMarker / 2,
+                           marker.y + kMarker / 2});
+    }
+    const auto second = place_labels(left, area, kMarker, obstacles);
+    std::size_t next = 0;
+    for (auto& place : places)
+      if (!place) place = second[next++];
+    return places;
+  }
+
+  /// The front's line, as thin boxes that labels keep clear of.
+  std::vector<Rect> front_boxes() const {
+    std::vector<Rect> boxes;
+    for (std::size_t k = 0; k < front_.size(); ++k) {
+      const glm::dvec2 at = front_pixel(k);
+      const bool last = k + 1 == front_.size();
+      const glm::dvec2 next = last ? glm::dvec2(1000 - kRight, at.y) : front_pixel(k + 1);
+      boxes.push_back({at.x, at.y - 2, next.x, at.y + 2});
+      if (!last) boxes.push_back({next.x - 2, next.y, next.x + 2, at.y});
+    }
+    return boxes;
+  }
+  glm::dvec2 front_pixel(std::size_t k) const {
+    const Outcome* o = &in_.outcomes[front_[k]];
+    return pixel(*std::find_if(points_.begin(), points_.end(),
+                               [&](const Point& p) { return p.outcome == o; }));
   }
 
   /// A thin line from a label to its point where they are not neighbours.
@@ -172,12 +222,8 @@ class SpeedChart {
       const Outcome& o = *points_[i].outcome;
       if (!o.failed && o.variant == s.name && o.external == s.external) data.push_back(datum(i));
     }
-    return {{"type", "scatter"},
-            {"name", s.name},
-            {"symbol", s.symbol},
-            {"symbolSize", kMarker},
-            {"z", 4},
-            {"itemStyle", {{"color", s.colour}, {"borderWidth", s.external ? 2 : 0}}},
+    return {{"type", "scatter"},     {"name", s.name}, {"symbol", s.symbol},
+            {"symbolSize", kMarker}, {"z", 4},         {"itemStyle", item_style(s)},
             {"data", data}};
   }
 
@@ -203,7 +249,7 @@ class SpeedChart {
         lines.push_back({{"yAxis", 100 - level},
                          {"label", {{"formatter", shown(level) + " %"}, {"position", "start"}}}});
     return {{"type", "line"},
-            {"name", "Pareto front"},
+            {"name", kFrontName},
             {"step", "end"},
             {"symbol", "none"},
             {"silent", true},

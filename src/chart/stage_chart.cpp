@@ -61,9 +61,12 @@ Chart stage_chart(const ChartInput& input) {
   for (const Outcome& o : input.outcomes) {
     if (o.external) continue;
     Bar bar{&o};
+    auto next = stages.begin();
     for (const StageTime& s : o.stages) {
       bar.total += s.cpu_seconds;
-      if (std::find(stages.begin(), stages.end(), s.name) == stages.end()) stages.push_back(s.name);
+      // A stage that only some runs have goes where those have it.
+      const auto known = std::find(stages.begin(), stages.end(), s.name);
+      next = (known == stages.end() ? stages.insert(next, s.name) : known) + 1;
     }
     bars.push_back(bar);
     names.push_back(bar_label(bar));

@@ -13,9 +13,29 @@ namespace {
 // Okabe and Ito's colours for all kinds of colour vision, yellow last because the page is white.
 constexpr std::array kColours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00",
                                  "#56b4e9", "#000000", "#8a8a8a", "#b8a800"};
-constexpr std::array kSymbols = {"circle", "rect", "triangle", "diamond", "pin", "roundRect"};
-constexpr std::array kHollow = {"emptyCircle",  "emptyRect", "emptyTriangle",
-                                "emptyDiamond", "emptyPin",  "emptyRoundRect"};
+constexpr std::array kSymbols = {
+    "circle",
+    "rect",
+    "triangle",
+    "diamond",
+    "path://M0,0L10,0L5,9Z",                                         // triangle on its tip
+    "path://M3,0L7,0L7,3L10,3L10,7L7,7L7,10L3,10L3,7L0,7L0,3L3,3Z",  // cross
+    "path://M2.5,0L7.5,0L10,5L7.5,10L2.5,10L0,5Z",                   // hexagon
+    "path://M5,0L6.5,3.5L10,3.8L7.3,6.2L8.1,10L5,8L1.9,10L2.7,6.2L0,3.8L3.5,3.5Z"};  // star
+constexpr const char* kDashes = "path://M0,4L6,4L6,6L0,6ZM9,4L15,4L15,6L9,6Z";
+
+/// These digits times powers of ten, between two positive numbers.
+std::vector<double> ticks_of(const std::vector<double>& digits, double low, double high) {
+  std::vector<double> ticks;
+  for (int power = int(std::floor(std::log10(low))); power <= std::log10(high); ++power)
+    for (const double digit : digits) {
+      // Negative powers by division: 2 / 10 is 0.2, 2 * 0.1 is not.
+      const double scale = std::pow(10.0, std::abs(power));
+      const double tick = power < 0 ? digit / scale : digit * scale;
+      if (tick >= low && tick <= high) ticks.push_back(tick);
+    }
+  return ticks;
+}
 
 }  // namespace
 
@@ -29,8 +49,7 @@ std::vector<SeriesStyle> styles_of(const std::vector<Outcome>& outcomes) {
       };
       if (o.external != external || std::any_of(styles.begin(), styles.end(), same)) continue;
       const std::string colour = kColours[styles.size() % kColours.size()];
-      const std::string symbol =
-          external ? kHollow[marker % kHollow.size()] : kSymbols[marker % kSymbols.size()];
+      const std::string symbol = kSymbols[marker % kSymbols.size()];
       styles.push_back({o.variant, colour, symbol, external});
       ++marker;
     }
@@ -48,10 +67,8 @@ const SeriesStyle& style_of(const std::vector<SeriesStyle>& styles, const Outcom
 
 std::string shown(double value) {
   char text[40];
-  if (std::abs(value) >= 100)
-    std::snprintf(text, sizeof text, "%.0f", value);
-  else
-    std::snprintf(text, sizeof text, "%.3g", value);
+  const double size = std::abs(value);
+  std::snprintf(text, sizeof text, size >= 1000 ? "%.0f" : size >= 10 ? "%.4g" : "%.3g", value);
   return text;
 }
 
@@ -79,17 +96,10 @@ std::string escaped(std::string_view text) {
 }
 
 std::vector<double> log_ticks(double low, double high) {
-  std::vector<double> ticks;
-  for (int power = int(std::floor(std::log10(low))); power <= std::log10(high); ++power)
-    for (const double digit : {1.0, 2.0, 5.0}) {
-      // Negative powers by division: 2 / 10 is 0.2, 2 * 0.1 is not.
-      const double scale = std::pow(10.0, std::abs(power));
-      const double tick = power < 0 ? digit / scale : digit * scale;
-      if (tick >= low && tick <= high) ticks.push_back(tick);
-    }
+  std::vector<double> ticks = ticks_of({1, 2, 5}, low, high);
+  if (ticks.size() < 3) ticks = ticks_of({1, 1.5, 2, 3, 4, 5, 6, 7, 8, 9}, low, high);
   return ticks;
 }
-
 std::pair<double, double> log_range(std::vector<double> values) {
   std::erase_if(values, [](double v) { return !(v > 0) || !std::isfinite(v); });
   if (values.empty()) return {1, 10};
@@ -112,7 +122,17 @@ Json log_axis(const std::string& name, double low, double high, const std::vecto
           {"splitLine", {{"show", false}}}};
 }
 
+Json item_style(const SeriesStyle& style) {
+  if (!style.external) return {{"color", style.colour}, {"opacity", 1}};
+  return {{"color", "#fff"}, {"borderColor", style.colour}, {"borderWidth", 2}, {"opacity", 1}};
+}
+
 Json base_option(const std::string& title, const std::vector<std::string>& legend) {
+  Json entries = Json::array();
+  for (const std::string& name : legend) {
+    entries.push_back({{"name", name}});
+    if (name == kFrontName) entries.back()["icon"] = kDashes;
+  }
   return {{"animation", false},
           {"backgroundColor", "#ffffff"},
           {"textStyle", {{"fontFamily", "sans-serif"}}},
@@ -121,7 +141,9 @@ Json base_option(const std::string& title, const std::vector<std::string>& legen
                                   {"top", 8},
                                   {"textStyle", {{"fontSize", 17}, {"color", "#111"}}}}})},
           {"legend",
-           {{"data", legend},
+           {{"data", entries},
+            {"itemWidth", 15},
+            {"itemHeight", 11},
             {"top", 38},
             {"left", "center"},
             {"width", 900},
