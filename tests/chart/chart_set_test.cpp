@@ -50,10 +50,11 @@ TEST(MakeCharts, OneSceneHasNoMean) {
 
 TEST(MakeCharts, MarkersAndColoursTellVariantsApart) {
   const auto styles = styles_of(example_outcomes());
-  std::set<std::string> colours, symbols;
+  std::set<std::string> colours;
+  std::set<std::pair<std::string, bool>> symbols;  // external ones are hollow
   for (const SeriesStyle& s : styles) {
     colours.insert(s.colour);
-    symbols.insert(s.symbol);
+    symbols.emplace(s.symbol, s.external);
   }
   EXPECT_EQ(colours.size(), styles.size());
   EXPECT_EQ(symbols.size(), styles.size());
