@@ -36,6 +36,8 @@ Frame find_frame(const Surface& surface, const LensCamera& lens) {
 
 class RowRenderer {
  public:
+  static constexpr int kBlock = 16;  ///< pixels whose rays are traced at once
+
   RowRenderer(const Surface& surface, const Shading& shading, const LensCamera& lens,
               std::size_t view, int samples, std::uint64_t seed)
       : surface_(surface),
@@ -57,22 +59,18 @@ class RowRenderer {
     if (touched)
       surface_.rays->closest(std::span(centers).subspan(frame_.x0, frame_.x1 - frame_.x0),
                              std::span(hits).subspan(frame_.x0, frame_.x1 - frame_.x0));
-    std::vector<Ray> rays(std::size_t(n_ * n_));
     for (int x = 0; x < picture.width; ++x) {
       const std::size_t i = std::size_t(y) * picture.width + x;
       write_center(centers[x], hits[x], i, picture);
-      glm::vec3 sum(0);
-      int covered = 0;
-      if (touched && x >= frame_.x0 && x < frame_.x1) {
-        sample_rays(x, y, above, below, rays);
-        covered = trace(rays, sum);
-      }
-      const float share = float(covered) / float(n_ * n_);
-      sum /= float(n_ * n_);
+    }
+    if (touched)
+      for (int x = frame_.x0; x < frame_.x1; x += kBlock)
+        trace(x, std::min(x + kBlock, frame_.x1), y, above, below, picture);
+    for (int x = 0; x < picture.width; ++x) {
+      const std::size_t i = std::size_t(y) * picture.width + x;
       // The background has no edges finer than a pixel: one look is enough.
-      if (share < 1) sum += (1 - share) * shading_.background(centers[x], view_);
-      picture.colour[i] = sum;
-      picture.coverage[i] = share;
+      if (picture.coverage[i] < 1)
+        picture.colour[i] += (1 - picture.coverage[i]) * shading_.background(centers[x], view_);
     }
   }
 
@@ -96,7 +94,7 @@ class RowRenderer {
   Ray ray(const glm::dvec2& p) const { return {eye_, to_world_ * glm::dvec3(p, 1.0)}; }
 
   void sample_rays(int x, int y, const std::vector<glm::dvec2>& above,
-                   const std::vector<glm::dvec2>& below, std::vector<Ray>& rays) const {
+                   const std::vector<glm::dvec2>& below, Ray* rays) const {
     Random random(seed_, view_, std::uint64_t(y) << 32 | std::uint64_t(x));
     for (int j = 0; j < n_; ++j)
       for (int i = 0; i < n_; ++i) {
@@ -104,25 +102,33 @@ class RowRenderer {
         const double u = (i + double(bits >> 32) * 0x1p-32) / n_;
         const double v = (j + double(bits & 0xffffffffu) * 0x1p-32) / n_;
         // Within a pixel the lens is as good as bilinear.
-        rays[std::size_t(j * n_ + i)] = ray((1 - v) * ((1 - u) * above[x] + u * above[x + 1]) +
-                                            v * ((1 - u) * below[x] + u * below[x + 1]));
+        *rays++ = ray((1 - v) * ((1 - u) * above[x] + u * above[x + 1]) +
+                      v * ((1 - u) * below[x] + u * below[x + 1]));
       }
   }
 
-  /// Adds the light of the hits; returns how many there are.
-  int trace(const std::vector<Ray>& rays, glm::vec3& sum) const {
+  /// Light and coverage of the pixels from `first` to before `last`, all at once.
+  void trace(int first, int last, int y, const std::vector<glm::dvec2>& above,
+             const std::vector<glm::dvec2>& below, Picture& picture) const {
+    thread_local std::vector<Ray> rays;
     thread_local std::vector<Hit> hits;
     thread_local std::vector<glm::vec3> light;
-    hits.resize(rays.size());
-    light.resize(rays.size());
+    const std::size_t each = std::size_t(n_ * n_), count = each * std::size_t(last - first);
+    rays.resize(count), hits.resize(count), light.resize(count);
+    for (int x = first; x < last; ++x)
+      sample_rays(x, y, above, below, rays.data() + each * std::size_t(x - first));
     surface_.rays->closest(rays, hits);
-    const auto count =
-        std::count_if(hits.begin(), hits.end(), [](const Hit& h) { return bool(h); });
-    if (count == 0) return 0;
     shading_.shade(rays, hits, light);
-    for (std::size_t i = 0; i < hits.size(); ++i)
-      if (hits[i]) sum += light[i];
-    return int(count);
+    for (int x = first; x < last; ++x) {
+      glm::vec3 sum(0);
+      int covered = 0;
+      const std::size_t start = each * std::size_t(x - first);
+      for (std::size_t i = start; i < start + each; ++i)
+        if (hits[i]) sum += light[i], ++covered;
+      const std::size_t pixel = std::size_t(y) * picture.width + x;
+      picture.colour[pixel] = sum / float(each);
+      picture.coverage[pixel] = float(covered) / float(each);
+    }
   }
 
   void write_center(const Ray& center, const Hit& hit, std::size_t i, Picture& picture) const {

@@ -39,32 +39,57 @@ Shading::Shading(const Spec& spec, const Surface& surface, double pixel)
         {surface.box.center() + surface.diagonal * p.position, glm::vec3(p.colour), false});
   const MaterialSpec& m = spec.material;
   checker_ = (m.period_pixels > 0 ? m.period_pixels * pixel : m.size * surface.diagonal) / 2;
+  clutter_ = spec.background.type == "clutter";
   double farthest = 0;
   for (const double factor : spec.cameras.distances) farthest = std::max(farthest, factor);
   clutter_radius_ = spec.background.distance * spec.cameras.distance * farthest * surface.diagonal;
 }
 
-glm::vec3 Shading::albedo(const glm::dvec3& world, std::uint32_t patch) const {
-  const MaterialSpec& m = spec_.material;
-  const glm::vec3 base = m.faces ? tint(patch, seed_) : glm::vec3(m.base);
-  const float contrast = float(m.contrast);
-  if (contrast == 0) return base;
-  const glm::dvec3 p = world - surface_.box.center();
-  if (m.pattern == "checker") {
-    const glm::dvec3 field = floor(kSkewAxes * p / checker_);
+glm::vec3 Shading::base(std::uint32_t patch) const {
+  return spec_.material.faces ? tint(patch, seed_) : glm::vec3(spec_.material.base);
+}
+
+void Shading::add_checker(std::span<Point> points) const {
+  const float contrast = float(spec_.material.contrast);
+  for (Point& point : points) {
+    const glm::dvec3 field = floor(kSkewAxes * (point.position - surface_.box.center()) / checker_);
     const bool odd = std::fmod(std::abs(field.x + field.y + field.z), 2.0) == 1.0;
-    return base * (odd ? 1 + contrast : 1 - contrast);
+    point.albedo *= odd ? 1 + contrast : 1 - contrast;
   }
-  const glm::vec3 q = glm::vec3(p / (surface_.diagonal * m.size)) + 57.3f;
-  const float light = kAmplify * octave_noise(q, m.octaves, float(m.gain), seed_);
-  glm::vec3 colour = base * (1 + contrast * std::clamp(light, -0.95f, 1.0f));
-  if (m.chroma > 0) {
-    const float strength = float(m.chroma) * contrast * kAmplify;
-    const float a = strength * gradient_noise(1.7f * q, seed_ ^ 0x5bd1e995u);
-    const float b = strength * gradient_noise(1.7f * q, seed_ ^ 0x27d4eb2fu);
-    colour *= max(glm::vec3(1 + a, 1 - 0.5f * (a + b), 1 + b), glm::vec3(0));
+}
+
+void Shading::add_noise_texture(std::span<Point> points) const {
+  const MaterialSpec& m = spec_.material;
+  thread_local NoisePoints places;
+  thread_local std::vector<float> light, red, blue;
+  places.resize(points.size());
+  const double scale = 1 / (surface_.diagonal * m.size);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    places.set(i, glm::vec3(scale * (points[i].position - surface_.box.center())) + 57.3f);
+  light.resize(points.size());
+  octave_noise(places, 1, m.octaves, float(m.gain), seed_, light);
+  red.assign(points.size(), 0), blue.assign(points.size(), 0);
+  const float contrast = float(m.contrast), chroma = float(m.chroma) * contrast * kAmplify;
+  if (chroma > 0) {
+    add_noise(places, 1.7f, glm::vec3(0), chroma, seed_ ^ 0x5bd1e995u, red);
+    add_noise(places, 1.7f, glm::vec3(0), chroma, seed_ ^ 0x27d4eb2fu, blue);
   }
-  return min(colour, glm::vec3(1));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const glm::vec3 hue(1 + red[i], 1 - 0.5f * (red[i] + blue[i]), 1 + blue[i]);
+    points[i].albedo *=
+        (1 + contrast * std::clamp(kAmplify * light[i], -0.95f, 1.0f)) * max(hue, glm::vec3(0));
+  }
+}
+
+void Shading::set_albedo(std::span<Point> points, std::span<const Hit> hits) const {
+  for (Point& point : points) point.albedo = base(surface_.patches[hits[point.index].triangle]);
+  if (spec_.material.contrast > 0) {
+    if (spec_.material.pattern == "checker")
+      add_checker(points);
+    else
+      add_noise_texture(points);
+  }
+  for (Point& point : points) point.albedo = min(point.albedo, glm::vec3(1));
 }
 
 /// The GGX lobe (Walter et al. 2007) scaled to 1 at its peak.
@@ -78,11 +103,6 @@ glm::vec3 Shading::highlight(const glm::vec3& normal, const glm::vec3& to_eye,
 
 void Shading::shade(std::span<const Ray> rays, std::span<const Hit> hits,
                     std::span<glm::vec3> out) const {
-  struct Point {
-    glm::dvec3 position, origin;  ///< origin: off the surface, for shadow rays
-    glm::vec3 normal, albedo, to_eye;
-    std::size_t index;
-  };
   thread_local std::vector<Point> points;
   thread_local std::vector<Ray> shadow;
   thread_local std::vector<std::uint8_t> blocked;
@@ -94,9 +114,9 @@ void Shading::shade(std::span<const Ray> rays, std::span<const Hit> hits,
     glm::vec3 face = surface_.face_normals[hits[i].triangle];
     const float side = dot(face, to_eye) < 0 ? -1.0f : 1.0f;
     points.push_back({at, at + 1e-5 * surface_.diagonal * glm::dvec3(side * face),
-                      side * surface_.normal(hits[i]),
-                      albedo(at, surface_.patches[hits[i].triangle]), to_eye, i});
+                      side * surface_.normal(hits[i]), glm::vec3(0), to_eye, i});
   }
+  set_albedo(points, hits);
   const glm::vec3 ambient(spec_.light.ambient);
   for (const Point& p : points) out[p.index] = ambient * p.albedo * (0.8f + 0.2f * p.normal.z);
   for (const Light& light : lights_) {
@@ -127,7 +147,7 @@ void Shading::shade(std::span<const Ray> rays, std::span<const Hit> hits,
 
 glm::vec3 Shading::background(const Ray& ray, std::size_t view) const {
   const BackgroundSpec& b = spec_.background;
-  if (b.type == "colour") return glm::vec3(b.colour);
+  if (!clutter_) return glm::vec3(b.colour);
   // The sphere around the scene, from within.
   const glm::dvec3 from = ray.origin - surface_.box.center(), d = normalize(ray.direction);
   const double along = dot(from, d);
@@ -137,10 +157,14 @@ glm::vec3 Shading::background(const Ray& ray, std::size_t view) const {
   const glm::vec3 q((from + reach * d) / (b.size * surface_.diagonal));
   const std::uint32_t seed =
       seed_ ^ 0xc1a77e45u ^ (b.moving ? std::uint32_t(mix_bits(view + 1)) : 0);
+  float fine = 0;
+  for (int i = 0; i < 3; ++i)
+    fine += 0.5f * gradient_noise(float(2 << i) * q.x, float(2 << i) * q.y, float(2 << i) * q.z,
+                                  seed + 5u + std::uint32_t(i));
   glm::vec3 colour;
   for (int c = 0; c < 3; ++c) {
-    const float patch = gradient_noise(0.7f * q, seed + 17u * std::uint32_t(c));
-    const float fine = octave_noise(2.0f * q, 3, 0.6f, seed + 5u);
+    const float patch =
+        gradient_noise(0.7f * q.x, 0.7f * q.y, 0.7f * q.z, seed + 17u * std::uint32_t(c + 1));
     colour[c] = 0.08f + 0.55f * smooth_step(-0.08f, 0.08f, patch) *
                             (1 + 0.8f * std::clamp(fine, -1.0f, 1.0f));
   }

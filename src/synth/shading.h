@@ -15,8 +15,6 @@ class Shading {
 
   /// Radiance of hits towards where their rays came from; as many as rays, misses left alone.
   void shade(std::span<const Ray> rays, std::span<const Hit> hits, std::span<glm::vec3> out) const;
-  /// Reflectance at a point of a patch.
-  glm::vec3 albedo(const glm::dvec3& world, std::uint32_t patch) const;
   /// What is seen past the object along a ray of view `view`.
   glm::vec3 background(const Ray& ray, std::size_t view) const;
 
@@ -26,6 +24,17 @@ class Shading {
     glm::vec3 colour;
     bool directional;
   };
+  /// Where a ray met the surface.
+  struct Point {
+    glm::dvec3 position, origin;  ///< origin: off the surface, for shadow rays
+    glm::vec3 normal, albedo, to_eye;
+    std::size_t index;  ///< of the ray
+  };
+
+  glm::vec3 base(std::uint32_t patch) const;
+  void add_checker(std::span<Point> points) const;
+  void add_noise_texture(std::span<Point> points) const;
+  void set_albedo(std::span<Point> points, std::span<const Hit> hits) const;
   glm::vec3 highlight(const glm::vec3& normal, const glm::vec3& to_eye,
                       const glm::vec3& to_light) const;
 
@@ -33,7 +42,8 @@ class Shading {
   const Surface& surface_;
   std::vector<Light> lights_;
   double checker_ = 0;  ///< edge of a field, world units
-  double clutter_radius_ = 0;
+  bool clutter_ = false;
+  double clutter_radius_ = 0;  ///< world units
   std::uint32_t seed_;
 };
 
