@@ -116,6 +116,17 @@ struct Search {
   glm::dvec3 p;  ///< relative to the mesh's origin
   TrianglePoint best;
   std::uint32_t triangle = 0;
+
+  /// Takes a triangle's nearest point when it is nearer, or as near with a lower index.
+  bool measure(std::uint32_t candidate) {
+    const auto& [a, b, c] = triangles[candidate];
+    const TrianglePoint found = closest_on_triangle(p, {positions[a], positions[b], positions[c]});
+    const bool tie = found.squared_distance == best.squared_distance && candidate < triangle;
+    if (!(found.squared_distance < best.squared_distance) && !tie) return false;
+    best = found;
+    triangle = candidate;
+    return true;
+  }
 };
 
 /// The tree sees the query rounded to float and compares in float: room for both, so that no
@@ -128,17 +139,8 @@ float safe_radius(double distance, const glm::dvec3& p) {
 
 bool visit(RTCPointQueryFunctionArguments* arguments) {
   auto& search = *static_cast<Search*>(arguments->userPtr);
-  const auto& corners = search.triangles[arguments->primID];
-  const TrianglePoint found = closest_on_triangle(
-      search.p,
-      {search.positions[corners[0]], search.positions[corners[1]], search.positions[corners[2]]});
-  const bool nearer = found.squared_distance < search.best.squared_distance;
-  const bool tie =
-      found.squared_distance == search.best.squared_distance && arguments->primID < search.triangle;
-  if (!nearer && !tie) return false;
-  search.best = found;
-  search.triangle = arguments->primID;
-  const float radius = safe_radius(std::sqrt(found.squared_distance), search.p);
+  if (!search.measure(arguments->primID)) return false;
+  const float radius = safe_radius(std::sqrt(search.best.squared_distance), search.p);
   if (!(radius < arguments->query->radius)) return false;
   arguments->query->radius = radius;
   return true;
@@ -158,12 +160,14 @@ ClosestPoint::~ClosestPoint() = default;
 ClosestPoint::ClosestPoint(ClosestPoint&&) noexcept = default;
 ClosestPoint& ClosestPoint::operator=(ClosestPoint&&) noexcept = default;
 
-NearestPoint ClosestPoint::nearest(const glm::dvec3& p) const {
-  Search search{data_->positions, data_->triangles, p - data_->origin, {}, 0};
+NearestPoint ClosestPoint::nearest(const glm::dvec3& p, std::uint32_t hint) const {
+  PHOTOHULL_CHECK_OP(hint, <, data_->triangles.size());
+  Search search{data_->positions, data_->triangles, p - data_->origin, {}, hint};
+  search.measure(hint);
   RTCPointQuery query;
   query.x = float(search.p.x), query.y = float(search.p.y), query.z = float(search.p.z);
   query.time = 0;
-  query.radius = std::numeric_limits<float>::infinity();
+  query.radius = safe_radius(std::sqrt(search.best.squared_distance), search.p);
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
   rtcPointQuery(data_->scene, &query, &context, visit, &search);

@@ -45,8 +45,9 @@ class ClosestPoint {
   ClosestPoint(ClosestPoint&&) noexcept;
   ClosestPoint& operator=(ClosestPoint&&) noexcept;
 
-  /// `p` must be finite and nearer than 1e18 to the mesh's origin.
-  NearestPoint nearest(const glm::dvec3& p) const;
+  /// `p` must be finite and nearer than 1e18 to the mesh's origin. `hint` is a triangle that may be
+  /// near, such as the answer to a neighbour of p: a good one saves time, none changes the answer.
+  NearestPoint nearest(const glm::dvec3& p, std::uint32_t hint = 0) const;
 
  private:
   struct Data;

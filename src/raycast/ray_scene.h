@@ -1,5 +1,4 @@
-// Rays against triangle meshes. Wald, Woop, Benthin, Johnson, Ernst, "Embree: A Kernel Framework
-// for Efficient CPU Ray Tracing", 2014.
+// Rays against triangle meshes, through Embree [Wald14].
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Lens distortion, both ways. Brown, "Close-range camera calibration", 1971.
+// Lens distortion, both ways. [Brown71].
 #pragma once
 
 #include <optional>

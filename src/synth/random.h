@@ -8,7 +8,7 @@
 
 namespace photohull::synth {
 
-/// Mixes 64 bits (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014).
+/// Mixes 64 bits [Steele14].
 inline std::uint64_t mix_bits(std::uint64_t x) {
   x += 0x9e3779b97f4a7c15ull;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;

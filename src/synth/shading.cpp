@@ -92,7 +92,7 @@ void Shading::set_albedo(std::span<Point> points, std::span<const Hit> hits) con
   for (Point& point : points) point.albedo = min(point.albedo, glm::vec3(1));
 }
 
-/// The GGX lobe (Walter et al. 2007) scaled to 1 at its peak.
+/// The GGX lobe [Walter07] scaled to 1 at its peak.
 glm::vec3 Shading::highlight(const glm::vec3& normal, const glm::vec3& to_eye,
                              const glm::vec3& to_light) const {
   const float cosine = std::max(0.0f, dot(normal, normalize(to_eye + to_light)));

@@ -1,4 +1,4 @@
-// Gradient noise on 3-space (Perlin, "Improving noise", 2002). Internal to synth.
+// Gradient noise on 3-space [Perlin02]. Internal to synth.
 #pragma once
 
 #include <cmath>

@@ -1,0 +1,56 @@
+// Synthesized scenes through the program itself.
+#include "sphere_scene.h"
+
+namespace photohull::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class Synthesize : public SphereScene {
+ protected:
+  std::string spec(const std::string& text) const {
+    write_bytes(path("spec.json"), text);
+    return path("spec.json");
+  }
+};
+
+TEST_F(Synthesize, SceneIsUnderstoodAndReconstructed) {
+  const std::string file = spec(R"({"geometry": {"shape": "torus"}, "truth_samples": 1000,
+      "image": {"samples": 2}})");
+  const Finished made = succeed({"synthesize", file, "--out", path("scene"), "--views", "8",
+                                 "--size", "96x72", "--seed", "4"});
+  EXPECT_THAT(made.out, HasSubstr("8 views"));
+  const Finished info = succeed({"info", path("scene")});
+  EXPECT_THAT(info.out, HasSubstr("96 x 72 pixels"));
+  EXPECT_THAT(info.out, HasSubstr("8 of 8 views"));
+  EXPECT_EQ(info.out.find("warning"), std::string::npos) << info.out;
+  succeed({"reconstruct", path("scene"), "--out", path("result"), "--method", "hull",
+           "--resolution", "48"});
+  EXPECT_TRUE(fs::exists(path("result/mesh.ply")));
+  const Finished score =
+      succeed({"evaluate", path("result/mesh.ply"), "--truth", path("scene/gt.ply")});
+  EXPECT_NE(score.out, "");
+}
+
+TEST_F(Synthesize, ShapesAreListed) {
+  const Finished list = succeed({"synthesize", "--list"});
+  for (const char* word : {"gyroid", "plant", "radius", "0.01 to 100"})
+    EXPECT_THAT(list.out, HasSubstr(word));
+}
+
+TEST_F(Synthesize, WrongUsageAndSpecsAreNamed) {
+  const std::string file = spec(R"({"cameras": {"fil": 0.5}})");
+  fail(1, {"synthesize", file, "--out", out()}, {"spec.json", "cameras.fil", "did you mean fill?"});
+  fail(1, {"synthesize", path("none.json"), "--out", out()}, {"none.json", "no such file"});
+  fail(2, {"synthesize", file}, {"--out is missing"});
+  fail(2, {"synthesize"}, {"a spec is missing"});
+  const std::string right = spec("{}");
+  fail(2, {"synthesize", right, "--out", out(), "--size", "640"}, {"--size 640"});
+  fail(2, {"synthesize", right, "--out", out(), "--size", "640x480x2"}, {"--size"});
+  fail(2, {"synthesize", right, "--out", out(), "--views", "0"}, {"--views 0"});
+  fail(2, {"synthesize", right, "--out", out(), "--threads", "-1"}, {"--threads -1"});
+}
+
+}  // namespace
+}  // namespace photohull::test
