@@ -1,5 +1,6 @@
 #include "eval/evaluate.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -18,14 +19,20 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kPointCell = 0.0005;  ///< of the diagonal: what point clouds are thinned to
 constexpr double kUnseenReach = 0.05;  ///< of the diagonal: farther results count as seen
 
-/// Calls function(i) for all i < count in parallel, in blocks between which a user can cancel.
+/// Calls function(i, hint) for all i < count in parallel, in blocks between which a user can
+/// cancel. `hint` is 0 or what the call for a neighbouring index left there.
 template <typename Function>
 void for_each_index(std::size_t count, Progress& progress, Function function) {
   constexpr std::size_t kBlock = 16384;
   for (std::size_t begin = 0; begin < count; begin += kBlock) {
     progress.check_cancelled();
     progress.update(double(begin) / double(count));
-    tbb::parallel_for(begin, std::min(count, begin + kBlock), function);
+    tbb::parallel_for(tbb::blocked_range(begin, std::min(count, begin + kBlock), 256),
+                      [&](const auto& range) {
+                        std::uint32_t hint = 0;
+                        for (std::size_t i = range.begin(); i != range.end(); ++i)
+                          function(i, hint);
+                      });
   }
   progress.check_cancelled();
 }
@@ -44,8 +51,9 @@ Measured measure(const TriMesh& result, const SurfaceSamples& samples, const Tru
   m.distance.resize(count);
   m.signed_distance.resize(count);
   if (!samples.triangles.empty()) m.angle.resize(count);
-  for_each_index(count, progress, [&](std::size_t i) {
-    const SignedDistance::Value value = truth.surface().at(samples.points[i]);
+  for_each_index(count, progress, [&](std::size_t i, std::uint32_t& hint) {
+    const SignedDistance::Value value = truth.surface().at(samples.points[i], hint);
+    hint = value.hint;
     m.signed_distance[i] = value.distance;
     m.distance[i] = std::abs(value.distance);
     if (m.angle.empty()) return;
@@ -56,7 +64,7 @@ Measured measure(const TriMesh& result, const SurfaceSamples& samples, const Tru
   m.seen.assign(count, 1);
   if (!truth.has_views()) return m;
   const NearestSample nearest(truth.samples());
-  for_each_index(count, progress, [&](std::size_t i) {
+  for_each_index(count, progress, [&](std::size_t i, std::uint32_t&) {
     if (m.distance[i] > kUnseenReach * truth.diagonal()) return;
     m.seen[i] = truth.views()[nearest.find(samples.points[i]).index] >= min_views;
   });
@@ -121,12 +129,16 @@ std::vector<double> distances_to_result(const std::vector<glm::dvec3>& wanted,
   std::vector<double> distance(wanted.size());
   if (!surface.triangles.empty()) {
     const ClosestPoint nearest(surface);
-    for_each_index(wanted.size(), progress,
-                   [&](std::size_t i) { distance[i] = nearest.nearest(wanted[i]).distance; });
+    for_each_index(wanted.size(), progress, [&](std::size_t i, std::uint32_t& hint) {
+      const NearestPoint found = nearest.nearest(wanted[i], hint);
+      distance[i] = found.distance;
+      hint = found.triangle;
+    });
   } else {
     const NearestSample nearest(samples.points);
-    for_each_index(wanted.size(), progress,
-                   [&](std::size_t i) { distance[i] = nearest.find(wanted[i]).distance; });
+    for_each_index(wanted.size(), progress, [&](std::size_t i, std::uint32_t&) {
+      distance[i] = nearest.find(wanted[i]).distance;
+    });
   }
   return distance;
 }

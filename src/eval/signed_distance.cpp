@@ -76,8 +76,8 @@ SignedDistance::~SignedDistance() = default;
 SignedDistance::SignedDistance(SignedDistance&&) noexcept = default;
 SignedDistance& SignedDistance::operator=(SignedDistance&&) noexcept = default;
 
-SignedDistance::Value SignedDistance::at(const glm::dvec3& p) const {
-  const NearestPoint nearest = surface_->nearest(p);
+SignedDistance::Value SignedDistance::at(const glm::dvec3& p, std::uint32_t hint) const {
+  const NearestPoint nearest = surface_->nearest(p, hint);
   const glm::dvec3& w = nearest.weights;
   glm::dvec3 normal = face_normals_[nearest.triangle];
   for (int i = 0; i < 3; ++i) {
@@ -86,7 +86,7 @@ SignedDistance::Value SignedDistance::at(const glm::dvec3& p) const {
     if (on_edge) normal = edge_normals_[nearest.triangle][(i + 1) % 3];
   }
   const double side = glm::dot(p - nearest.point, normal);
-  return {side < 0 ? -nearest.distance : nearest.distance, unit(normal)};
+  return {side < 0 ? -nearest.distance : nearest.distance, unit(normal), nearest.triangle};
 }
 
 }  // namespace photohull::eval

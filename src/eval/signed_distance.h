@@ -31,8 +31,10 @@ class SignedDistance {
   struct Value {
     double distance = 0;     ///< world units
     glm::dvec3 normal{0.0};  ///< unit pseudonormal at the nearest point; 0 where faces cancel
+    std::uint32_t hint = 0;  ///< for the query of a neighbour
   };
-  Value at(const glm::dvec3& p) const;
+  /// `hint` is that of a near query, or 0: it saves time and does not change the answer.
+  Value at(const glm::dvec3& p, std::uint32_t hint = 0) const;
 
  private:
   std::unique_ptr<ClosestPoint> surface_;

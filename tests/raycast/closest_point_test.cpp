@@ -138,6 +138,7 @@ TEST(ClosestPoint, ExactWhereTheTreesOwnPrecisionIsTooCoarse) {
     const NearestPoint expected = brute_force(mesh, p), found = surface.nearest(p);
     ASSERT_EQ(found.distance, expected.distance) << i;
     ASSERT_EQ(found.triangle, expected.triangle) << i;
+    ASSERT_EQ(surface.nearest(p, std::uint32_t(i) % 300).triangle, expected.triangle) << i;
   }
 }
 
