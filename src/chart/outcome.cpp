@@ -57,12 +57,13 @@ Outcome mean_of(const std::vector<const Outcome*>& rows, std::size_t scenes) {
     for (const auto& [threshold, f] : row->figures.f_percent) f_sum[threshold] += f;
     add_stages(mean.stages, row->stages);
   }
-  for (const auto& [threshold, sum] : f_sum) {
+  for (const auto& entry : f_sum) {
+    const double threshold = entry.first;
     // A threshold that some finished run lacks has no mean.
     const bool everywhere = std::all_of(rows.begin(), rows.end(), [&](const Outcome* row) {
       return row->failed || row->figures.f_at(threshold);
     });
-    if (everywhere) mean.figures.f_percent[threshold] = sum / double(rows.size());
+    if (everywhere) mean.figures.f_percent[threshold] = entry.second / double(rows.size());
   }
   mean.cpu_seconds = cpu.value();
   mean.wall_seconds = wall.value();

@@ -12,7 +12,7 @@ namespace photohull::chart {
 namespace {
 
 constexpr int kWidth = 1000, kHeight = 500;
-constexpr int kTop = 96, kBottom = 60;
+constexpr int kBottom = 60;
 
 using Value = std::function<std::optional<double>(const Outcome&)>;
 
@@ -48,6 +48,8 @@ class TwoPanels {
     }
     if (any_failed_) legend.push_back("failed");
     ticks_.assign(resolutions.begin(), resolutions.end());
+    top_ += legend_room(legend);
+    chart_.height += legend_room(legend);
     chart_.option = base_option(title + ": " + in_.heading, legend);
     for (const char* part : {"grid", "xAxis", "yAxis", "graphic"})
       chart_.option[part] = Json::array();
@@ -56,7 +58,7 @@ class TwoPanels {
   void add(const Panel& panel) {
     const int left = panels_ == 0 ? 80 : 584, width = 382;
     chart_.option["grid"].push_back(
-        {{"left", left}, {"width", width}, {"top", kTop}, {"bottom", kBottom}});
+        {{"left", left}, {"width", width}, {"top", top_}, {"bottom", kBottom}});
     add_axes(panel);
     Json crosses = Json::array();
     int line = 0;
@@ -174,7 +176,7 @@ class TwoPanels {
          {"z", 6},
          {"left", left + 10},
          {panel.text_at_top ? "top" : "bottom",
-          panel.text_at_top ? kTop + 6 + 16 * line : kBottom + 8 + 16 * line},
+          panel.text_at_top ? top_ + 6 + 16 * line : kBottom + 8 + 16 * line},
          {"style",
           {{"text", law_text(s.name, panel.law, *law)},
            {"fill", s.colour},
@@ -187,6 +189,7 @@ class TwoPanels {
   Chart chart_;
   std::vector<double> ticks_;
   int panels_ = 0;
+  int top_ = 96;  ///< of the plots, pixels
   bool any_failed_ = false;
   double low_ = 1, high_ = 10;
 };

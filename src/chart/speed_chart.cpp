@@ -8,7 +8,8 @@
 namespace photohull::chart {
 namespace {
 
-constexpr double kLeft = 88, kRight = 40, kTop = 96, kBottom = 64;  ///< margins, pixels
+constexpr double kLeft = 88, kRight = 40, kBottom = 64;  ///< margins, pixels
+constexpr double kPlot = 480;                            ///< height between the margins
 constexpr double kFont = 11;
 // F-scores that get a line; what lacks to 100 % falls about evenly on a logarithmic scale.
 constexpr double kLevels[] = {0,  25, 50,   70,   80,   90,    95,    97,
@@ -32,14 +33,16 @@ class SpeedChart {
   }
 
   Chart chart() {
-    Chart c{"speed-accuracy--" + in_.group, in_.group, 1000, 640, {}};
     std::vector<std::string> legend;
     for (const SeriesStyle& s : in_.styles)
       if (uses(s)) legend.push_back(s.name);
     legend.push_back(kFrontName);
     if (any_failed()) legend.push_back("failed");
+    top_edge_ += legend_room(legend);
+    Chart c{"speed-accuracy--" + in_.group, in_.group, 1000, int(top_edge_ + kPlot + kBottom), {}};
     c.option = base_option("Speed against accuracy: " + in_.heading, legend);
-    c.option["grid"] = {{"left", kLeft}, {"right", kRight}, {"top", kTop}, {"bottom", kBottom}};
+    c.option["grid"] = {
+        {"left", kLeft}, {"right", kRight}, {"top", top_edge_}, {"bottom", kBottom}};
     c.option["xAxis"] =
         log_axis("CPU time (s, user + system, logarithmic)", low_, high_, log_ticks(low_, high_));
     c.option["yAxis"] = y_axis();
@@ -102,7 +105,7 @@ class SpeedChart {
   glm::dvec2 pixel_of(double cpu, double lack) const {
     const double x = std::log(cpu / low_) / std::log(high_ / low_);
     const double y = std::log(lack / top_) / std::log(bottom_ / top_);
-    return {kLeft + x * (1000 - kLeft - kRight), kTop + y * (640 - kTop - kBottom)};
+    return {kLeft + x * (1000 - kLeft - kRight), top_edge_ + y * kPlot};
   }
 
   std::string label(const Outcome& o) const {
@@ -148,7 +151,7 @@ class SpeedChart {
   /// Labels keep clear of all lines; those that cannot may lie on lines of equal quality.
   std::vector<std::optional<glm::dvec2>> find_places(
       const std::vector<LabelRequest>& requests) const {
-    const Rect area{kLeft + 2, kTop - 14, 998, 640 - kBottom + 8};
+    const Rect area{kLeft + 2, top_edge_ - 14, 998, top_edge_ + kPlot + 8};
     const std::vector<Rect> front = front_boxes();
     std::vector<Rect> obstacles = front;
     for (const double level : kLevels) {
@@ -260,7 +263,7 @@ class SpeedChart {
             {"markLine",
              {{"silent", true},
               {"symbol", "none"},
-              {"z", 0},
+              {"z", 1},
               {"label", {{"color", "#222"}, {"fontSize", 12}, {"distance", 6}}},
               {"lineStyle", {{"color", "#ccc"}, {"type", "solid"}, {"width", 0.8}}},
               {"data", lines}}}};
@@ -272,6 +275,7 @@ class SpeedChart {
   std::vector<std::size_t> front_;
   Json leaders_ = Json::array();
   double low_ = 1, high_ = 10, top_ = 1, bottom_ = 100;
+  double top_edge_ = 96;  ///< of the plot, pixels
 };
 
 }  // namespace

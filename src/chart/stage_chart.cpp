@@ -72,12 +72,12 @@ Chart stage_chart(const ChartInput& input) {
     names.push_back(bar_label(bar));
     longest = std::max(longest, names.back().size());
   }
-  const int height = 160 + 26 * int(bars.size());
+  const int room = legend_room(stages), height = 160 + room + 26 * int(bars.size());
   Chart chart{"stages--" + input.group, input.group, 1000, height, {}};
   const std::string what = input.outcomes.front().scenes > 1 ? " (CPU seconds summed)" : "";
   chart.option = base_option("Where CPU time goes: " + input.heading + what, stages);
   chart.option["grid"] = {
-      {"left", 30 + 7 * int(longest)}, {"right", 40}, {"top", 92}, {"bottom", 56}};
+      {"left", 30 + 7 * int(longest)}, {"right", 40}, {"top", 92 + room}, {"bottom", 56}};
   chart.option["xAxis"] = {{"type", "value"},
                            {"min", 0},
                            {"max", 100},

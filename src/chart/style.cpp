@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "chart/label_layout.h"
 #include "core/error.h"
 
 namespace photohull::chart {
@@ -125,6 +126,21 @@ Json log_axis(const std::string& name, double low, double high, const std::vecto
 Json item_style(const SeriesStyle& style) {
   if (!style.external) return {{"color", style.colour}, {"opacity", 1}};
   return {{"color", "#fff"}, {"borderColor", style.colour}, {"borderWidth", 2}, {"opacity", 1}};
+}
+
+int legend_room(const std::vector<std::string>& legend) {
+  constexpr double kWidth = 900, kEntry = 36, kRow = 29;
+  int rows = 1;
+  double used = 0;
+  for (const std::string& name : legend) {
+    const double width = text_size(name, 12).x + kEntry;
+    if (used > 0 && used + width > kWidth) {
+      ++rows;
+      used = 0;
+    }
+    used += width;
+  }
+  return int(kRow) * std::max(0, rows - 2);
 }
 
 Json base_option(const std::string& title, const std::vector<std::string>& legend) {

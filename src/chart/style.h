@@ -43,6 +43,8 @@ std::pair<double, double> log_range(std::vector<double> values);
 Json log_axis(const std::string& name, double low, double high, const std::vector<double>& ticks);
 /// How the points of a variant are filled.
 Json item_style(const SeriesStyle& style);
+/// Pixels that a legend needs beyond the two rows that every chart has room for.
+int legend_room(const std::vector<std::string>& legend);
 /// What every chart's option starts with.
 Json base_option(const std::string& title, const std::vector<std::string>& legend);
 /// The figures of an outcome as HTML, for people who point at it.
