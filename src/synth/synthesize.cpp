@@ -96,6 +96,14 @@ void check_orientation(const TriMesh& mesh, Progress& progress) {
         "counts as seeing it; turn its faces around");
 }
 
+/// A mask can only be wrong where its view and another one are there.
+void check_wrong_masks(const Spec& spec, const std::vector<std::size_t>& kept, Progress& progress) {
+  for (const int view : spec.degradations.mask_wrong)
+    if (kept.size() < 2 || !std::binary_search(kept.begin(), kept.end(), std::size_t(view)))
+      progress.warn(concat("degradations.mask_wrong: view ", view,
+                           " gets no wrong mask, since it or every other view is missing"));
+}
+
 /// Renders and writes all views; returns the largest share of a frame that is covered.
 double write_views(const Spec& spec, const Surface& surface, const std::vector<LensCamera>& cameras,
                    const std::vector<std::size_t>& indices, const std::vector<std::string>& names,
@@ -162,6 +170,7 @@ SynthesizedScene synthesize(const Spec& spec, const std::filesystem::path& folde
   progress.check_cancelled();
   const std::vector<LensCamera> all = place_cameras(spec, surface);
   const std::vector<std::size_t> indices = kept_views(spec, all.size());
+  check_wrong_masks(spec, indices, progress);
   std::vector<LensCamera> cameras;
   std::vector<std::string> names;
   for (const std::size_t i : indices) cameras.push_back(all[i]), names.push_back(view_name(i));

@@ -167,6 +167,20 @@ TEST(Synthesize, MissingViewsAndWrongMasks) {
   EXPECT_THAT(failure_of(spec, scratch / "none"), HasSubstr("all views are missing"));
 }
 
+TEST(Synthesize, WarnsOfWrongMasksForMissingViews) {
+  const ScratchFolder scratch;
+  struct Listening : Progress {
+    void warn(const std::string& message) override { heard += message; }
+    std::string heard;
+  } listening;
+  Spec spec = small(kBlock);
+  spec.degradations.mask_wrong = {0, 1};
+  spec.degradations.missing_views = {1};
+  synthesize(spec, scratch / "scene", listening);
+  EXPECT_THAT(listening.heard, HasSubstr("mask_wrong: view 1"));
+  EXPECT_EQ(listening.heard.find("view 0"), std::string::npos);
+}
+
 TEST(Synthesize, WrittenPosesAreOffAndTheTrueOnesKept) {
   const ScratchFolder scratch;
   Spec spec = small(kBlock);
