@@ -6,7 +6,7 @@
 namespace photohull::chart {
 namespace {
 
-constexpr int kRings = 6;
+constexpr int kRings = 4;
 constexpr double kRingStep = 9;  ///< pixels
 
 Rect box_at(const glm::dvec2& centre, const glm::dvec2& size) {

@@ -14,10 +14,10 @@ Rect box(const glm::dvec2& centre, const glm::dvec2& size) {
 
 TEST(PlaceLabels, NoneCoversAnotherOrAMarker) {
   std::mt19937 random(1);
-  std::uniform_real_distribution<double> at(0, 300);
-  const Rect area{0, 0, 300, 300};
+  std::uniform_real_distribution<double> at(0, 400);
+  const Rect area{0, 0, 400, 400};
   std::vector<LabelRequest> requests;
-  for (int i = 0; i < 40; ++i) requests.push_back({{at(random), at(random)}, {70, 14}});
+  for (int i = 0; i < 30; ++i) requests.push_back({{at(random), at(random)}, {70, 14}});
   const auto places = place_labels(requests, area, 11);
   ASSERT_EQ(places.size(), requests.size());
   int placed = 0;
@@ -32,7 +32,7 @@ TEST(PlaceLabels, NoneCoversAnotherOrAMarker) {
       EXPECT_FALSE(label.overlaps(box(*places[k], requests[k].size))) << i << " on label " << k;
     }
   }
-  EXPECT_GT(placed, 25);
+  EXPECT_GT(placed, 20);
 }
 
 TEST(PlaceLabels, PrefersTheRightSide) {
