@@ -17,6 +17,7 @@ struct Arguments {
   std::optional<std::string> method;
   std::optional<int> resolution;
   std::optional<double> voxel_size;
+  std::vector<std::string> tune;
   int threads = 0;
   bool json = false;
 };
@@ -40,12 +41,14 @@ pipeline::ReconstructOptions to_options(const Arguments& a) {
   o.load = a.scene.options();
   o.quality = parse("--quality", a.quality, {Quality::kDraft, Quality::kNormal, Quality::kHigh});
   if (a.method)
-    o.method = parse("--method", *a.method,
-                     {Method::kHull, Method::kVoxelColoring, Method::kSpaceCarving});
+    o.method =
+        parse("--method", *a.method,
+              {Method::kHull, Method::kVoxelColoring, Method::kSpaceCarving, Method::kRefine});
   o.resolution = a.resolution;
   o.voxel_size = a.voxel_size;
   o.device = a.device;
   o.threads = a.threads;
+  o.tune = a.tune;
   o.validate();
   return o;
 }
@@ -93,6 +96,8 @@ void add_reconstruct(CLI::App& app) {
   c->add_option("--device", a->device, "auto, software, or an index from 'photohull devices'")
       ->capture_default_str();
   c->add_option("--threads", a->threads, "threads to use (0: one a core)")->capture_default_str();
+  c->add_option("--tune", a->tune,
+                "NAME=VALUE: a parameter of the method changed, for experiments (repeatable)");
   c->add_flag("--json", a->json, "print report.json on standard output instead of a summary");
   c->footer(
       "Writes volume.vdb, mesh.ply, preview.png and report.json into the output folder.\n\n"

@@ -19,7 +19,9 @@
 #include "pipeline/checks.h"
 #include "pipeline/result_files.h"
 #include "pipeline/stage_clock.h"
+#include "pipeline/tuning.h"
 #include "projtex/image_set.h"
+#include "refine/refine.h"
 #include "render/bake_colour.h"
 #include "render/choose_views.h"
 #include "render/preview.h"
@@ -96,12 +98,19 @@ class Job {
     report_.files = files.names();
     clock_.run("device", Weights::kDevice, [&] { open_device(); });
     clock_.run("views", Weights::kViews, [&] { prepare(); });
-    SparseVolume volume = clock_.run("hull", Weights::kHull, [&] { return carve_hull(); });
-    for (View& view : views_) std::vector<std::uint8_t>().swap(view.mask.coverage);
+    const bool refining = options_.effective_method() == Method::kRefine;
+    SparseVolume volume = clock_.run("hull", Weights::kHull, [&] {
+      measure_silhouettes();
+      return refining ? SparseVolume() : carve_hull();
+    });
+    if (!refining)
+      for (View& view : views_) std::vector<std::uint8_t>().swap(view.mask.coverage);
     context_->release_deleted();
     images_ = clock_.run("images", Weights::kImages,
                          [&] { return std::make_unique<projtex::ImageSet>(views_); });
-    if (options_.effective_method() != Method::kHull)
+    if (refining)
+      volume = clock_.run("refine", Weights::kPhoto, [&] { return refine(); });
+    else if (options_.effective_method() != Method::kHull)
       volume = clock_.run("photo", Weights::kPhoto, [&] { return carve_photo(volume); });
     clock_.run("clean", Weights::kClean, [&] { remove_small_components(volume, kDebrisFraction); });
     TriMesh mesh = clock_.run("mesh", Weights::kMesh, [&] { return extract_mesh(volume); });
@@ -167,36 +176,59 @@ class Job {
     report_.device = context_->device().renderer;
   }
 
-  SparseVolume carve_hull() {
-    std::vector<SilhouetteDistance> distances(views_.size());
+  bool any_mask() const {
+    return std::any_of(views_.begin(), views_.end(), [](const View& v) { return !v.mask.empty(); });
+  }
+
+  void measure_silhouettes() {
+    silhouette_distances_.resize(views_.size());
     tbb::parallel_for(std::size_t(0), views_.size(), [&](std::size_t i) {
-      if (!views_[i].mask.empty()) distances[i] = silhouette_distance(views_[i].mask);
+      if (!views_[i].mask.empty()) silhouette_distances_[i] = silhouette_distance(views_[i].mask);
     });
-    std::vector<carving::Silhouette> silhouettes;
-    bool any_mask = false;
-    for (std::size_t i = 0; i < views_.size(); ++i) {
-      const bool masked = !views_[i].mask.empty();
-      any_mask = any_mask || masked;
-      silhouettes.push_back({&views_[i].mask, masked ? &distances[i] : nullptr});
-    }
-    if (!any_mask && options_.effective_method() == Method::kHull)
+  }
+
+  std::vector<carving::Silhouette> silhouettes() const {
+    std::vector<carving::Silhouette> out;
+    for (std::size_t i = 0; i < views_.size(); ++i)
+      out.push_back(
+          {&views_[i].mask, views_[i].mask.empty() ? nullptr : &silhouette_distances_[i]});
+    return out;
+  }
+
+  SparseVolume hull_at(const GridSpec& grid) {
+    const std::vector<carving::Silhouette> silhouettes = this->silhouettes();
+    carving::HullOptions hull_options;
+    hull_options.min_views = any_mask() ? 1 : 2;
+    Box box = *scene_.box;
+    box.min -= kBoxSlack * grid.voxel_size;
+    box.max += kBoxSlack * grid.voxel_size;
+    carving::HullReport counts;
+    Progress silent;
+    SparseVolume volume = carving::carve_silhouette(*context_, grid, box, cameras_, silhouettes,
+                                                    hull_options, silent, &counts);
+    if (volume.inside_voxels() == 0)
+      throw Error(explain_empty_hull(*scene_.box, views_, grid.voxel_size));
+    report_.nodes_tested += counts.nodes_tested;
+    report_.bricks_evaluated += counts.bricks_evaluated;
+    hull_samples_ += counts.samples;
+    return volume;
+  }
+
+  SparseVolume refine() {
+    refine::RefineOptions o;
+    o.noise_sigma = report_.noise_sigma;
+    tune(options_.tune, o);
+    return refine::refine_surface(
+        *context_, grid_, [&](const GridSpec& grid) { return hull_at(grid); }, silhouettes(),
+        *images_, cameras_, o, progress_);
+  }
+
+  SparseVolume carve_hull() {
+    if (!any_mask() && options_.effective_method() == Method::kHull)
       warn(
           "without masks the hull is the box clipped by the frusta: give masks or use "
           "--method space-carving");
-    carving::HullOptions hull_options;
-    hull_options.min_views = any_mask ? 1 : 2;
-    Box box = *scene_.box;
-    box.min -= kBoxSlack * grid_.voxel_size;
-    box.max += kBoxSlack * grid_.voxel_size;
-    carving::HullReport counts;
-    SparseVolume volume = carving::carve_silhouette(*context_, grid_, box, cameras_, silhouettes,
-                                                    hull_options, progress_, &counts);
-    if (volume.inside_voxels() == 0)
-      throw Error(explain_empty_hull(*scene_.box, views_, grid_.voxel_size));
-    report_.nodes_tested = counts.nodes_tested;
-    report_.bricks_evaluated = counts.bricks_evaluated;
-    hull_samples_ = counts.samples;
-    return volume;
+    return hull_at(grid_);
   }
 
   SparseVolume carve_photo(const SparseVolume& hull) {
@@ -205,6 +237,7 @@ class Job {
                        ? carving::PhotoMethod::kVoxelColoring
                        : carving::PhotoMethod::kSpaceCarving;
     photo.noise_sigma = report_.noise_sigma;
+    tune(options_.tune, photo);
     carving::PhotoReport counts;
     SparseVolume volume =
         carving::carve_photo(*context_, hull, *images_, cameras_, photo, progress_, &counts);
@@ -318,6 +351,7 @@ class Job {
   std::vector<Camera> cameras_;
   std::unique_ptr<gpu::Context> context_;
   std::unique_ptr<projtex::ImageSet> images_;
+  std::vector<SilhouetteDistance> silhouette_distances_;
   std::int64_t hull_samples_ = 0, photo_samples_ = 0;
 };
 
@@ -343,6 +377,8 @@ const char* to_string(Method method) {
       return "voxel-coloring";
     case Method::kSpaceCarving:
       return "space-carving";
+    case Method::kRefine:
+      return "refine";
   }
   return "?";
 }

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/progress.h"
 #include "io/load_scene.h"
@@ -12,7 +13,7 @@
 namespace photohull::pipeline {
 
 enum class Quality { kDraft, kNormal, kHigh };
-enum class Method { kHull, kVoxelColoring, kSpaceCarving };
+enum class Method { kHull, kVoxelColoring, kSpaceCarving, kRefine };
 
 const char* to_string(Quality quality);
 const char* to_string(Method method);
@@ -27,6 +28,7 @@ struct ReconstructOptions {
   std::optional<Method> method;  ///< default: hull for draft, space carving otherwise
   std::string device = "auto";   ///< auto, software or an index
   int threads = 0;               ///< 0: one a core
+  std::vector<std::string> tune;  ///< NAME=VALUE, see pipeline/tuning.h
 
   /// Throws UsageError naming the option.
   void validate() const;

@@ -37,21 +37,21 @@ Group bound(std::span<const shaders::BakeVertex> vertices) {
   return group;
 }
 
-bool may_face(const Group& group, const glm::vec3& eye) {
+bool may_face(const Group& group, const glm::vec3& eye, float flattest) {
   const glm::vec3 offset = eye - group.centre;
   const float distance = glm::length(offset);
   if (!(distance > group.radius)) return true;
   const float cosine = glm::dot(offset, group.axis) / distance;
   const float nearest = std::acos(std::clamp(cosine, -1.0f, 1.0f)) - group.spread -
                         std::asin(group.radius / distance);
-  static const float kFlattest = std::acos(shaders::kBakeMinCosine) + 1e-3f;
-  return nearest < kFlattest;
+  return nearest < flattest;
 }
 
 }  // namespace
 
 std::vector<std::uint32_t> list_views(std::span<const shaders::BakeVertex> vertices,
-                                      std::span<const shaders::GpuView> views) {
+                                      std::span<const shaders::GpuView> views, float least_cosine) {
+  const float flattest = std::acos(least_cosine) + 1e-3f;
   const std::size_t stride = views.size() + 1;
   std::vector<std::uint32_t> lists;
   lists.reserve((vertices.size() / shaders::kBakeGroup + 1) * stride);
@@ -61,7 +61,7 @@ std::vector<std::uint32_t> list_views(std::span<const shaders::BakeVertex> verti
     const std::size_t header = lists.size();
     lists.resize(header + stride);
     for (std::size_t v = 0; v < views.size(); ++v)
-      if (may_face(group, glm::vec3(views[v].centre)))
+      if (may_face(group, glm::vec3(views[v].centre), flattest))
         lists[header + ++lists[header]] = std::uint32_t(v);
   }
   return lists;

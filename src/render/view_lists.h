@@ -11,10 +11,11 @@
 namespace photohull::render {
 
 /// For each run of kBakeGroup vertices, 1 + views.size() words: a count, then the indices of the
-/// views that at least one of its vertices may face with a cosine above kBakeMinCosine. Bounds a
+/// views that at least one of its vertices may face with a cosine above `least_cosine`. Bounds a
 /// group by a sphere and a cone of normals [Shirman93], so that it may list too many, never too
 /// few.
 std::vector<std::uint32_t> list_views(std::span<const shaders::BakeVertex> vertices,
-                                      std::span<const shaders::GpuView> views);
+                                      std::span<const shaders::GpuView> views,
+                                      float least_cosine = shaders::kBakeMinCosine);
 
 }  // namespace photohull::render

@@ -1,0 +1,91 @@
+#version 450 core
+#extension GL_GOOGLE_include_directive : require
+// Chooses the views that each surfel is matched in: as reference the most frontal one that sees it,
+// then greedily frontal ones at a useful angle from it and from each other. One thread a surfel.
+// Reference: refine::reference::choose_views.
+#include "include/projection.glsl"
+#include "include/depth_map.glsl"
+#include "shared/bake.h"
+#include "shared/refine.h"
+
+layout(local_size_x = 64) in;  // kBakeGroup
+layout(std140, binding = 0) uniform Parameters { MatchParameters parameters; };
+layout(std430, binding = 1) readonly buffer Surfels { BakeVertex surfels[]; };
+layout(std430, binding = 2) writeonly buffer Choices { MatchChoice choices[]; };
+layout(std430, binding = 3) readonly buffer ViewLists { uint view_lists[]; };  // render::list_views
+
+// The most frontal views in falling order of cosine; 0 where there are fewer.
+float best_cosine[kMatchCandidates];
+int best_view[kMatchCandidates];
+
+void insert(int view, float cosine) {
+  for (int k = 0; k < kMatchCandidates; ++k) {
+    bool better = cosine > best_cosine[k];
+    float other_cosine = better ? best_cosine[k] : cosine;
+    int other_view = better ? best_view[k] : view;
+    best_cosine[k] = better ? cosine : best_cosine[k];
+    best_view[k] = better ? view : best_view[k];
+    cosine = other_cosine;
+    view = other_view;
+  }
+}
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i >= uint(parameters.counts.x)) return;
+  vec3 position = surfels[i].position.xyz, normal = surfels[i].normal.xyz;
+  for (int k = 0; k < kMatchCandidates; ++k) best_cosine[k] = 0.0;
+  for (int k = 0; k < kMatchCandidates; ++k) best_view[k] = 0;
+  vec3 receiver = position + parameters.visibility.x * normal;
+  uint list = gl_WorkGroupID.x * uint(parameters.counts.y + 1);
+  uint listed = view_lists[list];
+  int found = 0, seen = 0;
+  for (uint k = 1u; k <= listed; ++k) {
+    int v = int(view_lists[list + k]);
+    GpuView view = views[v];
+    vec3 to_camera = view.centre.xyz - position;
+    float cosine = dot(to_camera, normal) * inversesqrt(dot(to_camera, to_camera));
+    if (!(cosine > parameters.visibility.w)) continue;
+    vec3 p = project(view, receiver);
+    vec2 pixel = p.xy / p.z;
+    if (p.z <= 1.0 || !on_image(view, pixel)) continue;
+    if (!visible(uint(v), pixel, p.z, parameters.visibility.y)) continue;
+    ++seen;
+    if (!(cosine > parameters.visibility.z)) continue;
+    insert(v, cosine);
+    ++found;
+  }
+  found = min(found, kMatchCandidates);
+  vec3 direction[kMatchCandidates];
+  for (int k = 0; k < kMatchCandidates; ++k)
+    direction[k] = normalize(views[best_view[k]].centre.xyz - position);
+
+  int chosen[kMatchViews] = int[kMatchViews](-1, -1, -1, -1, -1, -1);
+  int count = found > 0 ? 1 : 0;
+  chosen[0] = found > 0 ? best_view[0] : -1;
+  // How near each candidate is to what is chosen already, as a cosine; 2 takes it out.
+  float nearest[kMatchCandidates];
+  for (int k = 0; k < kMatchCandidates; ++k) {
+    float c = dot(direction[k], direction[0]);
+    nearest[k] = k > 0 && k < found && c <= parameters.angles.x && c >= parameters.angles.y ? c : 2.0;
+  }
+  for (int slot = 1; slot < kMatchViews; ++slot) {
+    int best = -1;
+    float most = 0.0;
+    for (int k = 1; k < kMatchCandidates; ++k) {
+      // Near-duplicates are worth a third.
+      float worth = best_cosine[k] * (nearest[k] > parameters.angles.z ? 0.33 : 1.0);
+      bool better = nearest[k] <= 1.0 && worth > most;
+      most = better ? worth : most;
+      best = better ? k : best;
+    }
+    if (best < 0) break;
+    chosen[slot] = best_view[best];
+    ++count;
+    vec3 taken = direction[best];
+    for (int k = 1; k < kMatchCandidates; ++k)
+      nearest[k] = nearest[k] > 1.0 || k == best ? 2.0 : max(nearest[k], dot(direction[k], taken));
+  }
+  choices[i].first = ivec4(chosen[0], chosen[1], chosen[2], chosen[3]);
+  choices[i].second = ivec4(chosen[4], chosen[5], seen, count);
+}

@@ -1,0 +1,114 @@
+#version 450 core
+#extension GL_GOOGLE_include_directive : require
+// Photo-consistency of tangent patches at offsets along the normal: all chosen views are projected
+// onto the patch by one affine footprint each, at the mip level of its area, and compared with the
+// reference view by zero-mean normalised cross-correlation over all channels, with the image noise
+// as a floor of both variances; the score is the mean of the best share of the pairs. One thread
+// an offset of a surfel, so that the threads of a vector share their views.
+// Reference: refine::reference::match_patch.
+#include "include/projection.glsl"
+#include "shared/bake.h"
+#include "shared/refine.h"
+
+layout(local_size_x = 64) in;
+layout(std140, binding = 0) uniform Parameters { MatchParameters parameters; };
+layout(std430, binding = 1) readonly buffer Surfels { BakeVertex surfels[]; };
+layout(std430, binding = 2) readonly buffer Choices { MatchChoice choices[]; };
+layout(std430, binding = 3) writeonly buffer Scores { float scores[]; };
+layout(binding = 0) uniform sampler2DArray images;
+
+#ifndef PATCH_RADIUS
+#define PATCH_RADIUS 2
+#endif
+const int kEdge = 2 * PATCH_RADIUS + 1;
+const int kTaps = kEdge * kEdge;
+
+struct Footprint {
+  vec2 origin, du, dv;  // texture coordinates of the first tap and steps between taps
+  float layer, lod;
+};
+
+Footprint footprint(int v, vec3 centre, vec3 u, vec3 w) {
+  GpuView view = views[v];
+  vec3 p = project(view, centre);
+  vec2 pixel = p.xy / p.z;
+  vec2 du = (vec2(dot(view.row_s.xyz, u), dot(view.row_t.xyz, u)) - pixel * dot(view.row_q.xyz, u)) / p.z;
+  vec2 dv = (vec2(dot(view.row_s.xyz, w), dot(view.row_t.xyz, w)) - pixel * dot(view.row_q.xyz, w)) / p.z;
+  Footprint f;
+  f.lod = floor(max(0.5 * log2(abs(du.x * dv.y - du.y * dv.x)), 0.0) + 0.5);
+  f.du = du * view.size.zw;
+  f.dv = dv * view.size.zw;
+  f.origin = texture_coordinate(view, pixel) - float(PATCH_RADIUS) * (f.du + f.dv);
+  f.layer = float(v);
+  return f;
+}
+
+vec3 tap(Footprint f, int k) {
+  vec2 at = f.origin + float(k % kEdge) * f.du + float(k / kEdge) * f.dv;
+  return sqrt(max(textureLod(images, vec3(at, f.layer), f.lod).rgb, 0.0)) - 0.5;
+}
+
+void main() {
+  uint offsets = uint(parameters.counts.z);
+  uint i = gl_GlobalInvocationID.x / offsets;
+  if (i >= uint(parameters.counts.x)) return;
+  float offset = (parameters.search.x + parameters.search.y * float(gl_GlobalInvocationID.x % offsets)) *
+                 surfels[i].position.w;
+  vec3 normal = surfels[i].normal.xyz;
+  vec3 centre = surfels[i].position.xyz + offset * normal;
+  int count = choices[i].second.w;
+  if (count < 2) {
+    scores[gl_GlobalInvocationID.x] = kNoScore;
+    return;
+  }
+  int chosen[kMatchViews] = int[kMatchViews](choices[i].first.x, choices[i].first.y, choices[i].first.z,
+                                             choices[i].first.w, choices[i].second.x, choices[i].second.y);
+  // Patch axes: u across the reference's line of sight.
+  GpuView reference = views[chosen[0]];
+  vec3 sight = reference.centre.xyz - centre;
+  float pixel = length(sight) / reference.centre.w;
+  float spacing = max(parameters.search.z, parameters.search.w * pixel);
+  vec3 helper = abs(normal.x) < 0.6 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
+  vec3 u = normalize(cross(helper, normal));
+  vec3 w = cross(normal, u) * spacing;
+  u *= spacing;
+
+  vec3 patch_of_reference[kTaps];
+  vec3 sum = vec3(0.0);
+  float squares = 0.0;
+  Footprint f = footprint(chosen[0], centre, u, w);
+  for (int k = 0; k < kTaps; ++k) {
+    vec3 x = tap(f, k);
+    patch_of_reference[k] = x;
+    sum += x;
+    squares += dot(x, x);
+  }
+  const float n = float(kTaps);
+  float floor_of_noise = 3.0 * n * parameters.consistency.x;
+  float scale = inversesqrt(max(squares - dot(sum, sum) / n, 0.0) + floor_of_noise);
+
+  float pairs[kMatchViews - 1];
+  for (int k = 0; k < kMatchViews - 1; ++k) pairs[k] = -1.0;
+  for (int v = 1; v < count; ++v) {
+    f = footprint(chosen[v], centre, u, w);
+    vec3 other_sum = vec3(0.0);
+    float other_squares = 0.0, product = 0.0;
+    for (int k = 0; k < kTaps; ++k) {
+      vec3 x = tap(f, k);
+      other_sum += x;
+      other_squares += dot(x, x);
+      product += dot(x, patch_of_reference[k]);
+    }
+    float score = (product - dot(sum, other_sum) / n) * scale *
+                  inversesqrt(max(other_squares - dot(other_sum, other_sum) / n, 0.0) + floor_of_noise);
+    for (int k = 0; k < kMatchViews - 1; ++k) {
+      float kept = max(pairs[k], score);
+      score = min(pairs[k], score);
+      pairs[k] = kept;
+    }
+  }
+  int best = int(ceil(parameters.consistency.y * float(count - 1)));
+  float total = 0.0;
+  for (int k = 0; k < kMatchViews - 1; ++k) total += k < best ? pairs[k] : 0.0;
+  scores[gl_GlobalInvocationID.x] = total / float(best);
+}

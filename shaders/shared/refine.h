@@ -1,0 +1,42 @@
+// Contract of the kernels that match surface patches between views. Lengths are in voxels.
+#ifndef PHOTOHULL_SHADERS_REFINE_H
+#define PHOTOHULL_SHADERS_REFINE_H
+
+#ifdef __cplusplus
+#include <glm/glm.hpp>
+namespace photohull::shaders {
+using glm::ivec4;
+using glm::vec4;
+#elif !defined(constexpr)
+#define constexpr const
+#endif
+
+constexpr int kMatchViews = 6;        // the reference view and those compared with it
+constexpr int kMatchCandidates = 16;  // views, the most frontal ones, that the choice is made among
+constexpr int kMatchRadius = 2;       // taps: patches of 5 x 5 in the tangent plane
+constexpr int kMatchTaps = 25;
+constexpr float kNoScore = -2.0f;  // too few views to compare
+
+struct MatchParameters {
+  ivec4 counts;      // x: surfels, y: views, z: offsets
+  vec4 search;       // x: first offset along the normal, y: step between offsets; patch spacing is
+                     // at least z voxels and w pixels of the reference
+  vec4 consistency;  // x: variance of image noise (square-root encoding), y: share of pairs that count
+  vec4 visibility;   // x: shift of the receiver along the normal, y: bias of the depth test,
+                     // z: least cosine between a normal and a camera it is matched in, w: one that sees it
+  vec4 angles;       // x, y: cosines of the least and the largest angle to the reference,
+                     // z: cosine of the angle below which two views are near-duplicates
+};
+
+struct MatchChoice {
+  ivec4 first;   // x: reference view; -1 where there is none
+  ivec4 second;  // x, y: the last two; z: views that see it; w: number of views chosen
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(MatchParameters) == 80);
+static_assert(sizeof(MatchChoice) == 32);
+}  // namespace photohull::shaders
+#endif
+
+#endif  // PHOTOHULL_SHADERS_REFINE_H

@@ -1,0 +1,94 @@
+#include "pipeline/tuning.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <variant>
+
+#include "core/error.h"
+
+namespace photohull::pipeline {
+namespace {
+
+using Field = std::variant<int*, double*, bool*>;
+
+void assign(const std::vector<std::string>& assignments,
+            const std::map<std::string, Field>& fields) {
+  for (const std::string& text : assignments) {
+    const std::size_t equals = text.find('=');
+    const std::string name = text.substr(0, equals);
+    const auto field = fields.find(name);
+    if (field == fields.end()) {
+      std::string known;
+      for (const auto& [other, unused] : fields) known += (known.empty() ? "" : ", ") + other;
+      throw UsageError(
+          concat("--tune ", text, ": this method has no '", name, "'; it has ", known));
+    }
+    const std::string number = equals == std::string::npos ? "" : text.substr(equals + 1);
+    char* end = nullptr;
+    const double value = std::strtod(number.c_str(), &end);
+    if (number.empty() || *end != 0 || !std::isfinite(value) || std::abs(value) > 1e6)
+      throw UsageError(concat("--tune ", text, ": expected NAME=NUMBER"));
+    std::visit([&](auto* target) { *target = static_cast<std::decay_t<decltype(*target)>>(value); },
+               field->second);
+  }
+}
+
+}  // namespace
+
+void tune(const std::vector<std::string>& assignments, carving::PhotoOptions& o) {
+  assign(assignments, {{"keep_score", &o.keep_score},
+                       {"better_by", &o.better_by},
+                       {"min_views", &o.min_views},
+                       {"min_texture", &o.min_texture},
+                       {"supersample", &o.supersample},
+                       {"front_face", &o.front_face},
+                       {"depth_bias", &o.depth_bias},
+                       {"max_path", &o.max_path},
+                       {"max_rounds", &o.max_rounds}});
+}
+
+void tune(const std::vector<std::string>& assignments, refine::RefineOptions& o) {
+  assign(assignments, {{"levels", &o.levels},
+                       {"coarse_iterations", &o.coarse_iterations},
+                       {"middle_iterations", &o.middle_iterations},
+                       {"fine_iterations", &o.fine_iterations},
+                       {"coarse_offsets", &o.coarse_offsets},
+                       {"fine_offsets", &o.fine_offsets},
+                       {"step", &o.step},
+                       {"aggregations", &o.aggregations},
+                       {"voting", &o.voting},
+                       {"vote.ray_spacing", &o.vote.ray_spacing},
+                       {"vote.tap_spacing", &o.vote.tap_spacing},
+                       {"vote.best_pairs", &o.vote.best_pairs},
+                       {"vote.least_score", &o.vote.least_score},
+                       {"vote.distinct_by", &o.vote.distinct_by},
+                       {"vote.band", &o.vote.band},
+                       {"vote.least_weight", &o.vote.least_weight},
+                       {"vote.smoothing", &o.vote.smoothing},
+                       {"closing", &o.closing},
+                       {"close.iterations", &o.close.iterations},
+                       {"close.rings", &o.close.rings},
+                       {"close.thickness", &o.close.thickness},
+                       {"restore.least_views", &o.restore.least_views},
+                       {"restore.least_away", &o.restore.least_away},
+                       {"restore.least_inside", &o.restore.least_inside},
+                       {"match.least_spacing", &o.match.least_spacing},
+                       {"match.pixel_spacing", &o.match.pixel_spacing},
+                       {"match.best_pairs", &o.match.best_pairs},
+                       {"match.shift", &o.match.shift},
+                       {"match.depth_bias", &o.match.depth_bias},
+                       {"match.least_cosine", &o.match.least_cosine},
+                       {"match.nearest_angle", &o.match.nearest_angle},
+                       {"match.farthest_angle", &o.match.farthest_angle},
+                       {"match.duplicate_angle", &o.match.duplicate_angle},
+                       {"peak.least_score", &o.peak.least_score},
+                       {"peak.sure_score", &o.peak.sure_score},
+                       {"peak.distinct_by", &o.peak.distinct_by},
+                       {"regularize.membrane", &o.regularize.membrane},
+                       {"regularize.robust", &o.regularize.robust},
+                       {"regularize.reweightings", &o.regularize.reweightings},
+                       {"regularize.iterations", &o.regularize.iterations}});
+}
+
+}  // namespace photohull::pipeline

@@ -1,0 +1,17 @@
+// Parameters of the methods changed by name, for experiments and ablations.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "carving/photo.h"
+#include "refine/refine.h"
+
+namespace photohull::pipeline {
+
+/// Each assignment is NAME=VALUE with a field's name (nested ones joined by dots) and a finite
+/// number. Throws UsageError naming what is wrong, with the nearest known name.
+void tune(const std::vector<std::string>& assignments, carving::PhotoOptions& options);
+void tune(const std::vector<std::string>& assignments, refine::RefineOptions& options);
+
+}  // namespace photohull::pipeline

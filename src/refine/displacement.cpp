@@ -1,0 +1,105 @@
+#include "refine/displacement.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace photohull::refine {
+namespace {
+
+template <typename F>
+void for_vertices(std::size_t count, F&& f) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 2048), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) f(i);
+  });
+}
+
+}  // namespace
+
+void aggregate(const VertexGraph& graph, int passes, Matches& matches) {
+  const std::size_t k = std::size_t(matches.range.count);
+  std::vector<float> next(matches.scores.size());
+  for (int pass = 0; pass < passes; ++pass) {
+    for_vertices(graph.vertices(), [&](std::size_t i) {
+      float* out = next.data() + i * k;
+      const auto own = matches.of(i);
+      std::fill(out, out + k, 0.0f);
+      int known = 0;
+      for (const std::uint32_t j : graph.of(i)) {
+        const auto other = matches.of(j);
+        if (other[0] == shaders::kNoScore) continue;
+        ++known;
+        for (std::size_t o = 0; o < k; ++o) out[o] += other[o];
+      }
+      const bool self = own[0] != shaders::kNoScore;
+      for (std::size_t o = 0; o < k; ++o) {
+        if (!self && !known)
+          out[o] = shaders::kNoScore;
+        else if (!known)
+          out[o] = own[o];
+        else
+          out[o] = self ? 0.5f * (own[o] + out[o] / float(known)) : out[o] / float(known);
+      }
+    });
+    matches.scores.swap(next);
+  }
+}
+
+std::vector<Peak> find_peaks(const Matches& matches, const PeakOptions& options) {
+  const std::size_t k = std::size_t(matches.range.count);
+  std::vector<Peak> peaks(k ? matches.scores.size() / k : 0);
+  for_vertices(peaks.size(), [&](std::size_t i) {
+    const auto s = matches.of(i);
+    if (s[0] == shaders::kNoScore) return;
+    std::size_t best = 0;
+    for (std::size_t o = 1; o + 1 < k; ++o)
+      if (s[o] >= s[o - 1] && s[o] > s[o + 1] && (best == 0 || s[o] > s[best])) best = o;
+    if (best == 0 || s[best] < options.least_score) return;
+    float second = -1;
+    for (std::size_t o = 0; o < k; ++o) {
+      if (o + 1 >= best && o <= best + 1) continue;
+      const bool peak = (o == 0 || s[o] >= s[o - 1]) && (o + 1 == k || s[o] >= s[o + 1]);
+      if (peak) second = std::max(second, s[o]);
+    }
+    const double curvature = s[best - 1] - 2.0 * s[best] + s[best + 1];
+    const double shift =
+        curvature < 0 ? std::clamp(0.5 * (s[best - 1] - s[best + 1]) / curvature, -0.5, 0.5) : 0;
+    const double sure =
+        (s[best] - options.least_score) / (options.sure_score - options.least_score);
+    const double lead = (s[best] - second) / options.distinct_by;
+    const double sharp = -curvature / 0.05;
+    peaks[i].offset = float(matches.range.at(double(best) + shift));
+    peaks[i].score = s[best];
+    peaks[i].weight = float(std::clamp(sure, 0.0, 1.0) * std::clamp(lead, 0.1, 1.0) *
+                            std::clamp(sharp, 0.1, 1.0));
+  });
+  return peaks;
+}
+
+std::vector<float> regularize(const VertexGraph& graph, const std::vector<Peak>& peaks,
+                              const RegularizeOptions& options) {
+  const std::size_t n = peaks.size();
+  std::vector<float> d(n, 0.0f), next(n), weight(n);
+  for (int outer = 0; outer < options.reweightings; ++outer) {
+    for_vertices(n, [&](std::size_t i) {
+      const double off = outer == 0 ? 0 : (peaks[i].offset - d[i]) / options.robust;
+      weight[i] = float(peaks[i].weight / ((1 + off * off) * (1 + off * off)));
+    });
+    for (int iteration = 0; iteration < options.iterations; ++iteration) {
+      for_vertices(n, [&](std::size_t i) {
+        double sum = 0;
+        const auto around = graph.of(i);
+        for (const std::uint32_t j : around) sum += d[j];
+        const double m = around.empty() ? 0 : options.membrane;
+        const double mean = around.empty() ? 0 : sum / double(around.size());
+        next[i] = float((weight[i] * peaks[i].offset + m * mean) / (weight[i] + m + 1e-3));
+      });
+      d.swap(next);
+    }
+  }
+  return d;
+}
+
+}  // namespace photohull::refine

@@ -1,0 +1,120 @@
+// Patches on tangent planes: [Montenegro03] and, for scoring by correlation with a reference view,
+// M. Goesele et al., "Multi-view stereo for community photo collections", ICCV 2007.
+#include "refine/match.h"
+
+#include <cmath>
+
+#include "gpu/buffer.h"
+#include "gpu/program.h"
+#include "render/surface_points.h"
+#include "render/view_lists.h"
+#include "shared/bake.h"
+
+namespace photohull::refine {
+namespace {
+
+using gpu::Buffer;
+
+constexpr double kRadians = 0.017453292519943295;
+constexpr std::size_t kBatch = std::size_t(1) << 18;  // surfels whose scores are held on the device
+
+class Matcher {
+ public:
+  Matcher(gpu::Context& context, const GridSpec& grid, const TriMesh& mesh,
+          const projtex::ImageSet& images, std::span<const Camera> cameras)
+      : context_(context), images_(images), surfels_(render::to_voxels(grid, mesh)) {
+    const glm::ivec2 size(images.texture().width(), images.texture().height());
+    for (const Camera& camera : cameras)
+      gpu_views_.push_back(projtex::to_gpu_view(projtex::to_grid(camera, grid), size));
+    views_ = Buffer::of(gpu_views_);
+    visibility::DepthMaps maps = render::occluder_maps(cameras, grid);
+    views_.bind_storage(0);
+    maps.bind();
+    draw(surfels_);
+    draw(render::points_between(mesh, surfels_));
+    for (auto& s : surfels_) s.position.w = 1;
+    maps_.emplace(std::move(maps));
+  }
+
+  void run(shaders::MatchParameters parameters, Matches& out) {
+    const auto choose = gpu::Program::compute("refine_choose_views.comp.glsl");
+    const auto match = gpu::Program::compute("refine_match_patches.comp.glsl");
+    const std::size_t offsets = std::size_t(out.range.count);
+    out.scores.resize(surfels_.size() * offsets);
+    for (std::size_t first = 0; first < surfels_.size(); first += kBatch) {
+      const std::size_t count = std::min(kBatch, surfels_.size() - first);
+      const auto part = std::span(surfels_).subspan(first, count);
+      const Buffer surfels = Buffer::of(std::span<const shaders::BakeVertex>(part));
+      const Buffer lists =
+          Buffer::of(render::list_views(part, gpu_views_, parameters.visibility.w));
+      const Buffer choices(count * sizeof(shaders::MatchChoice));
+      const Buffer scores(count * offsets * sizeof(float));
+      parameters.counts.x = int(count);
+      const Buffer uniforms(sizeof parameters, &parameters);
+      uniforms.bind_uniform(0);
+      views_.bind_storage(0);
+      maps_->bind();
+      surfels.bind_storage(1);
+      choices.bind_storage(2);
+      lists.bind_storage(3);
+      choose.dispatch(context_, "refine_choose_views",
+                      gpu::group_count(count, shaders::kBakeGroup));
+      scores.bind_storage(3);
+      images_.texture().bind(0);
+      match.dispatch(context_, "refine_match_patches", gpu::group_count(count * offsets, 64));
+      scores.read(0, count * offsets * sizeof(float), out.scores.data() + first * offsets);
+      for (const auto& choice : choices.download<shaders::MatchChoice>(count)) {
+        out.seen.push_back(choice.second.z > 0);
+        if (choice.second.w >= 2)
+          out.samples += std::int64_t(offsets) * choice.second.w * shaders::kMatchTaps;
+      }
+    }
+  }
+
+ private:
+  void draw(const std::vector<shaders::BakeVertex>& points) {
+    const auto splat = gpu::Program::compute("render_splat_points.comp.glsl");
+    constexpr std::size_t kPoints = std::size_t(1) << 20;
+    for (std::size_t first = 0; first < points.size(); first += kPoints) {
+      const std::size_t count = std::min(kPoints, points.size() - first);
+      const shaders::BakeParameters parameters{{int(count), int(gpu_views_.size()), 0, 0}, {}};
+      const Buffer uniforms(sizeof parameters, &parameters);
+      const Buffer part(count * sizeof(shaders::BakeVertex), &points[first]);
+      uniforms.bind_uniform(0);
+      part.bind_storage(1);
+      splat.dispatch(context_, "render_splat_points",
+                     gpu::group_count(count, 64 * shaders::kSplatRun), gpu_views_.size());
+    }
+  }
+
+  gpu::Context& context_;
+  const projtex::ImageSet& images_;
+  std::vector<shaders::BakeVertex> surfels_;
+  std::vector<shaders::GpuView> gpu_views_;
+  Buffer views_;
+  std::optional<visibility::DepthMaps> maps_;
+};
+
+}  // namespace
+
+Matches match_patches(gpu::Context& context, const GridSpec& grid, const TriMesh& mesh,
+                      const projtex::ImageSet& images, std::span<const Camera> cameras,
+                      double noise_sigma, const OffsetRange& range, const MatchOptions& options) {
+  Matches out;
+  out.range = range;
+  Matcher matcher(context, grid, mesh, images, cameras);
+  shaders::MatchParameters p{};
+  p.counts = {0, int(cameras.size()), range.count, 0};
+  p.search = {float(range.first), float(range.step), float(options.least_spacing),
+              float(options.pixel_spacing)};
+  p.consistency = {float(noise_sigma * noise_sigma), float(options.best_pairs), 0, 0};
+  p.visibility = {float(options.shift), float(options.depth_bias), float(options.least_cosine),
+                  float(options.seen_cosine)};
+  p.angles = {float(std::cos(kRadians * options.nearest_angle)),
+              float(std::cos(kRadians * options.farthest_angle)),
+              float(std::cos(kRadians * options.duplicate_angle)), 0};
+  matcher.run(p, out);
+  return out;
+}
+
+}  // namespace photohull::refine

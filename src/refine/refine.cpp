@@ -1,0 +1,155 @@
+// Coarse to fine after Y. Furukawa, J. Ponce, "Carved visual hulls for image-based modeling", IJCV
+// 2009, with the projection onto tangent planes that [Montenegro03] proposes as the next step.
+#include "refine/refine.h"
+
+#include <chrono>
+#include <cmath>
+
+#include "core/error.h"
+#include "refine/surface.h"
+#include "volume/cavities.h"
+#include "volume/combine.h"
+#include "volume/distance_from_mesh.h"
+#include "volume/extract_mesh.h"
+
+namespace photohull::refine {
+namespace {
+
+constexpr double kNearReach = 2.25;  // voxels of exact distance that a step needs
+constexpr double kFullReach = SparseVolume::kBand;
+
+/// The grid with voxels twice as large over the same space.
+GridSpec coarser(const GridSpec& grid) {
+  GridSpec out;
+  out.voxel_size = 2 * grid.voxel_size;
+  out.bricks = (grid.bricks + 1) / 2;
+  out.origin = grid.origin + 0.5 * grid.voxel_size;
+  return out;
+}
+
+class Refiner {
+ public:
+  Refiner(gpu::Context& context, const HullAt& hull_at,
+          std::span<const carving::Silhouette> silhouettes, const projtex::ImageSet& images,
+          std::span<const Camera> cameras, const RefineOptions& options)
+      : context_(context),
+        hull_at_(hull_at),
+        silhouettes_(silhouettes),
+        images_(images),
+        cameras_(cameras),
+        options_(options) {}
+
+  SparseVolume run(const std::vector<GridSpec>& grids, Progress& progress, RefineReport& report) {
+    SparseVolume volume;
+    for (std::size_t level = 0; level < grids.size(); ++level) {
+      const auto start = std::chrono::steady_clock::now();
+      LevelReport counts;
+      counts.voxel_size = grids[level].voxel_size;
+      const SparseVolume hull = hull_at_(grids[level]);
+      volume =
+          level == 0
+              ? first_guess(hull)
+              : bounded(distance_from_mesh(extract_mesh(volume), volume, hull.grid, kNearReach),
+                        hull);
+      counts.restored = std::int64_t(
+          restore_silhouettes(context_, volume, hull, cameras_, silhouettes_, options_.restore));
+      const bool first = level == 0, last = level + 1 == grids.size();
+      const int iterations = last    ? options_.fine_iterations
+                             : first ? options_.coarse_iterations
+                                     : options_.middle_iterations;
+      for (int i = 0; i < iterations; ++i) {
+        progress.check_cancelled();
+        step(volume, first ? options_.coarse_offsets : options_.fine_offsets, counts);
+        const double reach = last && i + 1 == iterations ? kFullReach : kNearReach;
+        volume = bounded(distance_from_mesh(extract_mesh(volume), volume, hull.grid, reach), hull);
+        progress.update((double(level) + double(i + 1) / iterations) / double(grids.size()));
+      }
+      counts.bricks = std::int64_t(volume.bricks.size());
+      counts.seconds =
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      report.levels.push_back(counts);
+    }
+    return volume;
+  }
+
+ private:
+  SparseVolume first_guess(const SparseVolume& hull) {
+    return bounded(options_.voting ? vote_free_space(context_, hull, images_, cameras_,
+                                                     options_.noise_sigma, options_.vote)
+                                   : hull,
+                   hull);
+  }
+
+  /// What of the volume lies in the hull, without space that nothing can have looked into.
+  static SparseVolume bounded(const SparseVolume& volume, const SparseVolume& hull) {
+    SparseVolume out = intersection(volume, hull);
+    fill_cavities(out);
+    return out;
+  }
+
+  /// Moves the surface to where the photographs agree.
+  void step(SparseVolume& volume, int offsets, LevelReport& counts) {
+    const TriMesh mesh = extract_mesh(volume);
+    const VertexGraph graph = make_graph(mesh);
+    const OffsetRange range{-options_.step * (offsets / 2), options_.step, offsets};
+    Matches matches = match_patches(context_, volume.grid, mesh, images_, cameras_,
+                                    options_.noise_sigma, range, options_.match);
+    aggregate(graph, options_.aggregations, matches);
+    std::vector<float> moves =
+        regularize(graph, find_peaks(matches, options_.peak), options_.regularize);
+    if (options_.closing) {
+      const auto closing = close_unseen(volume.grid, mesh, graph, matches.seen, options_.close);
+      for (std::size_t i = 0; i < moves.size(); ++i)
+        if (closing[i] != 0) moves[i] = closing[i];
+    }
+    move_surface(volume, mesh, moves);
+
+    counts.surfels = std::int64_t(moves.size());
+    counts.samples += matches.samples;
+    double sum = 0;
+    for (const float move : moves) sum += std::abs(move);
+    counts.mean_move = sum / double(std::max<std::size_t>(moves.size(), 1));
+  }
+
+  gpu::Context& context_;
+  const HullAt& hull_at_;
+  std::span<const carving::Silhouette> silhouettes_;
+  const projtex::ImageSet& images_;
+  std::span<const Camera> cameras_;
+  const RefineOptions& options_;
+};
+
+}  // namespace
+
+void RefineOptions::validate() const {
+  const auto require = [](bool ok, const char* what) {
+    if (!ok) throw UsageError(what);
+  };
+  require(levels >= 1 && levels <= 8, "levels must be 1 to 8");
+  require(coarse_iterations >= 1 && middle_iterations >= 1 && fine_iterations >= 1,
+          "iterations must be at least 1");
+  require(coarse_offsets >= 3 && coarse_offsets <= 64 && fine_offsets >= 3 && fine_offsets <= 64,
+          "offsets must be 3 to 64");
+  require(step > 0 && step <= 2, "step must lie in (0, 2] voxels");
+  require(aggregations >= 0, "aggregations must not be negative");
+  require(noise_sigma > 0 && std::isfinite(noise_sigma), "noise_sigma must be positive");
+}
+
+SparseVolume refine_surface(gpu::Context& context, const GridSpec& finest, const HullAt& hull_at,
+                            std::span<const carving::Silhouette> silhouettes,
+                            const projtex::ImageSet& images, std::span<const Camera> cameras,
+                            const RefineOptions& options, Progress& progress,
+                            RefineReport* report) {
+  options.validate();
+  PHOTOHULL_CHECK_OP(int(cameras.size()), ==, images.layers());
+  PHOTOHULL_CHECK_OP(silhouettes.size(), ==, cameras.size());
+  std::vector<GridSpec> grids{finest};
+  while (int(grids.size()) < options.levels) grids.insert(grids.begin(), coarser(grids.front()));
+  RefineReport counts;
+  SparseVolume volume =
+      Refiner(context, hull_at, silhouettes, images, cameras, options).run(grids, progress, counts);
+  if (report) *report = std::move(counts);
+  return volume;
+}
+
+}  // namespace photohull::refine

@@ -1,0 +1,74 @@
+// Surface refinement by photo-consistency on tangent patches, coarse to fine.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "carving/hull.h"
+#include "core/grid.h"
+#include "core/progress.h"
+#include "gpu/context.h"
+#include "projtex/image_set.h"
+#include "refine/close_unseen.h"
+#include "refine/displacement.h"
+#include "refine/match.h"
+#include "refine/restore.h"
+#include "refine/vote.h"
+
+namespace photohull::refine {
+
+struct RefineOptions {
+  int levels = 3;             ///< voxel sizes, each half the one before; the last is the result's
+  int coarse_iterations = 3;  ///< of matching and moving, at the first level
+  int middle_iterations = 2;
+  int fine_iterations = 2;  ///< at the last level
+  int coarse_offsets = 11;  ///< places along the normal that are tried
+  int fine_offsets = 9;
+  double step = 0.5;           ///< between them, voxels
+  int aggregations = 2;        ///< passes of averaging scores over neighbours
+  double noise_sigma = 0.003;  ///< of the images, square-root encoding
+  bool voting = true;          ///< start from coarse depth maps' free space instead of the hull
+  VoteOptions vote;
+  bool closing = true;  ///< of surface that no camera sees
+  CloseOptions close;
+  RestoreOptions restore;
+  MatchOptions match;
+  PeakOptions peak;
+  RegularizeOptions regularize;
+
+  /// Throws UsageError naming the option.
+  void validate() const;
+};
+
+struct LevelReport {
+  double voxel_size = 0;      ///< world units
+  double seconds = 0;         ///< wall
+  std::int64_t surfels = 0;   ///< of the last iteration
+  std::int64_t samples = 0;   ///< texture samples
+  std::int64_t bricks = 0;    ///< stored at the end
+  std::int64_t restored = 0;  ///< voxels of the hull that silhouettes brought back
+  double mean_move = 0;       ///< of the last iteration, voxels
+};
+
+struct RefineReport {
+  std::vector<LevelReport> levels;
+};
+
+/// The visual hull on a grid.
+using HullAt = std::function<SparseVolume(const GridSpec&)>;
+
+/// The surface that the photographs agree on, on the grid `finest`, from the hull's silhouettes
+/// (one per camera, parts may be empty) inwards. A level starts from the one before, takes back
+/// what only finer voxels of the hull show, and then matches the surface's tangent patches between
+/// the views that see them and moves its signed distance, a few times over. Surface that no camera
+/// sees is closed smoothly. Deterministic on one device. Throws Cancelled, UsageError for options,
+/// and what hull_at throws.
+SparseVolume refine_surface(gpu::Context& context, const GridSpec& finest, const HullAt& hull_at,
+                            std::span<const carving::Silhouette> silhouettes,
+                            const projtex::ImageSet& images, std::span<const Camera> cameras,
+                            const RefineOptions& options, Progress& progress,
+                            RefineReport* report = nullptr);
+
+}  // namespace photohull::refine

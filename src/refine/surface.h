@@ -1,0 +1,29 @@
+// A mesh as surfels on a graph.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/mesh.h"
+
+namespace photohull::refine {
+
+/// Which vertices an edge joins: the neighbours of vertex i are
+/// neighbours[first[i]] to neighbours[first[i + 1] - 1], in rising order, each once.
+struct VertexGraph {
+  std::vector<std::uint32_t> first;  ///< vertices + 1
+  std::vector<std::uint32_t> neighbours;
+
+  std::size_t vertices() const { return first.empty() ? 0 : first.size() - 1; }
+  std::span<const std::uint32_t> of(std::size_t vertex) const {
+    return {neighbours.data() + first[vertex], first[vertex + 1] - first[vertex]};
+  }
+};
+
+VertexGraph make_graph(const TriMesh& mesh);
+
+/// Unit outward normals from the faces around each vertex, weighted with their areas.
+void set_face_normals(TriMesh& mesh);
+
+}  // namespace photohull::refine
