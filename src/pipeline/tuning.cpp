@@ -85,6 +85,7 @@ void tune(const std::vector<std::string>& assignments, refine::RefineOptions& o)
                        {"peak.least_score", &o.peak.least_score},
                        {"peak.sure_score", &o.peak.sure_score},
                        {"peak.distinct_by", &o.peak.distinct_by},
+                       {"peak.thick", &o.peak.thick},
                        {"regularize.membrane", &o.regularize.membrane},
                        {"regularize.robust", &o.regularize.robust},
                        {"regularize.reweightings", &o.regularize.reweightings},

@@ -18,6 +18,8 @@ using gpu::Buffer;
 constexpr double kRadians = 0.017453292519943295;
 constexpr std::size_t kBatch = std::size_t(1) << 18;  // surfels whose scores are held on the device
 
+constexpr std::size_t kMostThreads = std::size_t(1) << 21;  // of a dispatch, within every device's limit
+
 class Matcher {
  public:
   Matcher(gpu::Context& context, const GridSpec& grid, const TriMesh& mesh,
@@ -41,8 +43,9 @@ class Matcher {
     const auto match = gpu::Program::compute("refine_match_patches.comp.glsl");
     const std::size_t offsets = std::size_t(out.range.count);
     out.scores.resize(surfels_.size() * offsets);
-    for (std::size_t first = 0; first < surfels_.size(); first += kBatch) {
-      const std::size_t count = std::min(kBatch, surfels_.size() - first);
+    const std::size_t batch = std::min(kBatch, kMostThreads / offsets);
+    for (std::size_t first = 0; first < surfels_.size(); first += batch) {
+      const std::size_t count = std::min(batch, surfels_.size() - first);
       const auto part = std::span(surfels_).subspan(first, count);
       const Buffer surfels = Buffer::of(std::span<const shaders::BakeVertex>(part));
       const Buffer lists =

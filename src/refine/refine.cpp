@@ -27,6 +27,23 @@ GridSpec coarser(const GridSpec& grid) {
   return out;
 }
 
+/// Patches reach beyond parts thinner than they are, and mix in what lies behind: peaks there lose
+/// weight.
+void trust_thickness(const SparseVolume& volume, const TriMesh& mesh, double thick,
+                     std::vector<Peak>& peaks) {
+  const glm::dvec3 offset = (mesh.origin - volume.grid.origin) / volume.grid.voxel_size;
+  for (std::size_t i = 0; i < peaks.size(); ++i) {
+    if (!(peaks[i].weight > 0)) continue;
+    const glm::vec3 p(glm::dvec3(mesh.positions[i]) / volume.grid.voxel_size + offset);
+    double depth = 1;
+    while (depth < thick &&
+           volume.at(glm::ivec3(glm::floor(p - float(depth) * mesh.normals[i] + 0.5f))) < 0)
+      depth += 1;
+    const double share = std::min(depth / thick, 1.0);
+    peaks[i].weight *= float(share * share);
+  }
+}
+
 class Refiner {
  public:
   Refiner(gpu::Context& context, const HullAt& hull_at,
@@ -64,6 +81,7 @@ class Refiner {
         volume = bounded(distance_from_mesh(extract_mesh(volume), volume, hull.grid, reach), hull);
         progress.update((double(level) + double(i + 1) / iterations) / double(grids.size()));
       }
+      if (last) counts.restored += std::int64_t(restore_silhouettes(context_, volume, hull, cameras_, silhouettes_, options_.restore));
       counts.bricks = std::int64_t(volume.bricks.size());
       counts.seconds =
           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -95,8 +113,9 @@ class Refiner {
     Matches matches = match_patches(context_, volume.grid, mesh, images_, cameras_,
                                     options_.noise_sigma, range, options_.match);
     aggregate(graph, options_.aggregations, matches);
-    std::vector<float> moves =
-        regularize(graph, find_peaks(matches, options_.peak), options_.regularize);
+    std::vector<Peak> peaks = find_peaks(matches, options_.peak);
+    trust_thickness(volume, mesh, options_.peak.thick, peaks);
+    std::vector<float> moves = regularize(graph, peaks, options_.regularize);
     if (options_.closing) {
       const auto closing = close_unseen(volume.grid, mesh, graph, matches.seen, options_.close);
       for (std::size_t i = 0; i < moves.size(); ++i)

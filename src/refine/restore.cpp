@@ -127,8 +127,7 @@ class Restorer {
       const auto& info = infos_[v];
       const int tx = std::min(int((x + 0.5) * info.scale.x), info.size.x - 1);
       const int ty = std::min(int((y + 0.5) * info.scale.x), info.size.y - 1);
-      if (depths_[v][std::size_t(std::max(ty, 0)) * info.size.x + std::max(tx, 0)] ==
-          std::numeric_limits<float>::infinity())
+      if (std::isinf(depths_[v][std::size_t(std::max(ty, 0)) * info.size.x + std::max(tx, 0)]))
         ++count;
     }
     return count >= options_.least_views;

@@ -142,7 +142,7 @@ class Voter {
     const auto program =
         gpu::Program::compute("refine_match_patches.comp.glsl", "#define PATCH_RADIUS 1\n");
     const Buffer views = Buffer::of(gpu_views_);
-    constexpr std::size_t kBatch = std::size_t(1) << 17;
+    const std::size_t kBatch = (std::size_t(1) << 21) / std::size_t(length);
     for (std::size_t first = 0; first < rays.size(); first += kBatch) {
       const std::size_t count = std::min(kBatch, rays.size() - first);
       std::vector<shaders::BakeVertex> surfels;
