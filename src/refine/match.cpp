@@ -38,7 +38,8 @@ class Matcher {
     maps_.emplace(std::move(maps));
   }
 
-  void run(shaders::MatchParameters parameters, Matches& out) {
+  void run(shaders::MatchParameters parameters, Matches& out,
+           std::vector<shaders::MatchChoice>* chosen) {
     const auto choose = gpu::Program::compute("refine_choose_views.comp.glsl");
     const auto match = gpu::Program::compute("refine_match_patches.comp.glsl");
     const std::size_t offsets = std::size_t(out.range.count);
@@ -67,6 +68,7 @@ class Matcher {
       match.dispatch(context_, "refine_match_patches", gpu::group_count(count * offsets, 64));
       scores.read(0, count * offsets * sizeof(float), out.scores.data() + first * offsets);
       for (const auto& choice : choices.download<shaders::MatchChoice>(count)) {
+        if (chosen) chosen->push_back(choice);
         out.seen.push_back(choice.second.z > 0);
         if (choice.second.w >= 2)
           out.samples += std::int64_t(offsets) * choice.second.w * shaders::kMatchTaps;
@@ -102,7 +104,8 @@ class Matcher {
 
 Matches match_patches(gpu::Context& context, const GridSpec& grid, const TriMesh& mesh,
                       const projtex::ImageSet& images, std::span<const Camera> cameras,
-                      double noise_sigma, const OffsetRange& range, const MatchOptions& options) {
+                      double noise_sigma, const OffsetRange& range, const MatchOptions& options,
+                      std::vector<shaders::MatchChoice>* choices) {
   Matches out;
   out.range = range;
   Matcher matcher(context, grid, mesh, images, cameras);
@@ -116,7 +119,7 @@ Matches match_patches(gpu::Context& context, const GridSpec& grid, const TriMesh
   p.angles = {float(std::cos(kRadians * options.nearest_angle)),
               float(std::cos(kRadians * options.farthest_angle)),
               float(std::cos(kRadians * options.duplicate_angle)), 0};
-  matcher.run(p, out);
+  matcher.run(p, out, choices);
   return out;
 }
 

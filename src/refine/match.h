@@ -22,7 +22,7 @@ struct MatchOptions {
   double least_cosine = 0.2;   ///< between a normal and a camera's direction
   double seen_cosine = 0.02;   ///< likewise, above which a camera sees the surface at all
   double nearest_angle = 5;    ///< degrees between the reference and a view compared with it
-  double farthest_angle = 50;  ///< degrees; widened where cameras are sparse
+  double farthest_angle = 50;  ///< degrees
   double duplicate_angle = 8;  ///< degrees between views that tell nearly the same
 };
 
@@ -45,9 +45,10 @@ struct Matches {
 };
 
 /// Score in [-1, 1] of every vertex of `mesh` (with normals) moved by each offset. Visibility by
-/// depth maps of the mesh itself.
+/// depth maps of the mesh itself. `choices` receives the views that each vertex was matched in.
 Matches match_patches(gpu::Context& context, const GridSpec& grid, const TriMesh& mesh,
                       const projtex::ImageSet& images, std::span<const Camera> cameras,
-                      double noise_sigma, const OffsetRange& range, const MatchOptions& options);
+                      double noise_sigma, const OffsetRange& range, const MatchOptions& options,
+                      std::vector<shaders::MatchChoice>* choices = nullptr);
 
 }  // namespace photohull::refine

@@ -29,19 +29,4 @@ VertexGraph make_graph(const TriMesh& mesh) {
   return graph;
 }
 
-void set_face_normals(TriMesh& mesh) {
-  mesh.normals.assign(mesh.positions.size(), glm::vec3(0));
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const glm::vec3 area =
-        glm::cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a]);
-    mesh.normals[a] += area;
-    mesh.normals[b] += area;
-    mesh.normals[c] += area;
-  }
-  for (glm::vec3& normal : mesh.normals) {
-    const float length = glm::length(normal);
-    normal = length > 0 ? normal / length : glm::vec3(0);
-  }
-}
-
 }  // namespace photohull::refine

@@ -21,9 +21,7 @@ struct VertexGraph {
   }
 };
 
+/// Triangles have three different corners each.
 VertexGraph make_graph(const TriMesh& mesh);
-
-/// Unit outward normals from the faces around each vertex, weighted with their areas.
-void set_face_normals(TriMesh& mesh);
 
 }  // namespace photohull::refine

@@ -1,0 +1,54 @@
+// Double-precision references of the kernels that match patches, written from the definitions.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "projtex/gpu_views.h"
+#include "projtex/project_layer_reference.h"
+#include "refine/match.h"
+#include "shared/sweep.h"
+
+namespace photohull::refine::reference {
+
+/// What the references need of one view.
+struct MatchView {
+  projtex::GridCamera camera;
+  shaders::DepthMapInfo depth_info;
+  std::vector<double> depths;  ///< voxels, row-major as depth_info says
+  std::vector<projtex::reference::LinearImage> mips;
+};
+
+struct Choice {
+  std::vector<int> views;  ///< the reference view first; at most kMatchViews
+  int seen = 0;            ///< views that see the surfel
+};
+
+/// The views that a surfel (voxel coordinates; unit outward normal, or zero) is matched in
+/// (refine_choose_views.comp.glsl). The most frontal view that sees it is the reference. The others
+/// follow by falling cosine between normal and direction, a third of it for near-duplicates of what
+/// was chosen, among those of the kMatchCandidates most frontal whose angle to the reference lies
+/// in the options' range.
+///
+/// `ties`: a choice that is taken where it is the best but for rounding.
+Choice choose_views(std::span<const MatchView> views, const glm::dvec3& position,
+                    const glm::dvec3& normal, const MatchOptions& options,
+                    std::span<const int> ties = {});
+
+struct Patch {
+  glm::dvec3 centre{0.0};  ///< voxel coordinates
+  glm::dvec3 normal{0.0};  ///< unit
+  int radius = shaders::kMatchRadius;
+};
+
+/// Score in [-1, 1] of a patch in the chosen views (the reference view first), kNoScore below two
+/// (refine_match_patches.comp.glsl): the mean of the best share of the correlations with the
+/// reference view. Zero-mean normalised cross-correlation over the three channels together, the
+/// variance of each patch raised by the noise's; taps on a square lattice in the tangent plane,
+/// projected by the derivatives at the centre, bilinear at the mip level nearest to the size of a
+/// tap's footprint.
+double match_patch(std::span<const MatchView> views, std::span<const int> chosen,
+                   const Patch& patch, double noise_sigma, const MatchOptions& options);
+
+}  // namespace photohull::refine::reference
