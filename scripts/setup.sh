@@ -23,7 +23,7 @@ packages=(
   libassimp-dev libembree-dev libnanoflann-dev
   # Images; OpenImageIO's CMake files ask for its tools.
   libopenimageio-dev openimageio-tools libopencv-dev
-  libglm-dev libcli11-dev nlohmann-json3-dev libspdlog-dev
+  libglm-dev libcli11-dev nlohmann-json3-dev
   # Charts: JavaScript engine, SVG to PNG, hashes.
   duktape-dev librsvg2-dev libxxhash-dev pkg-config
   libgtest-dev libgmock-dev libbenchmark-dev
