@@ -1,0 +1,254 @@
+// The patch scores against their reference.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "gpu/buffer.h"
+#include "gpu/program.h"
+#include "match_scene.h"
+#include "support/gl_context.h"
+
+namespace photohull::refine {
+namespace {
+
+using glm::dvec3;
+using reference::MatchView;
+
+/// Texture units weigh texels with 8 bits, and mip levels of 8-bit images are rounded.
+constexpr double kBound = 0.01;
+
+struct Probe {
+  dvec3 position{0}, normal{0};  // voxels
+  double scale = 1;              // of the offsets
+  std::vector<int> views;
+};
+
+class MatchPatches : public ::testing::Test {
+ protected:
+  /// Scores of the probes, range.count each.
+  std::vector<float> run(const std::vector<Probe>& probes, int radius = shaders::kMatchRadius) {
+    gpu::Context& context = test::gl_context();  // before the images need it
+    const projtex::ImageSet images(views_);
+    std::vector<shaders::GpuView> gpu_views;
+    for (const View& view : views_)
+      gpu_views.push_back(projtex::to_gpu_view(projtex::to_grid(view.camera, test::kGrid),
+                                               {test::kImageEdge, test::kImageEdge}));
+    std::vector<shaders::BakeVertex> surfels;
+    std::vector<shaders::MatchChoice> choices;
+    for (const Probe& probe : probes) {
+      surfels.push_back({glm::vec4(probe.position, probe.scale), glm::vec4(probe.normal, 0)});
+      choices.push_back(test::choice_of(probe.views));
+    }
+    const std::size_t count = probes.size() * std::size_t(range_.count);
+    shaders::MatchParameters p{};
+    p.counts = {int(probes.size()), int(views_.size()), range_.count, 0};
+    p.search = {float(range_.first), float(range_.step), float(options_.least_spacing),
+                float(options_.pixel_spacing)};
+    p.consistency = {float(noise_ * noise_), float(options_.best_pairs), 0, 0};
+    const gpu::Buffer uniforms(sizeof p, &p), view_buffer = gpu::Buffer::of(gpu_views),
+                                              surfel_buffer = gpu::Buffer::of(surfels),
+                                              choice_buffer = gpu::Buffer::of(choices);
+    const gpu::Buffer scores(count * sizeof(float));
+    uniforms.bind_uniform(0);
+    view_buffer.bind_storage(0);
+    surfel_buffer.bind_storage(1);
+    choice_buffer.bind_storage(2);
+    scores.bind_storage(3);
+    images.texture().bind(0);
+    gpu::Program::compute("refine_match_patches.comp.glsl",
+                          "#define PATCH_RADIUS " + std::to_string(radius) + "\n")
+        .dispatch(context, "refine_match_patches", gpu::group_count(count, 64));
+    context.check_errors("match patches test");
+    return scores.download<float>(count);
+  }
+
+  /// Compares with the reference; returns how many scores are off by more than the bound.
+  int compare(const std::vector<Probe>& probes, const std::vector<float>& scores,
+              int radius = shaders::kMatchRadius) {
+    const std::vector<MatchView> views = test::reference_views(views_);
+    int wrong = 0;
+    for (std::size_t i = 0; i < scores.size(); ++i) {
+      const Probe& probe = probes[i / std::size_t(range_.count)];
+      const double offset = range_.at(double(i % std::size_t(range_.count))) * probe.scale;
+      const double expected = reference::match_patch(
+          views, probe.views, {probe.position + offset * probe.normal, probe.normal, radius},
+          noise_, options_);
+      const double error = std::abs(scores[i] - expected);
+      wrong += !(error < bound_);
+      worst_ = std::max(worst_, error);
+      greatest_ = std::max(greatest_, double(scores[i]));
+    }
+    return wrong;
+  }
+
+  /// Probes amid the grid with up to `most` random views each, whose normals face the first.
+  std::vector<Probe> random_probes(int count, int most) {
+    std::vector<Probe> probes;
+    for (int i = 0; i < count; ++i) {
+      Probe probe;
+      probe.position = test::uniform_in(rng_, {dvec3(8), dvec3(40)});
+      probe.views = random_choice(i % (most + 1));
+      probe.normal = test::random_direction(rng_);
+      if (!probe.views.empty()) {
+        const dvec3 centre =
+            projtex::to_grid(views_[std::size_t(probe.views[0])].camera, test::kGrid).centre;
+        if (glm::dot(probe.normal, centre - probe.position) < 0) probe.normal = -probe.normal;
+      }
+      probes.push_back(probe);
+    }
+    return probes;
+  }
+
+  std::vector<int> random_choice(int count) {
+    std::vector<int> all(views_.size());
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = int(i);
+    std::shuffle(all.begin(), all.end(), rng_);
+    all.resize(std::size_t(count));
+    return all;
+  }
+
+  /// Cameras from z > 0, `spread` degrees apart, that see a textured plane z = 24 (voxels).
+  void add_plane_views(int count, double spread, double focal) {
+    const dvec3 target = test::kGrid.world({24, 24, 24});
+    for (int i = 0; i < count; ++i) {
+      const double angle = glm::radians(spread * (i - 0.5 * (count - 1)));
+      View view;
+      view.camera = test::look_at(target + 10.0 * dvec3(std::sin(angle), 0, std::cos(angle)),
+                                  target, focal, test::kImageEdge, test::kImageEdge, {0, 1, 0});
+      view.image = test::ray_cast(
+          view.camera,
+          [&](const dvec3& eye, const dvec3& ray) {
+            return test::noise_colour(eye + (target.z - eye.z) / ray.z * ray, 0.15);
+          },
+          2);
+      views_.push_back(std::move(view));
+    }
+  }
+
+  test::Rng rng_{11};
+  std::vector<View> views_;
+  OffsetRange range_{-1, 0.5, 5};
+  MatchOptions options_;
+  double noise_ = test::kNoise;
+  double bound_ = kBound;
+  double worst_ = 0, greatest_ = -1;
+};
+
+TEST_F(MatchPatches, AgreesOnRandomImages) {
+  views_ = test::random_views(rng_, 9);
+  views_.pop_back();  // the one amid the points
+  const std::vector<Probe> probes = random_probes(250, shaders::kMatchViews);
+  // A footprint between two mip levels may fall either way.
+  EXPECT_LE(compare(probes, run(probes)), 6) << worst_;
+}
+
+TEST_F(MatchPatches, AgreesOnHalfFloatImages) {
+  views_ = test::random_views(rng_, 7);
+  views_.pop_back();
+  for (View& view : views_) view.image = test::to_half(view.image);
+  const std::vector<Probe> probes = random_probes(100, shaders::kMatchViews);
+  EXPECT_LE(compare(probes, run(probes)), 4) << worst_;
+}
+
+TEST_F(MatchPatches, SmallPatchesAlongRays) {
+  // As the free-space voting does: offsets from the first sample on a ray away from the camera.
+  views_ = test::random_views(rng_, 9);
+  views_.pop_back();
+  range_ = {0, -1, 8};
+  options_.least_spacing = 0.7;
+  std::vector<Probe> probes = random_probes(120, shaders::kMatchViews);
+  for (Probe& probe : probes) probe.scale = test::uniform(rng_, 1, 3);
+  EXPECT_LE(compare(probes, run(probes, 1), 1), 6) << worst_;
+}
+
+TEST_F(MatchPatches, BestShareOfThePairs) {
+  views_ = test::random_views(rng_, 9);
+  views_.pop_back();
+  range_ = {0, 1, 1};
+  const std::vector<Probe> probes = random_probes(140, shaders::kMatchViews);
+  for (const double share : {0.01, 0.2, 0.4, 0.5, 0.75, 1.0}) {
+    options_.best_pairs = share;
+    EXPECT_LE(compare(probes, run(probes)), 2) << share << ": " << worst_;
+  }
+}
+
+TEST_F(MatchPatches, TrueSurfaceScoresBest) {
+  add_plane_views(5, 12, 400);
+  range_ = {-3, 1, 7};
+  std::vector<Probe> probes;
+  for (int i = 0; i < 40; ++i)
+    probes.push_back({{test::uniform(rng_, 14, 34), test::uniform(rng_, 14, 34), 24},
+                      {0, 0, 1},
+                      1,
+                      {2, 1, 3, 0, 4}});
+  const std::vector<float> scores = run(probes);
+  EXPECT_LE(compare(probes, scores), 3) << worst_;
+  for (std::size_t i = 0; i < probes.size(); ++i) {
+    const float* s = scores.data() + i * 7;
+    EXPECT_EQ(std::max_element(s, s + 7) - s, 3);
+    EXPECT_GT(s[3], 0.7f);
+  }
+}
+
+TEST_F(MatchPatches, EveryMinification) {
+  options_.pixel_spacing = 0;
+  bound_ = 3 * kBound;  // the smallest levels have next to no contrast left
+  for (const double magnify : {0.1, 1.0, 5.0, 20.0, 300.0, 1e5}) {
+    views_.clear();
+    add_plane_views(4, 15, 400);
+    for (View& view : views_) {
+      view.camera.intrinsics.fx *= magnify;
+      view.camera.intrinsics.fy *= magnify;
+    }
+    std::vector<Probe> probes;
+    for (int i = 0; i < 20; ++i)
+      probes.push_back({dvec3(24 + test::uniform(rng_, -3, 3), 24, 24),
+                        glm::normalize(dvec3(0.1 * i, 0.3, 1)),
+                        1,
+                        {0, 1, 2, 3}});
+    const std::vector<float> scores = run(probes);
+    EXPECT_LE(compare(probes, scores), 3) << magnify << ": " << worst_;
+  }
+}
+
+TEST_F(MatchPatches, PlainImagesNeverAgree) {
+  views_ = test::random_views(rng_, 7);
+  views_.pop_back();
+  for (View& view : views_) std::fill(view.image.bytes.begin(), view.image.bytes.end(), 130);
+  const std::vector<Probe> probes = random_probes(60, shaders::kMatchViews);
+  const std::vector<float> scores = run(probes);
+  EXPECT_EQ(compare(probes, scores), 0) << worst_;
+  EXPECT_LT(greatest_, 1e-3);
+}
+
+TEST_F(MatchPatches, PatchesSeenEdgeOn) {
+  add_plane_views(3, 15, 400);
+  std::vector<Probe> probes;
+  for (const dvec3& normal : {dvec3(1, 0, 0), dvec3(0, 1, 0), dvec3(-1, 0, 0)})
+    probes.push_back({{24, 24, 24}, normal, 1, {1, 0, 2}});
+  EXPECT_LE(compare(probes, run(probes)), 1) << worst_;
+}
+
+TEST_F(MatchPatches, PatchesOnAndBeyondTheImagesBorder) {
+  add_plane_views(3, 15, 400);
+  std::vector<Probe> probes;
+  for (int x = -60; x <= 108; x += 4) probes.push_back({{x, 20, 24}, {0, 0, 1}, 1, {1, 0, 2}});
+  EXPECT_LE(compare(probes, run(probes)), 4) << worst_;
+}
+
+TEST_F(MatchPatches, BehindACameraTheScoreIsANumber) {
+  views_ = test::random_views(rng_, 4);  // the last amid the grid
+  range_ = {-40, 7.3, 11};
+  std::vector<Probe> probes;
+  for (int i = 0; i < 50; ++i)
+    probes.push_back({test::uniform_in(rng_, {dvec3(0), dvec3(48)}),
+                      test::random_direction(rng_),
+                      1,
+                      {3, 0, 1, 2}});
+  for (const float score : run(probes)) EXPECT_LE(std::abs(score), 1.001f);
+}
+
+}  // namespace
+}  // namespace photohull::refine
