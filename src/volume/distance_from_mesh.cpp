@@ -46,7 +46,8 @@ std::vector<Point> points_of(const TriMesh& mesh, const GridSpec& grid) {
     const vec3 ab = b.position - a.position, ac = c.position - a.position, bc = ac - ab;
     const float longest =
         std::sqrt(std::max({glm::dot(ab, ab), glm::dot(ac, ac), glm::dot(bc, bc)}));
-    const int steps = std::min(int(std::ceil(longest / kSpacing)), kMaxSteps);
+    if (!(longest > kSpacing)) continue;
+    const int steps = int(std::min(std::ceil(longest / kSpacing), float(kMaxSteps)));
     for (int i = 0; i <= steps; ++i)
       for (int j = 0; i + j <= steps; ++j) {
         if ((i == 0 && j == 0) || i == steps || j == steps) continue;
