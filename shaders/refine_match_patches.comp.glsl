@@ -7,6 +7,7 @@
 // an offset of a surfel, so that the threads of a vector share their views.
 // Reference: refine::reference::match_patch.
 #include "include/projection.glsl"
+#include "include/patch.glsl"
 #include "shared/bake.h"
 #include "shared/refine.h"
 
@@ -15,38 +16,6 @@ layout(std140, binding = 0) uniform Parameters { MatchParameters parameters; };
 layout(std430, binding = 1) readonly buffer Surfels { BakeVertex surfels[]; };
 layout(std430, binding = 2) readonly buffer Choices { MatchChoice choices[]; };
 layout(std430, binding = 3) writeonly buffer Scores { float scores[]; };
-layout(binding = 0) uniform sampler2DArray images;
-
-#ifndef PATCH_RADIUS
-#define PATCH_RADIUS 2
-#endif
-const int kEdge = 2 * PATCH_RADIUS + 1;
-const int kTaps = kEdge * kEdge;
-
-struct Footprint {
-  vec2 origin, du, dv;  // texture coordinates of the first tap and steps between taps
-  float layer, lod;
-};
-
-Footprint footprint(int v, vec3 centre, vec3 u, vec3 w) {
-  GpuView view = views[v];
-  vec3 p = project(view, centre);
-  vec2 pixel = p.xy / p.z;
-  vec2 du = (vec2(dot(view.row_s.xyz, u), dot(view.row_t.xyz, u)) - pixel * dot(view.row_q.xyz, u)) / p.z;
-  vec2 dv = (vec2(dot(view.row_s.xyz, w), dot(view.row_t.xyz, w)) - pixel * dot(view.row_q.xyz, w)) / p.z;
-  Footprint f;
-  f.lod = floor(max(0.5 * log2(abs(du.x * dv.y - du.y * dv.x)), 0.0) + 0.5);
-  f.du = du * view.size.zw;
-  f.dv = dv * view.size.zw;
-  f.origin = texture_coordinate(view, pixel) - float(PATCH_RADIUS) * (f.du + f.dv);
-  f.layer = float(v);
-  return f;
-}
-
-vec3 tap(Footprint f, int k) {
-  vec2 at = f.origin + float(k % kEdge) * f.du + float(k / kEdge) * f.dv;
-  return sqrt(max(textureLod(images, vec3(at, f.layer), f.lod).rgb, 0.0)) - 0.5;
-}
 
 void main() {
   uint offsets = uint(parameters.counts.z);
@@ -63,15 +32,8 @@ void main() {
   }
   int chosen[kMatchViews] = int[kMatchViews](choices[i].first.x, choices[i].first.y, choices[i].first.z,
                                              choices[i].first.w, choices[i].second.x, choices[i].second.y);
-  // Patch axes: u across the reference's line of sight.
-  GpuView reference = views[chosen[0]];
-  vec3 sight = reference.centre.xyz - centre;
-  float pixel = length(sight) / reference.centre.w;
-  float spacing = max(parameters.search.z, parameters.search.w * pixel);
-  vec3 helper = abs(normal.x) < 0.6 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
-  vec3 u = normalize(cross(helper, normal));
-  vec3 w = cross(normal, u) * spacing;
-  u *= spacing;
+  vec3 u, w;
+  patch_axes(centre, normal, views[chosen[0]], parameters.search.z, parameters.search.w, u, w);
 
   vec3 patch_of_reference[kTaps];
   vec3 sum = vec3(0.0);

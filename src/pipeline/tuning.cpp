@@ -71,7 +71,6 @@ void tune(const std::vector<std::string>& assignments, refine::RefineOptions& o)
                        {"close.rings", &o.close.rings},
                        {"close.thickness", &o.close.thickness},
                        {"restore.least_views", &o.restore.least_views},
-                       {"restore.least_away", &o.restore.least_away},
                        {"restore.least_inside", &o.restore.least_inside},
                        {"match.least_spacing", &o.match.least_spacing},
                        {"match.pixel_spacing", &o.match.pixel_spacing},

@@ -23,7 +23,7 @@ struct Peak {
 struct PeakOptions {
   double least_score = 0.3;  ///< below: no evidence
   double sure_score = 0.8;   ///< above: full weight
-  double thick = 5;           ///< voxels of body behind a vertex that give full weight
+  double thick = 5;          ///< voxels of body behind a vertex that give full weight
   double distinct_by = 0.1;  ///< lead over the second peak that gives full weight
 };
 

@@ -3,6 +3,7 @@
 #include "refine/match.h"
 
 #include <cmath>
+#include <optional>
 
 #include "gpu/buffer.h"
 #include "gpu/program.h"
@@ -16,70 +17,96 @@ namespace {
 using gpu::Buffer;
 
 constexpr double kRadians = 0.017453292519943295;
-constexpr std::size_t kBatch = std::size_t(1) << 18;  // surfels whose scores are held on the device
+constexpr std::size_t kBatch = std::size_t(1) << 18;  // surfels on the device at once
+constexpr std::size_t kMostThreads = std::size_t(1)
+                                     << 21;            // of a dispatch: within every device's limit
+constexpr std::size_t kPoints = std::size_t(1) << 20;  // drawn at once
 
-constexpr std::size_t kMostThreads = std::size_t(1) << 21;  // of a dispatch, within every device's limit
+shaders::MatchParameters parameters_of(std::size_t views, double noise_sigma,
+                                       const OffsetRange& range, const MatchOptions& o) {
+  const auto cosine = [](double degrees) { return float(std::cos(kRadians * degrees)); };
+  shaders::MatchParameters p{};
+  p.counts = {0, int(views), range.count, 0};
+  p.search = {float(range.first), float(range.step), float(o.least_spacing),
+              float(o.pixel_spacing)};
+  p.consistency = {float(noise_sigma * noise_sigma), float(o.best_pairs), 0, 0};
+  p.visibility = {float(o.shift), float(o.depth_bias), float(o.least_cosine), float(o.seen_cosine)};
+  p.angles = {cosine(o.nearest_angle), cosine(o.farthest_angle), cosine(o.duplicate_angle), 0};
+  return p;
+}
 
+/// A mesh's vertices as surfels on the device, and who sees them.
 class Matcher {
  public:
   Matcher(gpu::Context& context, const GridSpec& grid, const TriMesh& mesh,
           const projtex::ImageSet& images, std::span<const Camera> cameras)
-      : context_(context), images_(images), surfels_(render::to_voxels(grid, mesh)) {
+      : context_(context),
+        images_(images),
+        surfels_(render::to_voxels(grid, mesh)),
+        maps_(render::occluder_maps(cameras, grid)),
+        choose_(gpu::Program::compute("refine_choose_views.comp.glsl")) {
     const glm::ivec2 size(images.texture().width(), images.texture().height());
     for (const Camera& camera : cameras)
       gpu_views_.push_back(projtex::to_gpu_view(projtex::to_grid(camera, grid), size));
     views_ = Buffer::of(gpu_views_);
-    visibility::DepthMaps maps = render::occluder_maps(cameras, grid);
     views_.bind_storage(0);
-    maps.bind();
+    maps_.bind();
     draw(surfels_);
     draw(render::points_between(mesh, surfels_));
-    for (auto& s : surfels_) s.position.w = 1;
-    maps_.emplace(std::move(maps));
+    for (shaders::BakeVertex& surfel : surfels_) surfel.position.w = 1;  // scale of the offsets
   }
 
-  void run(shaders::MatchParameters parameters, Matches& out,
-           std::vector<shaders::MatchChoice>* chosen) {
-    const auto choose = gpu::Program::compute("refine_choose_views.comp.glsl");
-    const auto match = gpu::Program::compute("refine_match_patches.comp.glsl");
+  void match(const shaders::MatchParameters& parameters, Matches& out,
+             std::vector<shaders::MatchChoice>* chosen) {
+    const auto program = gpu::Program::compute("refine_match_patches.comp.glsl");
     const std::size_t offsets = std::size_t(out.range.count);
     out.scores.resize(surfels_.size() * offsets);
-    const std::size_t batch = std::min(kBatch, kMostThreads / offsets);
+    for_batches(
+        kMostThreads / offsets, parameters,
+        [&](std::size_t first, std::size_t count, const Buffer& choices) {
+          const Buffer scores(count * offsets * sizeof(float));
+          scores.bind_storage(3);
+          program.dispatch(context_, "refine_match_patches", gpu::group_count(count * offsets, 64));
+          scores.read(0, count * offsets * sizeof(float), out.scores.data() + first * offsets);
+          for (const auto& choice : choices.download<shaders::MatchChoice>(count)) {
+            if (chosen) chosen->push_back(choice);
+            out.seen.push_back(choice.second.z > 0);
+            if (choice.second.w >= 2)
+              out.samples += std::int64_t(offsets) * choice.second.w * shaders::kMatchTaps;
+          }
+        });
+  }
+
+ private:
+  /// Chooses views for the surfels, a batch at a time, and calls f(first, count, choices, lists)
+  /// with the choices and what comes before them bound.
+  template <typename F>
+  void for_batches(std::size_t most, shaders::MatchParameters parameters, F&& f) {
+    const std::size_t batch = std::min(kBatch, most);
     for (std::size_t first = 0; first < surfels_.size(); first += batch) {
       const std::size_t count = std::min(batch, surfels_.size() - first);
-      const auto part = std::span(surfels_).subspan(first, count);
-      const Buffer surfels = Buffer::of(std::span<const shaders::BakeVertex>(part));
+      const auto part = std::span<const shaders::BakeVertex>(surfels_).subspan(first, count);
+      const Buffer surfels = Buffer::of(part);
       const Buffer lists =
           Buffer::of(render::list_views(part, gpu_views_, parameters.visibility.w));
       const Buffer choices(count * sizeof(shaders::MatchChoice));
-      const Buffer scores(count * offsets * sizeof(float));
       parameters.counts.x = int(count);
       const Buffer uniforms(sizeof parameters, &parameters);
       uniforms.bind_uniform(0);
       views_.bind_storage(0);
-      maps_->bind();
+      maps_.bind();
       surfels.bind_storage(1);
       choices.bind_storage(2);
       lists.bind_storage(3);
-      choose.dispatch(context_, "refine_choose_views",
-                      gpu::group_count(count, shaders::kBakeGroup));
-      scores.bind_storage(3);
+      choose_.dispatch(context_, "refine_choose_views",
+                       gpu::group_count(count, shaders::kBakeGroup));
       images_.texture().bind(0);
-      match.dispatch(context_, "refine_match_patches", gpu::group_count(count * offsets, 64));
-      scores.read(0, count * offsets * sizeof(float), out.scores.data() + first * offsets);
-      for (const auto& choice : choices.download<shaders::MatchChoice>(count)) {
-        if (chosen) chosen->push_back(choice);
-        out.seen.push_back(choice.second.z > 0);
-        if (choice.second.w >= 2)
-          out.samples += std::int64_t(offsets) * choice.second.w * shaders::kMatchTaps;
-      }
+      f(first, count, choices);
     }
   }
 
- private:
   void draw(const std::vector<shaders::BakeVertex>& points) {
     const auto splat = gpu::Program::compute("render_splat_points.comp.glsl");
-    constexpr std::size_t kPoints = std::size_t(1) << 20;
     for (std::size_t first = 0; first < points.size(); first += kPoints) {
       const std::size_t count = std::min(kPoints, points.size() - first);
       const shaders::BakeParameters parameters{{int(count), int(gpu_views_.size()), 0, 0}, {}};
@@ -97,7 +124,8 @@ class Matcher {
   std::vector<shaders::BakeVertex> surfels_;
   std::vector<shaders::GpuView> gpu_views_;
   Buffer views_;
-  std::optional<visibility::DepthMaps> maps_;
+  visibility::DepthMaps maps_;
+  gpu::Program choose_;
 };
 
 }  // namespace
@@ -108,18 +136,8 @@ Matches match_patches(gpu::Context& context, const GridSpec& grid, const TriMesh
                       std::vector<shaders::MatchChoice>* choices) {
   Matches out;
   out.range = range;
-  Matcher matcher(context, grid, mesh, images, cameras);
-  shaders::MatchParameters p{};
-  p.counts = {0, int(cameras.size()), range.count, 0};
-  p.search = {float(range.first), float(range.step), float(options.least_spacing),
-              float(options.pixel_spacing)};
-  p.consistency = {float(noise_sigma * noise_sigma), float(options.best_pairs), 0, 0};
-  p.visibility = {float(options.shift), float(options.depth_bias), float(options.least_cosine),
-                  float(options.seen_cosine)};
-  p.angles = {float(std::cos(kRadians * options.nearest_angle)),
-              float(std::cos(kRadians * options.farthest_angle)),
-              float(std::cos(kRadians * options.duplicate_angle)), 0};
-  matcher.run(p, out, choices);
+  Matcher(context, grid, mesh, images, cameras)
+      .match(parameters_of(cameras.size(), noise_sigma, range, options), out, choices);
   return out;
 }
 

@@ -68,8 +68,7 @@ class Refiner {
               ? first_guess(hull)
               : bounded(distance_from_mesh(extract_mesh(volume), volume, hull.grid, kNearReach),
                         hull);
-      counts.restored = std::int64_t(
-          restore_silhouettes(context_, volume, hull, cameras_, silhouettes_, options_.restore));
+      restore(volume, hull, counts);
       const bool first = level == 0, last = level + 1 == grids.size();
       const int iterations = last    ? options_.fine_iterations
                              : first ? options_.coarse_iterations
@@ -79,9 +78,9 @@ class Refiner {
         step(volume, first ? options_.coarse_offsets : options_.fine_offsets, counts);
         const double reach = last && i + 1 == iterations ? kFullReach : kNearReach;
         volume = bounded(distance_from_mesh(extract_mesh(volume), volume, hull.grid, reach), hull);
+        if (last && i + 1 == iterations) restore(volume, hull, counts);
         progress.update((double(level) + double(i + 1) / iterations) / double(grids.size()));
       }
-      if (last) counts.restored += std::int64_t(restore_silhouettes(context_, volume, hull, cameras_, silhouettes_, options_.restore));
       counts.bricks = std::int64_t(volume.bricks.size());
       counts.seconds =
           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -96,6 +95,11 @@ class Refiner {
                                                      options_.noise_sigma, options_.vote)
                                    : hull,
                    hull);
+  }
+
+  void restore(SparseVolume& volume, const SparseVolume& hull, LevelReport& counts) {
+    counts.restored += std::int64_t(
+        restore_silhouettes(context_, volume, hull, cameras_, silhouettes_, options_.restore));
   }
 
   /// What of the volume lies in the hull, without space that nothing can have looked into.

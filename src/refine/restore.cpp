@@ -2,11 +2,9 @@
 
 #include <tbb/parallel_for.h>
 
-#include <atomic>
+#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <unordered_map>
-#include <utility>
 
 #include "gpu/buffer.h"
 #include "visibility/depth_maps.h"
@@ -46,11 +44,11 @@ class Restorer {
     tbb::parallel_for(std::size_t(0), bricks.size(), [&](std::size_t b) {
       for (int i = 0; i < kBrickVoxels; ++i) {
         const ivec3 voxel = bricks[b] * kBrickEdge + ivec3(i >> 6, (i >> 3) & 7, i & 7);
-        if (hull_.at(voxel) < 0 && volume_.at(voxel) > 0.5f && uncovered(glm::dvec3(voxel)))
+        if (hull_.at(voxel) < 0 && volume_.at(voxel) > 0.5f && asked_for(glm::dvec3(voxel)))
           found[b].push_back(voxel);
       }
     });
-    for (const auto& part : parts_of(found)) {
+    for (const std::vector<ivec3>& part : found) {
       restored += part.size();
       for (const ivec3& voxel : part)
         for (int x = -1; x <= 1; ++x)
@@ -61,37 +59,6 @@ class Restorer {
   }
 
  private:
-  /// Connected parts that reach away from the volume: the others are the width of its outline.
-  std::vector<std::vector<ivec3>> parts_of(const std::vector<std::vector<ivec3>>& found) const {
-    std::unordered_map<std::int64_t, bool> taken;
-    const auto key = [&](const ivec3& v) {
-      const ivec3 n = hull_.grid.voxels();
-      return (std::int64_t(v.z) * n.y + v.y) * n.x + v.x;
-    };
-    for (const auto& list : found)
-      for (const ivec3& voxel : list) taken[key(voxel)] = false;
-    std::vector<std::vector<ivec3>> parts;
-    for (const auto& list : found)
-      for (const ivec3& voxel : list) {
-        if (std::exchange(taken[key(voxel)], true)) continue;
-        std::vector<ivec3> part{voxel};
-        bool away = false;
-        for (std::size_t i = 0; i < part.size(); ++i) {
-          const ivec3 centre = part[i];
-          away = away || volume_.at(centre) > options_.least_away;
-          for (int x = -1; x <= 1; ++x)
-            for (int y = -1; y <= 1; ++y)
-              for (int z = -1; z <= 1; ++z) {
-                const auto next = taken.find(key(centre + ivec3(x, y, z)));
-                if (next != taken.end() && !std::exchange(next->second, true))
-                  part.push_back(centre + ivec3(x, y, z));
-              }
-        }
-        if (away) parts.push_back(std::move(part));
-      }
-    return parts;
-  }
-
   void draw(gpu::Context& context) {
     std::vector<glm::ivec4> voxels(1, glm::ivec4(0));
     for (std::size_t slot = 0; slot < volume_.bricks.size(); ++slot)
@@ -113,23 +80,25 @@ class Restorer {
     for (std::size_t v = 0; v < cameras_.size(); ++v) depths_.push_back(maps.download(v));
   }
 
-  bool uncovered(const glm::dvec3& point) const {
+  /// Does the view show foreground at the point, and nothing of the volume?
+  bool uncovered(std::size_t v, const glm::dvec3& point) const {
+    const SilhouetteDistance* s = silhouettes_[v].distance;
+    const glm::dvec3 q = cameras_[v].projection * glm::dvec4(point, 1);
+    if (!s || q.z <= 1) return false;
+    const double x = q.x / q.z, y = q.y / q.z;
+    const int px = int(std::floor(x + 0.5)), py = int(std::floor(y + 0.5));
+    if (px < 0 || py < 0 || px >= s->width || py >= s->height) return false;
+    if (s->pixels[std::size_t(py) * s->width + px] > -options_.least_inside) return false;
+    const auto& info = infos_[v];
+    const int tx = std::clamp(int((x + 0.5) * info.scale.x), 0, info.size.x - 1);
+    const int ty = std::clamp(int((y + 0.5) * info.scale.x), 0, info.size.y - 1);
+    return std::isinf(depths_[v][std::size_t(ty) * info.size.x + tx]);
+  }
+
+  bool asked_for(const glm::dvec3& point) const {
     int count = 0;
-    for (std::size_t v = 0; v < cameras_.size() && count < options_.least_views; ++v) {
-      const SilhouetteDistance* s = silhouettes_[v].distance;
-      if (!s) continue;
-      const glm::dvec3 q = cameras_[v].projection * glm::dvec4(point, 1);
-      if (q.z <= 1) continue;
-      const double x = q.x / q.z, y = q.y / q.z;
-      const int px = int(std::floor(x + 0.5)), py = int(std::floor(y + 0.5));
-      if (px < 0 || py < 0 || px >= s->width || py >= s->height) continue;
-      if (s->pixels[std::size_t(py) * s->width + px] > -options_.least_inside) continue;
-      const auto& info = infos_[v];
-      const int tx = std::min(int((x + 0.5) * info.scale.x), info.size.x - 1);
-      const int ty = std::min(int((y + 0.5) * info.scale.x), info.size.y - 1);
-      if (std::isinf(depths_[v][std::size_t(std::max(ty, 0)) * info.size.x + std::max(tx, 0)]))
-        ++count;
-    }
+    for (std::size_t v = 0; v < cameras_.size() && count < options_.least_views; ++v)
+      count += uncovered(v, point);
     return count >= options_.least_views;
   }
 

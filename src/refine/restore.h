@@ -1,4 +1,4 @@
-// Parts of the visual hull that coarse voxels lost and silhouettes prove.
+// Thin parts that coarse voxels lost and silhouettes prove.
 #pragma once
 
 #include <span>
@@ -10,13 +10,12 @@
 namespace photohull::refine {
 
 struct RestoreOptions {
-  int least_views = 3;        ///< in which nothing else explains the pixel
-  double least_inside = 0.3;  ///< pixels within the silhouette
-  double least_away = 1.5;    ///< voxels that a part must reach away from the volume
+  int least_views = 2;      ///< that show foreground there which the volume does not cover
+  double least_inside = 0;  ///< pixels within the silhouette
 };
 
-/// The volume with every voxel of `hull` (on the same grid) that falls on a foreground pixel which
-/// the volume does not cover, in at least `least_views` views. Returns how many came back.
+/// Brings back the voxels of `hull` (on the same grid) that fall, in at least `least_views` views,
+/// on foreground that the volume does not cover. Returns how many came back.
 std::size_t restore_silhouettes(gpu::Context& context, SparseVolume& volume,
                                 const SparseVolume& hull, std::span<const Camera> cameras,
                                 std::span<const carving::Silhouette> silhouettes,

@@ -1,0 +1,46 @@
+// A view's image on a patch of a tangent plane: one affine footprint, taps at its steps.
+#ifndef PATCH_RADIUS
+#define PATCH_RADIUS 2
+#endif
+const int kEdge = 2 * PATCH_RADIUS + 1;
+const int kTaps = kEdge * kEdge;
+
+layout(binding = 0) uniform sampler2DArray images;
+
+struct Footprint {
+  vec2 origin, du, dv;  // texture coordinates of the first tap and steps between taps
+  float layer, lod;
+};
+
+// The mip level is that of the tap's area.
+Footprint footprint(int v, vec3 centre, vec3 u, vec3 w) {
+  GpuView view = views[v];
+  vec3 p = project(view, centre);
+  vec2 pixel = p.xy / p.z;
+  vec2 du = (vec2(dot(view.row_s.xyz, u), dot(view.row_t.xyz, u)) - pixel * dot(view.row_q.xyz, u)) / p.z;
+  vec2 dv = (vec2(dot(view.row_s.xyz, w), dot(view.row_t.xyz, w)) - pixel * dot(view.row_q.xyz, w)) / p.z;
+  Footprint f;
+  f.lod = floor(max(0.5 * log2(abs(du.x * dv.y - du.y * dv.x)), 0.0) + 0.5);
+  f.du = du * view.size.zw;
+  f.dv = dv * view.size.zw;
+  f.origin = texture_coordinate(view, pixel) - float(PATCH_RADIUS) * (f.du + f.dv);
+  f.layer = float(v);
+  return f;
+}
+
+// Square roots of linear light, which makes the noise even, centred so that products keep precision.
+vec3 tap(Footprint f, int k) {
+  vec2 at = f.origin + float(k % kEdge) * f.du + float(k / kEdge) * f.dv;
+  return sqrt(max(textureLod(images, vec3(at, f.layer), f.lod).rgb, 0.0)) - 0.5;
+}
+
+// Steps between taps in the tangent plane: at least so many voxels, and pixels of the reference.
+void patch_axes(vec3 centre, vec3 normal, GpuView reference, float voxels, float pixels, out vec3 u,
+                out vec3 w) {
+  float pixel = length(reference.centre.xyz - centre) / reference.centre.w;
+  float spacing = max(voxels, pixels * pixel);
+  vec3 helper = abs(normal.x) < 0.6 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
+  u = normalize(cross(helper, normal));
+  w = cross(normal, u) * spacing;
+  u *= spacing;
+}
