@@ -1,0 +1,116 @@
+#include "refine/refine.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+
+#include "bowl_scene.h"
+#include "core/error.h"
+#include "support/gl_context.h"
+#include "volume/analytic_volumes.h"
+#include "volume/extract_mesh.h"
+
+namespace photohull::refine {
+namespace {
+
+class RefineSurface : public testing::Test {
+ protected:
+  RefineSurface() {
+    options_.levels = 2;
+    options_.noise_sigma = 0.01;
+  }
+
+  SparseVolume run(int edge, bool masks = true) {
+    gpu::Context& context = test::gl_context();
+    const auto hull_at = [&](const GridSpec& grid) { return scene_.hull(grid, masks); };
+    return refine_surface(context, scene_.grid(edge), hull_at, scene_.silhouettes(masks),
+                          projtex::ImageSet(scene_.views), scene_.cameras, options_, progress_,
+                          &report_);
+  }
+
+  const test::BowlScene& scene_ = test::bowl_scene();
+  RefineOptions options_;
+  Progress progress_;
+  RefineReport report_;
+};
+
+TEST_F(RefineSurface, FindsTheBowl) {
+  const SparseVolume volume = run(8);
+  const SparseVolume hull = scene_.hull(scene_.grid(8));
+  EXPECT_LT(test::mean_error(volume), 0.15);
+  EXPECT_LT(test::mean_error(volume), 0.15 * test::mean_error(hull));
+  EXPECT_EQ(open_edges(extract_mesh(volume)), 0u);
+  for (std::size_t slot = 0; slot < volume.bricks.size(); ++slot) {
+    const glm::ivec3 voxel = volume.bricks[slot] * kBrickEdge;
+    EXPECT_GE(volume.at(voxel), hull.at(voxel)) << "the hull bounds the result";
+  }
+
+  ASSERT_EQ(report_.levels.size(), 2u);
+  EXPECT_DOUBLE_EQ(report_.levels[0].voxel_size, 2 * report_.levels[1].voxel_size);
+  EXPECT_DOUBLE_EQ(report_.levels[1].voxel_size, volume.grid.voxel_size);
+  EXPECT_EQ(report_.levels[1].bricks, std::int64_t(volume.bricks.size()));
+  for (const LevelReport& level : report_.levels) {
+    EXPECT_GT(level.surfels, 1000);
+    EXPECT_GT(level.samples, level.surfels);
+    EXPECT_GT(level.mean_move, 0);
+    EXPECT_LT(level.mean_move, 1);
+  }
+}
+
+TEST_F(RefineSurface, SameDistancesInEveryRun) {
+  const SparseVolume first = run(4), second = run(4);
+  EXPECT_EQ(first.table, second.table);
+  EXPECT_EQ(first.distance, second.distance);
+}
+
+TEST_F(RefineSurface, WithoutMasks) {
+  const SparseVolume box = scene_.hull(scene_.grid(5), false);
+  const SparseVolume volume = run(5, false);
+  EXPECT_GT(volume.inside_voxels(), 1000u);
+  EXPECT_LT(test::mean_error(volume), 0.5 * test::mean_error(box));
+}
+
+TEST_F(RefineSurface, OneLevel) {
+  options_.levels = 1;
+  const SparseVolume volume = run(4);
+  EXPECT_LT(test::mean_error(volume), 0.5 * test::mean_error(scene_.hull(scene_.grid(4))));
+  EXPECT_EQ(report_.levels.size(), 1u);
+}
+
+TEST_F(RefineSurface, VotingFindsWhatTheSearchAloneCannotReach) {
+  options_.voting = false;
+  const double searched = test::mean_error(run(5));
+  options_.voting = true;
+  EXPECT_LT(test::mean_error(run(5)), 0.7 * searched);
+}
+
+TEST_F(RefineSurface, CanBeCancelled) {
+  request_cancellation();
+  EXPECT_THROW(run(4), Cancelled);
+  reset_cancellation();
+}
+
+TEST_F(RefineSurface, BadOptionsAreNamed) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<std::function<void(RefineOptions&)>> mistakes = {
+      [](RefineOptions& o) { o.levels = 0; },
+      [](RefineOptions& o) { o.levels = 9; },
+      [](RefineOptions& o) { o.coarse_iterations = 0; },
+      [](RefineOptions& o) { o.fine_offsets = 2; },
+      [](RefineOptions& o) { o.coarse_offsets = 65; },
+      [](RefineOptions& o) { o.step = 0; },
+      [](RefineOptions& o) { o.aggregations = -1; },
+      [](RefineOptions& o) { o.noise_sigma = 0; },
+      [&](RefineOptions& o) { o.noise_sigma = nan; },
+      [&](RefineOptions& o) { o.step = nan; }};
+  for (std::size_t i = 0; i < mistakes.size(); ++i) {
+    options_ = {};
+    mistakes[i](options_);
+    EXPECT_THROW(run(4), UsageError) << i;
+    EXPECT_THROW(options_.validate(), UsageError) << i;
+  }
+}
+
+}  // namespace
+}  // namespace photohull::refine

@@ -1,0 +1,89 @@
+#include "refine/vote.h"
+
+#include <gtest/gtest.h>
+
+#include "bowl_scene.h"
+#include "projtex/gpu_views.h"
+#include "support/gl_context.h"
+#include "volume/cavities.h"
+
+namespace photohull::refine {
+namespace {
+
+using glm::dvec3;
+using glm::ivec3;
+
+template <typename F>
+void for_voxels(const GridSpec& grid, F&& f) {
+  const ivec3 n = grid.voxels();
+  for (int z = 0; z < n.z; ++z)
+    for (int y = 0; y < n.y; ++y)
+      for (int x = 0; x < n.x; ++x) f(ivec3(x, y, z), grid.world({x, y, z}));
+}
+
+SparseVolume vote(const SparseVolume& hull, const std::vector<View>& views) {
+  gpu::Context& context = test::gl_context();
+  return vote_free_space(context, hull, projtex::ImageSet(views), projtex::cameras_of(views), 0.01,
+                         {});
+}
+
+TEST(VoteFreeSpace, OpensTheHollowAndSparesTheBody) {
+  const test::BowlScene& scene = test::bowl_scene();
+  const SparseVolume hull = scene.hull(scene.grid(5));
+  SparseVolume found = vote(hull, scene.views);
+  for_voxels(found.grid, [&](const ivec3& voxel, const dvec3&) {
+    ASSERT_GE(found.at(voxel), hull.at(voxel)) << "the hull bounds what is found";
+  });
+  // A stray ray leaves pockets where no other one has a say; they end as the refinement ends them.
+  fill_cavities(found);
+  int hollow = 0, opened = 0, body = 0, lost = 0;
+  for_voxels(found.grid, [&](const ivec3& voxel, const dvec3& at) {
+    const double voxels = test::bowl(at) / found.grid.voxel_size;
+    if (test::filled_bowl(at) < 0 && voxels > 1) {
+      ++hollow;
+      opened += found.at(voxel) > 0;
+    }
+    if (voxels < -2) {
+      ++body;
+      lost += found.at(voxel) >= 0;
+    }
+  });
+  ASSERT_GT(hollow, 1000);
+  ASSERT_GT(body, 2000);
+  EXPECT_GT(opened, 0.9 * hollow);
+  EXPECT_LT(lost, 0.002 * body);
+}
+
+TEST(VoteFreeSpace, PlainImagesAndFewViewsLeaveTheHull) {
+  const test::BowlScene& scene = test::bowl_scene();
+  const SparseVolume hull = scene.hull(scene.grid(3));
+  std::vector<View> plain = scene.views;
+  for (View& view : plain)
+    std::fill(view.image.bytes.begin(), view.image.bytes.end(), std::uint8_t(120));
+  const std::vector<View> one(scene.views.begin(), scene.views.begin() + 1);
+  for (const auto& views : {plain, one}) {
+    const SparseVolume found = vote(hull, views);
+    int changed = 0;
+    for_voxels(found.grid, [&](const ivec3& voxel, const dvec3&) {
+      changed += (found.at(voxel) < 0) != (hull.at(voxel) < 0);
+    });
+    EXPECT_EQ(changed, 0);
+  }
+}
+
+TEST(VoteFreeSpace, SameDistancesInEveryRun) {
+  const test::BowlScene& scene = test::bowl_scene();
+  const SparseVolume hull = scene.hull(scene.grid(3));
+  EXPECT_EQ(vote(hull, scene.views).distance, vote(hull, scene.views).distance);
+}
+
+TEST(VoteFreeSpace, EmptyHull) {
+  const test::BowlScene& scene = test::bowl_scene();
+  SparseVolume nothing;
+  nothing.grid = scene.grid(2);
+  nothing.table.assign(nothing.grid.brick_count(), SparseVolume::kOutside);
+  EXPECT_EQ(vote(nothing, scene.views).inside_voxels(), 0u);
+}
+
+}  // namespace
+}  // namespace photohull::refine
