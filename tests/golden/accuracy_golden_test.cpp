@@ -1,0 +1,63 @@
+// How close reconstructions of synthetic scenes come to the exact surface, on Mesa's software
+// rasterizer. Bounds lie about a point below what was measured: after a change for the better,
+// write the new figures and raise the bounds; after one for the worse, find out why.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <vector>
+
+#include "golden/synthetic_scene.h"
+
+namespace photohull::golden {
+namespace {
+
+using pipeline::Method;
+
+/// F-scores of the seen surface in percent: what was measured, and the least that passes.
+struct Expected {
+  Method method;
+  double measured_05, least_05;  ///< at 0.5 % of the diagonal
+  double measured_1, least_1;    ///< at 1 %
+};
+
+void expect_scores(const SyntheticScene& scene, int resolution, const std::vector<Expected>& all) {
+  for (const Expected& expected : all) {
+    const eval::Evaluation e = scene.reconstruct(expected.method, resolution);
+    std::printf("%-14s %s\n", to_string(expected.method), summary(e).c_str());
+    SCOPED_TRACE(testing::Message() << to_string(expected.method) << ": measured before "
+                                    << expected.measured_05 << " and " << expected.measured_1);
+    EXPECT_GE(f_score(e, 0.5), expected.least_05);
+    EXPECT_GE(f_score(e, 1), expected.least_1);
+  }
+}
+
+TEST(Accuracy, Sphere) {
+  expect_scores(SyntheticScene("sphere", 12, 320, 240), 64,
+                {{Method::kHull, 95.68, 94.7, 99.72, 99.2},
+                 {Method::kSpaceCarving, 96.57, 95.6, 99.88, 99.4},
+                 {Method::kRefine, 93.05, 92, 96.58, 95.6}});
+}
+
+TEST(Accuracy, Block) {
+  expect_scores(SyntheticScene("block", 24, 320, 240), 96,
+                {{Method::kHull, 30.27, 29.3, 49.85, 48.8},
+                 {Method::kSpaceCarving, 44.15, 43.1, 83.02, 82},
+                 {Method::kRefine, 87.56, 86.5, 93.66, 92.6}});
+}
+
+TEST(Accuracy, RodsBeforeTexture) {
+  expect_scores(SyntheticScene("rods_before_texture", 24, 320, 240), 96,
+                {{Method::kHull, 20.55, 19.5, 26.6, 25.6},
+                 {Method::kSpaceCarving, 18.09, 17.1, 24.62, 23.6},
+                 {Method::kRefine, 59.88, 58.4, 66.07, 64.6}});
+}
+
+TEST(Accuracy, Pawn) {
+  expect_scores(SyntheticScene("pawn", 16, 320, 240), 96,
+                {{Method::kHull, 87.28, 86.3, 94.35, 93.3},
+                 {Method::kSpaceCarving, 86.12, 85.1, 95.58, 94.6},
+                 {Method::kRefine, 98.54, 97.5, 99.94, 99.4}});
+}
+
+}  // namespace
+}  // namespace photohull::golden
