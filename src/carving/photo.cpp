@@ -291,6 +291,7 @@ void PhotoOptions::validate() const {
   require(min_texture >= 0, "min_texture must not be negative");
   require(supersample >= 1 && supersample <= 4, "supersample must be 1 to 4");
   require(depth_bias >= 0, "depth_bias must not be negative");
+  require(max_path >= 1, "max_path must be at least 1");
   require(max_rounds >= 1, "max_rounds must be at least 1");
 }
 

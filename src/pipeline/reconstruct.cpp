@@ -85,6 +85,21 @@ double median_noise(std::span<const View> views) {
   return std::max(values[values.size() / 2], 1.0 / 255 / std::sqrt(12.0));
 }
 
+/// Throws UsageError for parameters that the method does not have or take.
+void check_tuning(const std::vector<std::string>& assignments, Method method) {
+  if (method == Method::kRefine) {
+    refine::RefineOptions o;
+    tune(assignments, o);
+    o.validate();
+  } else if (method != Method::kHull) {
+    carving::PhotoOptions o;
+    tune(assignments, o);
+    o.validate();
+  } else if (!assignments.empty()) {
+    throw UsageError(concat("--tune ", assignments[0], ": the hull has no parameters"));
+  }
+}
+
 class Job {
  public:
   Job(const ReconstructOptions& options, Progress& progress)
@@ -311,6 +326,13 @@ class Job {
     report_.peak_memory_bytes = process_peak_memory();
   }
 
+  std::string tuning() const {
+    std::string text;
+    for (const std::string& assignment : options_.tune)
+      text += (text.empty() ? "" : " ") + assignment;
+    return text;
+  }
+
   std::string mask_option() const {
     switch (options_.load.masks) {
       case io::MaskSource::kAuto:
@@ -336,6 +358,7 @@ class Job {
     list.emplace_back("masks", mask_option());
     if (options_.load.pixel_center)
       list.emplace_back("pixel_center", number(*options_.load.pixel_center));
+    if (!options_.tune.empty()) list.emplace_back("tune", tuning());
     list.emplace_back("device", options_.device);
     list.emplace_back("threads", std::to_string(options_.threads));
   }
@@ -409,6 +432,7 @@ void ReconstructOptions::validate() const {
   if (voxel_size && !(std::isfinite(*voxel_size) && *voxel_size > 0))
     throw UsageError(concat("--voxel-size ", *voxel_size, ": must be finite and positive"));
   if (threads < 0) throw UsageError(concat("--threads ", threads, ": 0 (one a core) or more"));
+  check_tuning(tune, effective_method());
 }
 
 Method ReconstructOptions::effective_method() const {

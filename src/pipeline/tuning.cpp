@@ -29,8 +29,12 @@ void assign(const std::vector<std::string>& assignments,
     const double value = std::strtod(number.c_str(), &end);
     if (number.empty() || *end != 0 || !std::isfinite(value) || std::abs(value) > 1e6)
       throw UsageError(concat("--tune ", text, ": expected NAME=NUMBER"));
-    std::visit([&](auto* target) { *target = static_cast<std::decay_t<decltype(*target)>>(value); },
-               field->second);
+    const auto set = [&](auto* target) {
+      *target = static_cast<std::decay_t<decltype(*target)>>(value);
+      if (double(*target) != value)
+        throw UsageError(concat("--tune ", text, ": expected a whole number, 0 or 1 for a switch"));
+    };
+    std::visit(set, field->second);
   }
 }
 

@@ -144,20 +144,6 @@ class Refiner {
 
 }  // namespace
 
-void RefineOptions::validate() const {
-  const auto require = [](bool ok, const char* what) {
-    if (!ok) throw UsageError(what);
-  };
-  require(levels >= 1 && levels <= 8, "levels must be 1 to 8");
-  require(coarse_iterations >= 1 && middle_iterations >= 1 && fine_iterations >= 1,
-          "iterations must be at least 1");
-  require(coarse_offsets >= 3 && coarse_offsets <= 64 && fine_offsets >= 3 && fine_offsets <= 64,
-          "offsets must be 3 to 64");
-  require(step > 0 && step <= 2, "step must lie in (0, 2] voxels");
-  require(aggregations >= 0, "aggregations must not be negative");
-  require(noise_sigma > 0 && std::isfinite(noise_sigma), "noise_sigma must be positive");
-}
-
 SparseVolume refine_surface(gpu::Context& context, const GridSpec& finest, const HullAt& hull_at,
                             std::span<const carving::Silhouette> silhouettes,
                             const projtex::ImageSet& images, std::span<const Camera> cameras,

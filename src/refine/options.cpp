@@ -1,0 +1,87 @@
+// Which options make sense.
+#include <cmath>
+
+#include "core/error.h"
+#include "core/grid.h"
+#include "refine/refine.h"
+
+namespace photohull::refine {
+namespace {
+
+void require(bool ok, const char* what) {
+  if (!ok) throw UsageError(what);
+}
+
+bool is_share(double value) { return value > 0 && value <= 1; }
+bool is_score(double value) { return value >= -1 && value <= 1; }
+bool is_cosine(double value) { return value >= 0 && value < 1; }
+bool is_length(double value) { return value >= 0 && value <= 1000; }
+
+void check(const VoteOptions& o) {
+  require(o.ray_spacing > 0 && is_length(o.ray_spacing), "vote.ray_spacing must be positive");
+  require(o.tap_spacing > 0 && is_length(o.tap_spacing), "vote.tap_spacing must be positive");
+  require(is_share(o.best_pairs), "vote.best_pairs must lie in (0, 1]");
+  require(is_score(o.least_score), "vote.least_score must lie in [-1, 1]");
+  require(o.distinct_by > 0, "vote.distinct_by must be positive");
+  require(o.band > 0 && o.band <= SparseVolume::kBand, "vote.band must lie in (0, 3] voxels");
+  require(o.least_weight > 0, "vote.least_weight must be positive");
+  require(o.smoothing >= 0 && o.smoothing <= 100, "vote.smoothing must be 0 to 100");
+}
+
+void check(const CloseOptions& o) {
+  require(o.rings >= 0 && o.rings <= 1000, "close.rings must be 0 to 1000");
+  require(o.iterations >= 0, "close.iterations must not be negative");
+  require(o.longest >= 0 && o.longest <= SparseVolume::kBand,
+          "close.longest must lie in [0, 3] voxels");
+  require(is_length(o.thickness), "close.thickness must lie in [0, 1000] voxels");
+}
+
+void check(const MatchOptions& o) {
+  require(o.least_spacing > 0 && is_length(o.least_spacing),
+          "match.least_spacing must be positive");
+  require(is_length(o.pixel_spacing), "match.pixel_spacing must not be negative");
+  require(is_share(o.best_pairs), "match.best_pairs must lie in (0, 1]");
+  require(is_length(o.shift), "match.shift must lie in [0, 1000] voxels");
+  require(is_length(o.depth_bias), "match.depth_bias must lie in [0, 1000] voxels");
+  require(is_cosine(o.least_cosine), "match.least_cosine must lie in [0, 1)");
+  require(is_cosine(o.seen_cosine), "match.seen_cosine must lie in [0, 1)");
+  require(o.nearest_angle >= 0 && o.nearest_angle < o.farthest_angle && o.farthest_angle <= 180,
+          "match.nearest_angle must lie below match.farthest_angle, both in [0, 180] degrees");
+  require(o.duplicate_angle >= 0 && o.duplicate_angle <= 180,
+          "match.duplicate_angle must lie in [0, 180] degrees");
+}
+
+void check(const PeakOptions& o) {
+  require(o.least_score < o.sure_score && is_score(o.least_score) && is_score(o.sure_score),
+          "peak.least_score must lie below peak.sure_score, both in [-1, 1]");
+  require(o.thick > 0 && is_length(o.thick), "peak.thick must lie in (0, 1000] voxels");
+  require(o.distinct_by > 0, "peak.distinct_by must be positive");
+}
+
+void check(const RegularizeOptions& o) {
+  require(o.membrane >= 0, "regularize.membrane must not be negative");
+  require(o.robust > 0, "regularize.robust must be positive");
+  require(o.reweightings >= 0, "regularize.reweightings must not be negative");
+  require(o.iterations >= 1, "regularize.iterations must be at least 1");
+}
+
+}  // namespace
+
+void RefineOptions::validate() const {
+  require(levels >= 1 && levels <= 8, "levels must be 1 to 8");
+  require(coarse_iterations >= 1 && middle_iterations >= 1 && fine_iterations >= 1,
+          "iterations must be at least 1");
+  require(coarse_offsets >= 3 && coarse_offsets <= 64 && fine_offsets >= 3 && fine_offsets <= 64,
+          "offsets must be 3 to 64");
+  require(step > 0 && step <= 2, "step must lie in (0, 2] voxels");
+  require(aggregations >= 0, "aggregations must not be negative");
+  require(noise_sigma > 0 && std::isfinite(noise_sigma), "noise_sigma must be positive");
+  check(vote);
+  check(close);
+  require(restore.least_views >= 1, "restore.least_views must be at least 1");
+  check(match);
+  check(peak);
+  check(regularize);
+}
+
+}  // namespace photohull::refine

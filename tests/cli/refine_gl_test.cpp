@@ -1,0 +1,82 @@
+// Reconstructions with --method refine, and parameters changed by --tune.
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "sphere_scene.h"
+#include "volume/analytic_volumes.h"
+#include "volume/write_mesh.h"
+
+namespace photohull::test {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+
+/// The scene's cameras stand 50 degrees apart: farther than are matched by default.
+constexpr const char* kSparse = "match.farthest_angle=70";
+
+class Refine : public SphereScene {
+ protected:
+  json report() const { return json::parse(read_bytes(path("out/report.json"))); }
+
+  /// Root mean square distance of the result's vertices from the sphere, in voxels.
+  double error() const {
+    const TriMesh mesh = read_ply(path("out/mesh.ply"));
+    EXPECT_EQ(open_edges(mesh), 0u);
+    double sum = 0;
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+      sum += std::pow(glm::distance(mesh.world(i), kCentre) - kRadius, 2);
+    return std::sqrt(sum / double(mesh.positions.size())) /
+           report()["grid"]["voxel_size"].get<double>();
+  }
+};
+
+TEST_F(Refine, StagesAndResult) {
+  succeed(reconstruct({"--method", "refine", "--tune", kSparse}));
+  // The hull of a sphere is the sphere: nothing is to be gained, and little may be lost.
+  EXPECT_LT(error(), 0.25);
+  const json r = report();
+  EXPECT_EQ(r["options"]["method"], "refine");
+  EXPECT_GT(r["hull"]["nodes_tested"], 0);
+  std::vector<std::string> stages;
+  for (const json& stage : r["stages"]) stages.push_back(stage["name"]);
+  EXPECT_THAT(stages, ElementsAre("scene", "device", "views", "hull", "images", "refine", "clean",
+                                  "mesh", "colour", "files", "preview"));
+}
+
+TEST_F(Refine, SameBytesInEveryRunWhateverTheThreads) {
+  succeed(reconstruct({"--method", "refine", "--threads", "1"}));
+  const std::string mesh = read_bytes(path("out/mesh.ply"));
+  succeed(reconstruct({"--method", "refine", "--threads", "2"}));
+  EXPECT_TRUE(mesh == read_bytes(path("out/mesh.ply")));
+}
+
+TEST_F(Refine, WithoutMasksBetterThanTheHull) {
+  succeed(reconstruct({"--method", "hull", "--masks", "none"}));
+  const double hull = error();
+  succeed(reconstruct({"--method", "refine", "--masks", "none", "--tune", kSparse}));
+  EXPECT_EQ(report()["masks"]["source"], "none");
+  EXPECT_LT(error(), 0.6 * hull);
+}
+
+TEST_F(Refine, ParametersCanBeTuned) {
+  succeed(
+      reconstruct({"--method", "refine", "--tune", "levels=1", "--tune", "peak.least_score=0.4"}));
+  EXPECT_EQ(report()["options"]["tune"], "levels=1 peak.least_score=0.4");
+  succeed(reconstruct({"--tune", "max_rounds=1"}));
+}
+
+TEST_F(Refine, WrongTuningIsRefused) {
+  const auto refuse = [&](const char* method, const char* tune, const char* part) {
+    fail(2, reconstruct({"--method", method, "--tune", tune}), {part});
+  };
+  refuse("refine", "keep_score=0.5", "this method has no 'keep_score'; it has ");
+  refuse("space-carving", "levels=2", "this method has no 'levels'; it has ");
+  refuse("refine", "levels", "--tune levels: expected NAME=NUMBER");
+  refuse("refine", "levels=0", "levels must be 1 to 8");
+  refuse("refine", "match.best_pairs=0", "match.best_pairs");
+  refuse("hull", "levels=2", "--tune levels=2: the hull has no parameters");
+}
+
+}  // namespace
+}  // namespace photohull::test
