@@ -92,7 +92,7 @@ void add_reconstruct(CLI::App& app) {
       ->capture_default_str();
   c->add_option(
       "--method", a->method,
-      "hull, voxel-coloring or space-carving (default: hull for draft, else space-carving)");
+      "hull, voxel-coloring, space-carving or refine (default: hull for draft, else space-carving)");
   c->add_option("--device", a->device, "auto, software, or an index from 'photohull devices'")
       ->capture_default_str();
   c->add_option("--threads", a->threads, "threads to use (0: one a core)")->capture_default_str();
