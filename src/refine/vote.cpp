@@ -18,7 +18,8 @@ namespace {
 
 using gpu::Buffer;
 
-constexpr int kLengths[] = {8, 16, 32, 64};  // samples along a ray
+constexpr int kLengths[] = {8, 16, 32, 64};                 // samples along a ray
+constexpr std::size_t kMostThreads = std::size_t(1) << 21;  // of a dispatch
 
 struct Ray {
   int view, x, y;
@@ -142,9 +143,9 @@ class Voter {
     const auto program =
         gpu::Program::compute("refine_match_patches.comp.glsl", "#define PATCH_RADIUS 1\n");
     const Buffer views = Buffer::of(gpu_views_);
-    const std::size_t kBatch = (std::size_t(1) << 21) / std::size_t(length);
-    for (std::size_t first = 0; first < rays.size(); first += kBatch) {
-      const std::size_t count = std::min(kBatch, rays.size() - first);
+    const std::size_t batch = kMostThreads / std::size_t(length);
+    for (std::size_t first = 0; first < rays.size(); first += batch) {
+      const std::size_t count = std::min(batch, rays.size() - first);
       std::vector<shaders::BakeVertex> surfels;
       std::vector<shaders::MatchChoice> choices;
       for (std::size_t i = first; i < first + count; ++i) {
@@ -194,8 +195,8 @@ class Voter {
     const auto& c = cameras_[std::size_t(ray.view)];
     map.depth[at] = float(glm::dot(ray.from - c.centre, ray.direction) + (best + shift) * step) *
                     float(ray.depth_per_length);
-    map.weight[at] = float(std::clamp((s[best] - options_.least_score) / 0.3, 0.05, 1.0) *
-                           std::clamp((s[best] - second) / options_.distinct_by, 0.02, 1.0));
+    map.weight[at] = float(std::clamp((s[best] - options_.least_score) / 0.3, 0.0, 1.0) *
+                           std::clamp((s[best] - second) / options_.distinct_by, 0.0, 1.0));
   }
 
   double vote(const glm::dvec3& p) const {

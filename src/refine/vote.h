@@ -10,17 +10,23 @@
 namespace photohull::refine {
 
 struct VoteOptions {
-  double ray_spacing = 1.0;  ///< voxels
-  double tap_spacing = 0.7;  ///< voxels
-  double best_pairs = 0.5;
-  double least_score = 0.5;
-  double distinct_by = 0.15;
-  double band = 1.5;  ///< voxels
-  double least_weight = 0.3;
-  int smoothing = 0;
+  double ray_spacing = 1.0;   ///< between the rays of a view, voxels in the middle of the grid
+  double tap_spacing = 0.7;   ///< of the patches across the rays, voxels
+  double best_pairs = 0.5;    ///< share of the pairs of views that the score is the mean of
+  double least_score = 0.5;   ///< of the best sample on a ray; below, the ray says nothing
+  double distinct_by = 0.15;  ///< lead over the second best that gives a ray full weight
+  double band = 1.5;          ///< voxels; at most kBand: a ray's say ends that far behind its depth
+  double least_weight = 0.3;  ///< sum of the rays' weights below which a voxel stays
+  int smoothing = 0;          ///< passes of a 3 x 3 x 3 binomial filter
 };
 
-/// The hull without what the views' depth maps see through.
+/// The hull without what the views' depth maps see through: each view's rays are matched with views
+/// near it by 3 x 3 patches across the ray, and a voxel takes the weighted mean of its signed
+/// distances along them (voxels, not below the hull's). Only the signs and the distances near zero
+/// are meaningful, and a stray ray may leave pockets in the body that no path joins to the outside
+/// (fill_cavities). `cameras` and `images` are in the same order, `noise_sigma` > 0 in square-root
+/// encoding. All bricks that are not outside are stored. Throws Error when the device cannot hold a
+/// batch.
 SparseVolume vote_free_space(gpu::Context& context, const SparseVolume& hull,
                              const projtex::ImageSet& images, std::span<const Camera> cameras,
                              double noise_sigma, const VoteOptions& options);

@@ -1,4 +1,4 @@
-// Private to module render: a mesh as points dense enough to hide what is behind it.
+// A mesh as points dense enough to hide what is behind it.
 #pragma once
 
 #include <span>

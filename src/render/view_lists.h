@@ -1,4 +1,4 @@
-// Private to module render: which views a group of neighbouring vertices needs to look at.
+// Which views a group of neighbouring vertices needs to look at.
 #pragma once
 
 #include <cstdint>

@@ -103,13 +103,22 @@ TEST_F(RefineSurface, BadOptionsAreNamed) {
       [](RefineOptions& o) { o.aggregations = -1; },
       [](RefineOptions& o) { o.noise_sigma = 0; },
       [&](RefineOptions& o) { o.noise_sigma = nan; },
-      [&](RefineOptions& o) { o.step = nan; }};
+      [&](RefineOptions& o) { o.step = nan; },
+      [](RefineOptions& o) { o.vote.band = 0; },
+      [](RefineOptions& o) { o.vote.least_weight = 0; },
+      [](RefineOptions& o) { o.close.longest = -1; },
+      [](RefineOptions& o) { o.restore.least_views = 0; },
+      [](RefineOptions& o) { o.match.best_pairs = 0; },
+      [](RefineOptions& o) { o.match.nearest_angle = o.match.farthest_angle; },
+      [](RefineOptions& o) { o.peak.sure_score = o.peak.least_score; },
+      [](RefineOptions& o) { o.regularize.robust = 0; }};
   for (std::size_t i = 0; i < mistakes.size(); ++i) {
     options_ = {};
     mistakes[i](options_);
-    EXPECT_THROW(run(4), UsageError) << i;
     EXPECT_THROW(options_.validate(), UsageError) << i;
   }
+  EXPECT_THROW(run(4), UsageError);
+  EXPECT_NO_THROW(RefineOptions().validate());
 }
 
 }  // namespace
