@@ -90,9 +90,9 @@ void add_reconstruct(CLI::App& app) {
   c->add_option("--quality", a->quality,
                 "draft, normal or high: voxel size from the images' pixels")
       ->capture_default_str();
-  c->add_option(
-      "--method", a->method,
-      "hull, voxel-coloring, space-carving or refine (default: hull for draft, else space-carving)");
+  c->add_option("--method", a->method,
+                "hull, voxel-coloring, space-carving or refine (default: hull for draft, else "
+                "space-carving)");
   c->add_option("--device", a->device, "auto, software, or an index from 'photohull devices'")
       ->capture_default_str();
   c->add_option("--threads", a->threads, "threads to use (0: one a core)")->capture_default_str();

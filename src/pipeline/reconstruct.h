@@ -25,9 +25,9 @@ struct ReconstructOptions {
   std::optional<int> resolution;     ///< voxels along the box's longest side, >= 2
   std::optional<double> voxel_size;  ///< world units, > 0; excludes `resolution`
   Quality quality = Quality::kNormal;
-  std::optional<Method> method;  ///< default: hull for draft, space carving otherwise
-  std::string device = "auto";   ///< auto, software or an index
-  int threads = 0;               ///< 0: one a core
+  std::optional<Method> method;   ///< default: hull for draft, space carving otherwise
+  std::string device = "auto";    ///< auto, software or an index
+  int threads = 0;                ///< 0: one a core
   std::vector<std::string> tune;  ///< NAME=VALUE, see pipeline/tuning.h
 
   /// Throws UsageError naming the option.

@@ -10,8 +10,8 @@
 namespace photohull::pipeline {
 
 /// Each assignment is NAME=VALUE with a field's name (nested ones joined by dots) and a finite
-/// number, whole where the field is (0 or 1 for what is on or off). Throws UsageError naming what is
-/// wrong, with the known names.
+/// number, whole where the field is (0 or 1 for what is on or off). Throws UsageError naming what
+/// is wrong, with the known names.
 void tune(const std::vector<std::string>& assignments, carving::PhotoOptions& options);
 void tune(const std::vector<std::string>& assignments, refine::RefineOptions& options);
 
