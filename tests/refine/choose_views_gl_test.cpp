@@ -194,6 +194,18 @@ TEST_F(ChooseViewsOf, MoreEqualViewsThanCandidates) {
   }
 }
 
+TEST_F(ChooseViewsOf, OnlyTheMostFrontalAreCandidates) {
+  // As many cameras as there are candidates, too near each other to be compared, and better ones.
+  add_ring(shaders::kMatchCandidates, 2);
+  add_ring(5, 25);
+  TriMesh mesh;
+  test::add_vertex({24, 24, 24}, {0, 0, 1}, mesh);
+  const Found found = run(mesh);
+  EXPECT_EQ(found.choices[0].second.z, shaders::kMatchCandidates + 5);
+  EXPECT_EQ(found.choices[0].second.w, 1);
+  EXPECT_TRUE(agrees(mesh, found, 0));
+}
+
 TEST_F(ChooseViewsOf, EmptyMesh) {
   add_camera({24, 24, 200}, {24, 24, 24});
   const Found found = run({});
