@@ -12,7 +12,7 @@ namespace {
 template <typename F>
 SparseVolume combine(const SparseVolume& a, const SparseVolume& b, std::uint32_t winner,
                      std::uint32_t neutral, F&& choose) {
-  PHOTOHULL_CHECK_OP(a.table.size(), ==, b.table.size());
+  PHOTOHULL_CHECK(a.grid.bricks == b.grid.bricks);
   SparseVolume out;
   out.grid = a.grid;
   out.table.resize(a.table.size());

@@ -227,6 +227,7 @@ void move_surface(SparseVolume& volume, const TriMesh& mesh, std::span<const flo
 SparseVolume distance_from_mesh(const TriMesh& mesh, const SparseVolume& sides,
                                 const GridSpec& grid, double reach) {
   PHOTOHULL_CHECK_OP(mesh.normals.size(), ==, mesh.positions.size());
+  PHOTOHULL_CHECK_OP(sides.grid.voxel_size, >, 0.0);
   const std::vector<Point> points = points_of(mesh, grid);
   return Field(points, grid, float(reach)).run(sides);
 }
