@@ -44,8 +44,8 @@ constexpr double kBoxSlack = 0.5;         // voxels that the surface may stand o
 /// reconstruct templeRing --json`). They only drive the progress bar's time left.
 struct Weights {
   static constexpr double kScene = 0.1, kViews = 3, kDevice = 0.5, kHull = 3.5, kImages = 2,
-                          kPhoto = 110, kClean = 0.2, kMesh = 0.6, kColour = 2, kPreview = 2.7,
-                          kFiles = 2;
+                          kPhoto = 110, kRefine = 50, kClean = 0.2, kMesh = 0.6, kColour = 2,
+                          kPreview = 2.7, kFiles = 2;
 };
 
 std::string number(double value) {
@@ -124,7 +124,7 @@ class Job {
     images_ = clock_.run("images", Weights::kImages,
                          [&] { return std::make_unique<projtex::ImageSet>(views_); });
     if (refining)
-      volume = clock_.run("refine", Weights::kPhoto, [&] { return refine(); });
+      volume = clock_.run("refine", Weights::kRefine, [&] { return refine(); });
     else if (options_.effective_method() != Method::kHull)
       volume = clock_.run("photo", Weights::kPhoto, [&] { return carve_photo(volume); });
     clock_.run("clean", Weights::kClean, [&] { remove_small_components(volume, kDebrisFraction); });
@@ -233,9 +233,17 @@ class Job {
     refine::RefineOptions o;
     o.noise_sigma = report_.noise_sigma;
     tune(options_.tune, o);
-    return refine::refine_surface(
+    refine::RefineReport counts;
+    SparseVolume volume = refine::refine_surface(
         *context_, grid_, [&](const GridSpec& grid) { return hull_at(grid); }, silhouettes(),
-        *images_, cameras_, o, progress_);
+        *images_, cameras_, o, progress_, &counts);
+    for (const refine::LevelReport& level : counts.levels) {
+      report_.refine_levels.push_back({level.voxel_size, level.seconds, level.surfels,
+                                       level.samples, level.bricks, level.restored,
+                                       level.mean_move});
+      refine_samples_ += level.samples;
+    }
+    return volume;
   }
 
   SparseVolume carve_hull() {
@@ -316,6 +324,7 @@ class Job {
     for (StageReport& stage : report_.stages) {
       if (stage.name == "hull") stage.samples = hull_samples_;
       if (stage.name == "photo") stage.samples = photo_samples_;
+      if (stage.name == "refine") stage.samples = refine_samples_;
     }
     report_.voxels_kept = std::int64_t(volume.inside_voxels());
     report_.bricks_stored = std::int64_t(volume.bricks.size());
@@ -375,7 +384,7 @@ class Job {
   std::unique_ptr<gpu::Context> context_;
   std::unique_ptr<projtex::ImageSet> images_;
   std::vector<SilhouetteDistance> silhouette_distances_;
-  std::int64_t hull_samples_ = 0, photo_samples_ = 0;
+  std::int64_t hull_samples_ = 0, photo_samples_ = 0, refine_samples_ = 0;
 };
 
 }  // namespace
@@ -441,10 +450,12 @@ Method ReconstructOptions::effective_method() const {
 }
 
 double total_weight(const ReconstructOptions& options) {
-  const bool photo = options.effective_method() != Method::kHull;
+  const Method method = options.effective_method();
   return Weights::kScene + Weights::kViews + Weights::kDevice + Weights::kHull + Weights::kImages +
-         (photo ? Weights::kPhoto : 0) + Weights::kClean + Weights::kMesh + Weights::kColour +
-         Weights::kPreview + Weights::kFiles;
+         (method == Method::kHull     ? 0
+          : method == Method::kRefine ? Weights::kRefine
+                                      : Weights::kPhoto) +
+         Weights::kClean + Weights::kMesh + Weights::kColour + Weights::kPreview + Weights::kFiles;
 }
 
 Report reconstruct(const ReconstructOptions& options, Progress& progress) {

@@ -41,6 +41,15 @@ std::string Report::to_json() const {
                 {"voxels_judged", voxels_judged},
                 {"voxels_carved", voxels_carved},
                 {"voxels_undecided", voxels_undecided}};
+  j["refine"] = ordered_json::array();
+  for (const RefineLevelReport& level : refine_levels)
+    j["refine"].push_back({{"voxel_size", level.voxel_size},
+                           {"wall_seconds", level.wall_seconds},
+                           {"surfels", level.surfels},
+                           {"samples", level.samples},
+                           {"bricks", level.bricks},
+                           {"restored_voxels", level.restored},
+                           {"mean_move_voxels", level.mean_move}});
   j["voxels_kept"] = voxels_kept;
   j["mesh"] = {{"vertices", vertices}, {"triangles", triangles}, {"unseen_share", unseen_share}};
   j["wall_seconds"] = wall_seconds;

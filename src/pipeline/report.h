@@ -19,6 +19,17 @@ struct StageReport {
   std::int64_t peak_memory_bytes = 0;  ///< of the process up to the stage's end
 };
 
+/// One level of the refinement, coarsest first.
+struct RefineLevelReport {
+  double voxel_size = 0;  ///< world units
+  double wall_seconds = 0;
+  std::int64_t surfels = 0;   ///< surface points matched in its last iteration
+  std::int64_t samples = 0;   ///< texture samples
+  std::int64_t bricks = 0;    ///< of 8^3 voxels, stored at its end
+  std::int64_t restored = 0;  ///< voxels of the hull that silhouettes brought back
+  double mean_move = 0;       ///< voxels, in its last iteration
+};
+
 struct Report {
   std::string version;
   std::string scene, format, device;
@@ -35,6 +46,7 @@ struct Report {
   std::int64_t voxels_judged = 0, voxels_carved = 0, voxels_kept = 0, voxels_undecided = 0;
   std::int64_t bricks_stored = 0;
   int sweeps = 0;
+  std::vector<RefineLevelReport> refine_levels;
   std::int64_t vertices = 0, triangles = 0;
   double unseen_share = 0;  ///< of the mesh's vertices
   std::int64_t peak_memory_bytes = 0;

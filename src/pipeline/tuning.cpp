@@ -90,6 +90,7 @@ void tune(const std::vector<std::string>& assignments, refine::RefineOptions& o)
                        {"peak.distinct_by", &o.peak.distinct_by},
                        {"peak.thick", &o.peak.thick},
                        {"regularize.membrane", &o.regularize.membrane},
+                       {"regularize.fairing", &o.regularize.fairing},
                        {"regularize.robust", &o.regularize.robust},
                        {"regularize.reweightings", &o.regularize.reweightings},
                        {"regularize.iterations", &o.regularize.iterations}});

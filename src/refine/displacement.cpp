@@ -79,6 +79,8 @@ std::vector<Peak> find_peaks(const Matches& matches, const PeakOptions& options)
 }
 
 std::vector<float> regularize(const VertexGraph& graph, const std::vector<Peak>& peaks,
+                              std::span<const glm::vec3> positions,
+                              std::span<const glm::vec3> normals,
                               const RegularizeOptions& options) {
   const std::size_t n = peaks.size();
   std::vector<float> d(n, 0.0f), next(n), weight(n);
@@ -89,12 +91,19 @@ std::vector<float> regularize(const VertexGraph& graph, const std::vector<Peak>&
     });
     for (int iteration = 0; iteration < options.iterations; ++iteration) {
       for_vertices(n, [&](std::size_t i) {
-        double sum = 0;
         const auto around = graph.of(i);
-        for (const std::uint32_t j : around) sum += d[j];
+        double sum = 0;
+        glm::dvec3 middle(0);
+        for (const std::uint32_t j : around) {
+          sum += d[j];
+          middle += glm::dvec3(positions[j] + d[j] * normals[j] - positions[i]);
+        }
+        const double count = double(std::max<std::size_t>(around.size(), 1));
         const double m = around.empty() ? 0 : options.membrane;
-        const double mean = around.empty() ? 0 : sum / double(around.size());
-        next[i] = float((weight[i] * peaks[i].offset + m * mean) / (weight[i] + m + 1e-3));
+        const double f = around.empty() ? 0 : options.fairing;
+        const double fair = glm::dot(middle / count, glm::dvec3(normals[i]));
+        next[i] = float((weight[i] * peaks[i].offset + m * sum / count + f * fair) /
+                        (weight[i] + m + f + 1e-3));
       });
       d.swap(next);
     }

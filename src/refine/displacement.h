@@ -1,6 +1,7 @@
 // From scores against offsets to one displacement for each vertex.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "core/mesh.h"
@@ -31,14 +32,18 @@ struct PeakOptions {
 std::vector<Peak> find_peaks(const Matches& matches, const PeakOptions& options);
 
 struct RegularizeOptions {
-  double membrane = 1.0;  ///< weight of a difference between neighbours' displacements
+  double membrane = 2.0;  ///< weight of a difference between neighbours' displacements
+  double fairing = 0.1;   ///< weight of the moved surface's distance from its neighbours' mean
   double robust = 1.0;    ///< voxels from the smooth surface at which a peak counts a quarter
   int reweightings = 3;
   int iterations = 15;  ///< of Jacobi's method for each reweighting
 };
 
 /// Least squares on the surface graph: displacements near the peaks, by their weights, and smooth.
+/// `positions` (voxels) and unit `normals` are the vertices'.
 std::vector<float> regularize(const VertexGraph& graph, const std::vector<Peak>& peaks,
+                              std::span<const glm::vec3> positions,
+                              std::span<const glm::vec3> normals,
                               const RegularizeOptions& options);
 
 }  // namespace photohull::refine

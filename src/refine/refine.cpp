@@ -27,6 +27,14 @@ GridSpec coarser(const GridSpec& grid) {
   return out;
 }
 
+std::vector<glm::vec3> voxel_positions(const GridSpec& grid, const TriMesh& mesh) {
+  const glm::dvec3 offset = (mesh.origin - grid.origin) / grid.voxel_size;
+  std::vector<glm::vec3> out;
+  for (const glm::vec3& p : mesh.positions)
+    out.emplace_back(glm::dvec3(p) / grid.voxel_size + offset);
+  return out;
+}
+
 /// Patches reach beyond parts thinner than they are, and mix in what lies behind: peaks there lose
 /// weight.
 void trust_thickness(const SparseVolume& volume, const TriMesh& mesh, double thick,
@@ -118,8 +126,9 @@ class Refiner {
                                     options_.noise_sigma, range, options_.match);
     aggregate(graph, options_.aggregations, matches);
     std::vector<Peak> peaks = find_peaks(matches, options_.peak);
+    const std::vector<glm::vec3> positions = voxel_positions(volume.grid, mesh);
     trust_thickness(volume, mesh, options_.peak.thick, peaks);
-    std::vector<float> moves = regularize(graph, peaks, options_.regularize);
+    std::vector<float> moves = regularize(graph, peaks, positions, mesh.normals, options_.regularize);
     if (options_.closing) {
       const auto closing = close_unseen(volume.grid, mesh, graph, matches.seen, options_.close);
       for (std::size_t i = 0; i < moves.size(); ++i)

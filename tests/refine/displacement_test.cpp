@@ -118,9 +118,28 @@ TEST(FindPeaks, NothingFromNothing) {
   EXPECT_TRUE(find_peaks(m, {}).empty());
 }
 
+/// Regularizes on a row along x whose normals are z, at these heights or flat.
+std::vector<float> regularized(const VertexGraph& graph, const std::vector<Peak>& peaks,
+                               const RegularizeOptions& options = {},
+                               std::vector<float> heights = {}) {
+  heights.resize(peaks.size(), 0.0f);
+  std::vector<glm::vec3> positions;
+  for (std::size_t i = 0; i < peaks.size(); ++i) positions.emplace_back(i, 0, heights[i]);
+  const std::vector<glm::vec3> normals(peaks.size(), {0, 0, 1});
+  return regularize(graph, peaks, positions, normals, options);
+}
+
+/// On a row of vertices in a plane.
+std::vector<float> regularize_row(std::size_t row, const std::vector<Peak>& peaks,
+                                  const RegularizeOptions& options) {
+  std::vector<glm::vec3> positions, normals(peaks.size(), glm::vec3(0, 0, 1));
+  for (std::size_t i = 0; i < peaks.size(); ++i) positions.emplace_back(float(i), 0, 0);
+  return regularize(row_of(row), peaks, positions, normals, options);
+}
+
 TEST(Regularize, ConstantFieldIsReproduced) {
   const std::vector<Peak> peaks(51, Peak{0.7f, 1, 1});
-  for (const float d : regularize(row_of(50), peaks, {})) EXPECT_NEAR(d, 0.7, 0.002);
+  for (const float d : regularized(row_of(50), peaks)) EXPECT_NEAR(d, 0.7, 0.002);
 }
 
 TEST(Regularize, UnknownVerticesFollowTheirNeighbours) {
@@ -129,7 +148,7 @@ TEST(Regularize, UnknownVerticesFollowTheirNeighbours) {
   peaks[10] = {};  // by itself
   RegularizeOptions options;
   options.iterations = 200;
-  const std::vector<float> d = regularize(row_of(10), peaks, options);
+  const std::vector<float> d = regularized(row_of(10), peaks, options);
   for (std::size_t i = 0; i < 10; ++i) EXPECT_NEAR(d[i], 0.5, 0.02) << i;
   EXPECT_EQ(d[10], 0);
 }
@@ -137,7 +156,7 @@ TEST(Regularize, UnknownVerticesFollowTheirNeighbours) {
 TEST(Regularize, IsolatedVertexGoesToItsPeak) {
   std::vector<Peak> peaks(3);
   peaks[2] = {1.25f, 0.8f, 1};
-  EXPECT_NEAR(regularize(row_of(2), peaks, {})[2], 1.25, 0.01);
+  EXPECT_NEAR(regularized(row_of(2), peaks)[2], 1.25, 0.01);
 }
 
 TEST(Regularize, OutliersAreRejected) {
@@ -149,8 +168,8 @@ TEST(Regularize, OutliersAreRejected) {
   RegularizeOptions robust, plain;
   plain.robust = 1e6;
   robust.reweightings = plain.reweightings = 5;
-  const std::vector<float> d = regularize(row_of(100), peaks, robust),
-                           pulled = regularize(row_of(100), peaks, plain);
+  const std::vector<float> d = regularized(row_of(100), peaks, robust),
+                           pulled = regularized(row_of(100), peaks, plain);
   for (std::size_t i = 5; i < 100; i += 10) {
     EXPECT_LT(std::abs(d[i] - 0.2f), 0.3f);
     EXPECT_GT(std::abs(pulled[i] - 0.2f), 1.0f);
@@ -163,8 +182,24 @@ TEST(Regularize, MembraneSmooths) {
   RegularizeOptions stiff, loose;
   stiff.membrane = 10;
   loose.membrane = 0.01;
-  EXPECT_LT(std::abs(regularize(row_of(100), peaks, stiff)[50]), 0.1f);
-  EXPECT_GT(std::abs(regularize(row_of(100), peaks, loose)[50]), 0.45f);
+  loose.fairing = 0;
+  EXPECT_LT(std::abs(regularized(row_of(100), peaks, stiff)[50]), 0.1f);
+  EXPECT_GT(std::abs(regularized(row_of(100), peaks, loose)[50]), 0.45f);
+}
+
+TEST(Regularize, FairingLowersWhatStandsOut) {
+  const std::vector<Peak> unknown(11);
+  RegularizeOptions none, fair;
+  none.fairing = 0;
+  fair.fairing = 1;
+  fair.iterations = none.iterations = 100;
+  const std::vector<float> spike = {0, 0, 0, 0, 0, 1, 0, 0, 0, 0};
+  EXPECT_EQ(regularized(row_of(10), unknown, none, spike)[5], 0);
+  const std::vector<float> d = regularized(row_of(10), unknown, fair, spike);
+  EXPECT_LT(d[5], -0.1f);
+  EXPECT_GT(d[5], -1.0f);
+  EXPECT_GT(d[4], d[5]);
+  for (const float flat : regularized(row_of(10), unknown, fair)) EXPECT_EQ(flat, 0);
 }
 
 }  // namespace
