@@ -69,7 +69,6 @@ void tune(const std::vector<std::string>& assignments, refine::RefineOptions& o)
                        {"vote.distinct_by", &o.vote.distinct_by},
                        {"vote.band", &o.vote.band},
                        {"vote.least_weight", &o.vote.least_weight},
-                       {"vote.smoothing", &o.vote.smoothing},
                        {"closing", &o.closing},
                        {"close.iterations", &o.close.iterations},
                        {"close.rings", &o.close.rings},

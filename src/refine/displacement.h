@@ -43,7 +43,6 @@ struct RegularizeOptions {
 /// `positions` (voxels) and unit `normals` are the vertices'.
 std::vector<float> regularize(const VertexGraph& graph, const std::vector<Peak>& peaks,
                               std::span<const glm::vec3> positions,
-                              std::span<const glm::vec3> normals,
-                              const RegularizeOptions& options);
+                              std::span<const glm::vec3> normals, const RegularizeOptions& options);
 
 }  // namespace photohull::refine

@@ -25,7 +25,6 @@ void check(const VoteOptions& o) {
   require(o.distinct_by > 0, "vote.distinct_by must be positive");
   require(o.band > 0 && o.band <= SparseVolume::kBand, "vote.band must lie in (0, 3] voxels");
   require(o.least_weight > 0, "vote.least_weight must be positive");
-  require(o.smoothing >= 0 && o.smoothing <= 100, "vote.smoothing must be 0 to 100");
 }
 
 void check(const CloseOptions& o) {
@@ -60,6 +59,7 @@ void check(const PeakOptions& o) {
 
 void check(const RegularizeOptions& o) {
   require(o.membrane >= 0, "regularize.membrane must not be negative");
+  require(o.fairing >= 0, "regularize.fairing must not be negative");
   require(o.robust > 0, "regularize.robust must be positive");
   require(o.reweightings >= 0, "regularize.reweightings must not be negative");
   require(o.iterations >= 1, "regularize.iterations must be at least 1");
@@ -68,7 +68,7 @@ void check(const RegularizeOptions& o) {
 }  // namespace
 
 void RefineOptions::validate() const {
-  require(levels >= 1 && levels <= 8, "levels must be 1 to 8");
+  require(levels >= 0 && levels <= 8, "levels must be 0 (automatic) to 8");
   require(coarse_iterations >= 1 && middle_iterations >= 1 && fine_iterations >= 1,
           "iterations must be at least 1");
   require(coarse_offsets >= 3 && coarse_offsets <= 64 && fine_offsets >= 3 && fine_offsets <= 64,

@@ -2,6 +2,7 @@
 // 2009, with the projection onto tangent planes that [Montenegro03] proposes as the next step.
 #include "refine/refine.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -128,7 +129,8 @@ class Refiner {
     std::vector<Peak> peaks = find_peaks(matches, options_.peak);
     const std::vector<glm::vec3> positions = voxel_positions(volume.grid, mesh);
     trust_thickness(volume, mesh, options_.peak.thick, peaks);
-    std::vector<float> moves = regularize(graph, peaks, positions, mesh.normals, options_.regularize);
+    std::vector<float> moves =
+        regularize(graph, peaks, positions, mesh.normals, options_.regularize);
     if (options_.closing) {
       const auto closing = close_unseen(volume.grid, mesh, graph, matches.seen, options_.close);
       for (std::size_t i = 0; i < moves.size(); ++i)
@@ -162,7 +164,13 @@ SparseVolume refine_surface(gpu::Context& context, const GridSpec& finest, const
   PHOTOHULL_CHECK_OP(int(cameras.size()), ==, images.layers());
   PHOTOHULL_CHECK_OP(silhouettes.size(), ==, cameras.size());
   std::vector<GridSpec> grids{finest};
-  while (int(grids.size()) < options.levels) grids.insert(grids.begin(), coarser(grids.front()));
+  const auto longest = [](const GridSpec& grid) {
+    const glm::ivec3 n = grid.voxels();
+    return std::max({n.x, n.y, n.z});
+  };
+  while (options.levels > 0 ? int(grids.size()) < options.levels
+                            : longest(grids.front()) > RefineOptions::kCoarsestVoxels)
+    grids.insert(grids.begin(), coarser(grids.front()));
   RefineReport counts;
   SparseVolume volume =
       Refiner(context, hull_at, silhouettes, images, cameras, options).run(grids, progress, counts);

@@ -20,7 +20,10 @@
 namespace photohull::refine {
 
 struct RefineOptions {
-  int levels = 3;             ///< voxel sizes, each half the one before; the last is the result's
+  /// Voxel sizes, each half the one before; the last is the result's. 0: as many as bring the first
+  /// grid to kCoarsestVoxels along its longest side.
+  int levels = 0;
+  static constexpr int kCoarsestVoxels = 80;
   int coarse_iterations = 3;  ///< of matching and moving, at the first level
   int middle_iterations = 2;
   int fine_iterations = 2;  ///< at the last level

@@ -7,216 +7,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gpu/buffer.h"
-#include "gpu/program.h"
 #include "projtex/gpu_views.h"
-#include "shared/bake.h"
-#include "shared/refine.h"
+#include "refine/ray_maps.h"
 
 namespace photohull::refine {
 namespace {
 
-using gpu::Buffer;
-
-constexpr int kLengths[] = {8, 16, 32, 64};                 // samples along a ray
-constexpr std::size_t kMostThreads = std::size_t(1) << 21;  // of a dispatch
-
-struct Ray {
-  int view, x, y;
-  glm::dvec3 from, direction;  // voxels; direction unit
-  double length, depth_per_length;
-};
-
-/// Rays of one view on a lattice of pixels, each with what it found.
-struct RayMap {
-  double stride = 1;
-  int width = 0, height = 0;
-  std::vector<float> depth, weight;  // voxels
-};
-
-double value_at(const SparseVolume& v, const glm::dvec3& p) {
-  return v.at(glm::ivec3(glm::floor(p + 0.5)));
-}
-
 class Voter {
  public:
-  Voter(gpu::Context& context, const SparseVolume& hull, const projtex::ImageSet& images,
-        std::span<const Camera> cameras, double noise_sigma, const VoteOptions& options)
-      : context_(context), hull_(hull), images_(images), options_(options), noise_(noise_sigma) {
-    const glm::ivec2 size(images.texture().width(), images.texture().height());
-    for (const Camera& camera : cameras) {
-      cameras_.push_back(projtex::to_grid(camera, hull.grid));
-      gpu_views_.push_back(projtex::to_gpu_view(cameras_.back(), size));
-    }
-  }
-
-  SparseVolume run() {
-    choose_partners();
-    make_rays();
-    for (std::size_t k = 0; k < std::size(kLengths); ++k) match(rays_[k], kLengths[k]);
-    return fuse();
-  }
-
- private:
-  void choose_partners() {
-    const glm::dvec3 centre = 0.5 * glm::dvec3(hull_.grid.voxels());
-    std::vector<glm::dvec3> d;
-    for (const auto& c : cameras_) d.push_back(glm::normalize(c.centre - centre));
-    for (std::size_t i = 0; i < d.size(); ++i) {
-      std::vector<int> chosen{int(i)};
-      while (chosen.size() < shaders::kMatchViews) {
-        int best = -1;
-        double least = 1e9;
-        for (std::size_t j = 0; j < d.size(); ++j) {
-          if (std::find(chosen.begin(), chosen.end(), int(j)) != chosen.end()) continue;
-          const double angle = glm::degrees(std::acos(std::clamp(glm::dot(d[i], d[j]), -1.0, 1.0)));
-          if (angle < 4 || angle > 60) continue;
-          double nearest = 180;
-          for (const int k : chosen)
-            nearest = std::min(
-                nearest,
-                glm::degrees(std::acos(std::clamp(glm::dot(d[std::size_t(k)], d[j]), -1.0, 1.0))));
-          const double cost = std::abs(angle - 15) + (nearest < 8 ? 30 : 0);
-          if (cost < least) least = cost, best = int(j);
-        }
-        if (best < 0) break;
-        chosen.push_back(best);
-      }
-      shaders::MatchChoice c{{-1, -1, -1, -1}, {-1, -1, 0, int(chosen.size())}};
-      for (std::size_t k = 0; k < chosen.size(); ++k)
-        (k < 4 ? c.first[int(k)] : c.second[int(k - 4)]) = chosen[k];
-      partners_.push_back(c);
-    }
-  }
-
-  void make_rays() {
-    maps_.resize(cameras_.size());
-    std::vector<std::vector<Ray>> found(cameras_.size());
-    tbb::parallel_for(std::size_t(0), cameras_.size(), [&](std::size_t v) {
-      const auto& c = cameras_[v];
-      RayMap& map = maps_[v];
-      const glm::dvec3 centre = 0.5 * glm::dvec3(hull_.grid.voxels());
-      const double depth = (c.projection * glm::dvec4(centre, 1)).z;
-      map.stride = std::max(1.0, options_.ray_spacing * c.focal / std::max(depth, 1.0));
-      map.width = int(std::ceil(c.width / map.stride));
-      map.height = int(std::ceil(c.height / map.stride));
-      map.depth.assign(std::size_t(map.width) * map.height, 0);
-      map.weight = map.depth;
-      const glm::dmat3 m(c.projection[0], c.projection[1], c.projection[2]);
-      const glm::dmat3 inverse = glm::inverse(m);
-      const glm::dvec3 high(hull_.grid.voxels() - 1);
-      for (int y = 0; y < map.height; ++y)
-        for (int x = 0; x < map.width; ++x) {
-          const glm::dvec3 d = glm::normalize(
-              inverse * glm::dvec3((x + 0.5) * map.stride - 0.5, (y + 0.5) * map.stride - 0.5, 1));
-          double t0 = 0, t1 = 1e9;
-          for (int a = 0; a < 3; ++a) {
-            if (std::abs(d[a]) < 1e-12) continue;
-            const double s = (0 - c.centre[a]) / d[a], e = (high[a] - c.centre[a]) / d[a];
-            t0 = std::max(t0, std::min(s, e));
-            t1 = std::min(t1, std::max(s, e));
-          }
-          double first = -1, last = -1;
-          for (double t = t0; t < t1;) {
-            const double value = value_at(hull_, c.centre + t * d);
-            if (value <= 0.3) {
-              if (first < 0) first = t;
-              last = t;
-            }
-            t += std::max(0.5, std::abs(value) * 0.8);
-          }
-          if (first < 0) continue;
-          first -= 1;
-          last += 1;
-          found[v].push_back({int(v), x, y, c.centre + first * d, d, last - first, (m * d).z});
-        }
-    });
-    for (const auto& list : found)
-      for (const Ray& ray : list) {
-        std::size_t k = 0;
-        while (k + 1 < std::size(kLengths) && ray.length > kLengths[k]) ++k;
-        rays_[k].push_back(ray);
-      }
-  }
-
-  void match(const std::vector<Ray>& rays, int length) {
-    const auto program =
-        gpu::Program::compute("refine_match_patches.comp.glsl", "#define PATCH_RADIUS 1\n");
-    const Buffer views = Buffer::of(gpu_views_);
-    const std::size_t batch = kMostThreads / std::size_t(length);
-    for (std::size_t first = 0; first < rays.size(); first += batch) {
-      const std::size_t count = std::min(batch, rays.size() - first);
-      std::vector<shaders::BakeVertex> surfels;
-      std::vector<shaders::MatchChoice> choices;
-      for (std::size_t i = first; i < first + count; ++i) {
-        const Ray& ray = rays[i];
-        surfels.push_back({glm::vec4(ray.from, std::max(1.0, ray.length / length)),
-                           glm::vec4(-ray.direction, 0)});
-        choices.push_back(partners_[std::size_t(ray.view)]);
-      }
-      shaders::MatchParameters p{};
-      p.counts = {int(count), int(cameras_.size()), length, 0};
-      p.search = {0, -1, float(options_.tap_spacing), 1};
-      p.consistency = {float(noise_ * noise_), float(options_.best_pairs), 0, 0};
-      const Buffer uniforms(sizeof p, &p), surfel_buffer = Buffer::of(surfels),
-                                           choice_buffer = Buffer::of(choices);
-      const Buffer scores(count * std::size_t(length) * 4);
-      uniforms.bind_uniform(0);
-      views.bind_storage(0);
-      surfel_buffer.bind_storage(1);
-      choice_buffer.bind_storage(2);
-      scores.bind_storage(3);
-      images_.texture().bind(0);
-      program.dispatch(context_, "refine_vote", gpu::group_count(count * std::size_t(length), 64));
-      const auto s = scores.download<float>(count * std::size_t(length));
-      for (std::size_t i = 0; i < count; ++i)
-        decide(rays[first + i], s.data() + i * std::size_t(length), length);
-    }
-  }
-
-  void decide(const Ray& ray, const float* s, int length) {
-    const double step = std::max(1.0, ray.length / length);
-    const int n = std::min(length, int(std::ceil(ray.length / step)) + 1);
-    int best = 0;
-    for (int i = 1; i < n; ++i)
-      if (s[i] > s[best]) best = i;
-    if (s[best] < options_.least_score) return;
-    float second = -1;
-    for (int i = 0; i < n; ++i)
-      if (std::abs(i - best) > 2) second = std::max(second, s[i]);
-    double shift = 0;
-    if (best > 0 && best + 1 < n) {
-      const double curvature = s[best - 1] - 2.0 * s[best] + s[best + 1];
-      if (curvature < 0)
-        shift = std::clamp(0.5 * (s[best - 1] - s[best + 1]) / curvature, -0.5, 0.5);
-    }
-    RayMap& map = maps_[std::size_t(ray.view)];
-    const std::size_t at = std::size_t(ray.y) * map.width + ray.x;
-    const auto& c = cameras_[std::size_t(ray.view)];
-    map.depth[at] = float(glm::dot(ray.from - c.centre, ray.direction) + (best + shift) * step) *
-                    float(ray.depth_per_length);
-    map.weight[at] = float(std::clamp((s[best] - options_.least_score) / 0.3, 0.0, 1.0) *
-                           std::clamp((s[best] - second) / options_.distinct_by, 0.0, 1.0));
-  }
-
-  double vote(const glm::dvec3& p) const {
-    double sum = 0, total = 0;
-    for (std::size_t v = 0; v < cameras_.size(); ++v) {
-      const RayMap& map = maps_[v];
-      const glm::dvec3 q = cameras_[v].projection * glm::dvec4(p, 1);
-      if (q.z <= 1) continue;
-      const int x = int(std::floor((q.x / q.z + 0.5) / map.stride)),
-                y = int(std::floor((q.y / q.z + 0.5) / map.stride));
-      if (x < 0 || y < 0 || x >= map.width || y >= map.height) continue;
-      const std::size_t at = std::size_t(y) * map.width + x;
-      if (!(map.weight[at] > 0)) continue;
-      const double ahead = (map.depth[at] - q.z) / options_.band;
-      if (ahead < -1) continue;
-      sum += map.weight[at] * std::min(ahead, 1.0);
-      total += map.weight[at];
-    }
-    if (total < options_.least_weight) return -SparseVolume::kBand;
-    return sum / total * options_.band;
+  Voter(const SparseVolume& hull, std::span<const Camera> cameras, std::vector<RayMap> maps,
+        const VoteOptions& options)
+      : hull_(hull), options_(options), maps_(std::move(maps)) {
+    for (const Camera& camera : cameras) cameras_.push_back(projtex::to_grid(camera, hull.grid));
   }
 
   SparseVolume fuse() {
@@ -246,40 +48,34 @@ class Voter {
       out.bricks.push_back(bricks[b]);
     }
     out.distance = std::move(values);
-    for (int pass = 0; pass < options_.smoothing; ++pass) smooth(out);
     return out;
   }
 
-  /// 3 x 3 x 3 binomial filter, never below the hull.
-  void smooth(SparseVolume& v) const {
-    const SparseVolume old = v;
-    tbb::parallel_for(std::size_t(0), v.bricks.size(), [&](std::size_t b) {
-      for (int x = 0; x < kBrickEdge; ++x)
-        for (int y = 0; y < kBrickEdge; ++y)
-          for (int z = 0; z < kBrickEdge; ++z) {
-            const glm::ivec3 voxel = v.bricks[b] * kBrickEdge + glm::ivec3(x, y, z);
-            double sum = 0;
-            for (int dx = -1; dx <= 1; ++dx)
-              for (int dy = -1; dy <= 1; ++dy)
-                for (int dz = -1; dz <= 1; ++dz)
-                  sum += old.at(voxel + glm::ivec3(dx, dy, dz)) /
-                         double(1 << (3 + std::abs(dx) + std::abs(dy) + std::abs(dz)));
-            v.distance[b * kBrickVoxels + std::size_t(voxel_offset({x, y, z}))] =
-                std::max(float(sum), hull_.at(voxel));
-          }
-    });
+ private:
+  double vote(const glm::dvec3& p) const {
+    double sum = 0, total = 0;
+    for (std::size_t v = 0; v < cameras_.size(); ++v) {
+      const RayMap& map = maps_[v];
+      const glm::dvec3 q = cameras_[v].projection * glm::dvec4(p, 1);
+      if (q.z <= 1) continue;
+      const int x = int(std::floor((q.x / q.z + 0.5) / map.stride)),
+                y = int(std::floor((q.y / q.z + 0.5) / map.stride));
+      if (x < 0 || y < 0 || x >= map.width || y >= map.height) continue;
+      const std::size_t at = std::size_t(y) * map.width + x;
+      if (!(map.weight[at] > 0)) continue;
+      const double ahead = (map.depth[at] - q.z) / options_.band;
+      if (ahead < -1) continue;
+      sum += map.weight[at] * std::min(ahead, 1.0);
+      total += map.weight[at];
+    }
+    if (total < options_.least_weight) return -SparseVolume::kBand;
+    return sum / total * options_.band;
   }
 
-  gpu::Context& context_;
   const SparseVolume& hull_;
-  const projtex::ImageSet& images_;
   const VoteOptions& options_;
-  double noise_;
-  std::vector<projtex::GridCamera> cameras_;
-  std::vector<shaders::GpuView> gpu_views_;
-  std::vector<shaders::MatchChoice> partners_;
-  std::vector<Ray> rays_[std::size(kLengths)];
   std::vector<RayMap> maps_;
+  std::vector<projtex::GridCamera> cameras_;
 };
 
 }  // namespace
@@ -287,7 +83,9 @@ class Voter {
 SparseVolume vote_free_space(gpu::Context& context, const SparseVolume& hull,
                              const projtex::ImageSet& images, std::span<const Camera> cameras,
                              double noise_sigma, const VoteOptions& options) {
-  return Voter(context, hull, images, cameras, noise_sigma, options).run();
+  return Voter(hull, cameras, match_rays(context, hull, images, cameras, noise_sigma, options),
+               options)
+      .fuse();
 }
 
 }  // namespace photohull::refine

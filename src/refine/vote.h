@@ -17,7 +17,6 @@ struct VoteOptions {
   double distinct_by = 0.15;  ///< lead over the second best that gives a ray full weight
   double band = 1.5;          ///< voxels; at most kBand: a ray's say ends that far behind its depth
   double least_weight = 0.6;  ///< sum of the rays' weights below which a voxel stays
-  int smoothing = 0;          ///< passes of a 3 x 3 x 3 binomial filter
 };
 
 /// The hull without what the views' depth maps see through: each view's rays are matched with views

@@ -73,7 +73,7 @@ TEST_F(Refine, WrongTuningIsRefused) {
   refuse("refine", "keep_score=0.5", "this method has no 'keep_score'; it has ");
   refuse("space-carving", "levels=2", "this method has no 'levels'; it has ");
   refuse("refine", "levels", "--tune levels: expected NAME=NUMBER");
-  refuse("refine", "levels=0", "levels must be 1 to 8");
+  refuse("refine", "levels=9", "levels must be 0 (automatic) to 8");
   refuse("refine", "match.best_pairs=0", "match.best_pairs");
   refuse("hull", "levels=2", "--tune levels=2: the hull has no parameters");
 }

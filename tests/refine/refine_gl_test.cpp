@@ -94,7 +94,7 @@ TEST_F(RefineSurface, CanBeCancelled) {
 TEST_F(RefineSurface, BadOptionsAreNamed) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::vector<std::function<void(RefineOptions&)>> mistakes = {
-      [](RefineOptions& o) { o.levels = 0; },
+      [](RefineOptions& o) { o.levels = -1; },
       [](RefineOptions& o) { o.levels = 9; },
       [](RefineOptions& o) { o.coarse_iterations = 0; },
       [](RefineOptions& o) { o.fine_offsets = 2; },
