@@ -1,5 +1,4 @@
-// Patches on tangent planes: [Montenegro03] and, for scoring by correlation with a reference view,
-// M. Goesele et al., "Multi-view stereo for community photo collections", ICCV 2007.
+// Patches on tangent planes [Montenegro03], scored by correlation with a reference view [Goesele07].
 #include "refine/match.h"
 
 #include <cmath>

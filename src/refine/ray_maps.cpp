@@ -1,5 +1,4 @@
-// Depth along rays by comparing patches across them: R. Collins, "A space-sweep approach to true
-// multi-image matching", CVPR 1996.
+// Depth along rays by comparing patches across them [Collins96].
 #include "refine/ray_maps.h"
 
 #include <tbb/parallel_for.h>

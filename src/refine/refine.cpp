@@ -1,5 +1,5 @@
-// Coarse to fine after Y. Furukawa, J. Ponce, "Carved visual hulls for image-based modeling", IJCV
-// 2009, with the projection onto tangent planes that [Montenegro03] proposes as the next step.
+// From the hull inwards [Furukawa09], coarse to fine, with the projection onto tangent planes that
+// [Montenegro03] proposes as the next step.
 #include "refine/refine.h"
 
 #include <algorithm>

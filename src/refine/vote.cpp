@@ -1,5 +1,4 @@
-// After P. Merrell et al., "Real-time visibility-based fusion of depth maps", ICCV 2007, and
-// B. Curless, M. Levoy, "A volumetric method for building complex models from range images", 1996.
+// Depth maps vote on free space [Merrell07] by signed distances along lines of sight [CurlessLevoy96].
 #include "refine/vote.h"
 
 #include <tbb/parallel_for.h>

@@ -1,5 +1,4 @@
-// Implicit surface of points with normals: H. Hoppe et al., "Surface reconstruction from
-// unorganized points", SIGGRAPH 1992, with the weights of moving least squares.
+// Signed distance from tangent planes [Hoppe92], blended with the weights of moving least squares.
 #include "volume/distance_from_mesh.h"
 
 #include <tbb/parallel_for.h>
