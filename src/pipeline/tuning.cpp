@@ -83,6 +83,7 @@ void tune(const std::vector<std::string>& assignments, refine::RefineOptions& o)
                        {"match.least_cosine", &o.match.least_cosine},
                        {"match.nearest_angle", &o.match.nearest_angle},
                        {"match.farthest_angle", &o.match.farthest_angle},
+                       {"match.sparse_angle", &o.match.sparse_angle},
                        {"match.duplicate_angle", &o.match.duplicate_angle},
                        {"peak.least_score", &o.peak.least_score},
                        {"peak.sure_score", &o.peak.sure_score},

@@ -1,4 +1,5 @@
-// Patches on tangent planes [Montenegro03], scored by correlation with a reference view [Goesele07].
+// Patches on tangent planes [Montenegro03], scored by correlation with a reference view
+// [Goesele07].
 #include "refine/match.h"
 
 #include <cmath>

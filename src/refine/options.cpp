@@ -46,6 +46,8 @@ void check(const MatchOptions& o) {
   require(is_cosine(o.seen_cosine), "match.seen_cosine must lie in [0, 1)");
   require(o.nearest_angle >= 0 && o.nearest_angle < o.farthest_angle && o.farthest_angle <= 180,
           "match.nearest_angle must lie below match.farthest_angle, both in [0, 180] degrees");
+  require(o.sparse_angle >= 0 && o.sparse_angle <= 180,
+          "match.sparse_angle must lie in [0, 180] degrees");
   require(o.duplicate_angle >= 0 && o.duplicate_angle <= 180,
           "match.duplicate_angle must lie in [0, 180] degrees");
 }

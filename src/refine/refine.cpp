@@ -16,7 +16,8 @@
 namespace photohull::refine {
 namespace {
 
-constexpr double kNearReach = 2.25;  // voxels of exact distance that a step needs
+constexpr double kNearReach = 2.25;       // voxels of exact distance that a step needs
+constexpr double kAnglePerSpacing = 1.6;  // reach of a view's partners, in spacings of the cameras
 constexpr double kFullReach = SparseVolume::kBand;
 
 /// The grid with voxels twice as large over the same space.
@@ -53,17 +54,38 @@ void trust_thickness(const SparseVolume& volume, const TriMesh& mesh, double thi
   }
 }
 
+/// Angles to the reference view that the cameras' spacing asks for: where neighbours stand far
+/// apart, views at the usual angles would be too few.
+MatchOptions fit_angles(std::span<const Camera> cameras, const glm::dvec3& middle,
+                        MatchOptions options) {
+  std::vector<double> nearest;
+  for (const Camera& camera : cameras) {
+    const glm::dvec3 ray = glm::normalize(camera.center() - middle);
+    double largest = -1;  // cosine
+    for (const Camera& other : cameras)
+      if (&other != &camera)
+        largest = std::max(largest, glm::dot(ray, glm::normalize(other.center() - middle)));
+    nearest.push_back(glm::degrees(std::acos(std::clamp(largest, -1.0, 1.0))));
+  }
+  std::nth_element(nearest.begin(), nearest.begin() + long(nearest.size() / 2), nearest.end());
+  const double wanted = kAnglePerSpacing * nearest[nearest.size() / 2];
+  options.farthest_angle = std::max(options.farthest_angle, std::min(wanted, options.sparse_angle));
+  return options;
+}
+
 class Refiner {
  public:
   Refiner(gpu::Context& context, const HullAt& hull_at,
           std::span<const carving::Silhouette> silhouettes, const projtex::ImageSet& images,
-          std::span<const Camera> cameras, const RefineOptions& options)
+          std::span<const Camera> cameras, const glm::dvec3& middle, const RefineOptions& options)
       : context_(context),
         hull_at_(hull_at),
         silhouettes_(silhouettes),
         images_(images),
         cameras_(cameras),
-        options_(options) {}
+        options_(options) {
+    options_.match = fit_angles(cameras, middle, options.match);
+  }
 
   SparseVolume run(const std::vector<GridSpec>& grids, Progress& progress, RefineReport& report) {
     SparseVolume volume;
@@ -150,7 +172,7 @@ class Refiner {
   std::span<const carving::Silhouette> silhouettes_;
   const projtex::ImageSet& images_;
   std::span<const Camera> cameras_;
-  const RefineOptions& options_;
+  RefineOptions options_;
 };
 
 }  // namespace
@@ -173,7 +195,8 @@ SparseVolume refine_surface(gpu::Context& context, const GridSpec& finest, const
     grids.insert(grids.begin(), coarser(grids.front()));
   RefineReport counts;
   SparseVolume volume =
-      Refiner(context, hull_at, silhouettes, images, cameras, options).run(grids, progress, counts);
+      Refiner(context, hull_at, silhouettes, images, cameras, finest.bounds().center(), options)
+          .run(grids, progress, counts);
   if (report) *report = std::move(counts);
   return volume;
 }

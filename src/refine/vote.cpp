@@ -1,4 +1,5 @@
-// Depth maps vote on free space [Merrell07] by signed distances along lines of sight [CurlessLevoy96].
+// Depth maps vote on free space [Merrell07] by signed distances along lines of sight
+// [CurlessLevoy96].
 #include "refine/vote.h"
 
 #include <tbb/parallel_for.h>

@@ -16,7 +16,7 @@ struct VoteOptions {
   double least_score = 0.5;   ///< of the best sample on a ray; below, the ray says nothing
   double distinct_by = 0.15;  ///< lead over the second best that gives a ray full weight
   double band = 1.5;          ///< voxels; at most kBand: a ray's say ends that far behind its depth
-  double least_weight = 0.6;  ///< sum of the rays' weights below which a voxel stays
+  double least_weight = 1.5;  ///< sum of the rays' weights below which a voxel stays
 };
 
 /// The hull without what the views' depth maps see through: each view's rays are matched with views
