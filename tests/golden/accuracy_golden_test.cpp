@@ -35,28 +35,28 @@ TEST(Accuracy, Sphere) {
   expect_scores(SyntheticScene("sphere", 12, 320, 240), 64,
                 {{Method::kHull, 95.68, 94.7, 99.72, 99.2},
                  {Method::kSpaceCarving, 96.57, 95.6, 99.88, 99.4},
-                 {Method::kRefine, 93.05, 92, 96.58, 95.6}});
+                 {Method::kRefine, 97.23, 96.2, 99.45, 98.8}});
 }
 
 TEST(Accuracy, Block) {
   expect_scores(SyntheticScene("block", 24, 320, 240), 96,
                 {{Method::kHull, 30.27, 29.3, 49.85, 48.8},
                  {Method::kSpaceCarving, 44.15, 43.1, 83.02, 82},
-                 {Method::kRefine, 87.56, 86.5, 93.66, 92.6}});
+                 {Method::kRefine, 88.18, 87.2, 93.24, 92.2}});
 }
 
 TEST(Accuracy, RodsBeforeTexture) {
   expect_scores(SyntheticScene("rods_before_texture", 24, 320, 240), 96,
                 {{Method::kHull, 20.55, 19.5, 26.6, 25.6},
                  {Method::kSpaceCarving, 18.09, 17.1, 24.62, 23.6},
-                 {Method::kRefine, 59.88, 58.4, 66.07, 64.6}});
+                 {Method::kRefine, 61.27, 59.8, 67.13, 65.6}});
 }
 
 TEST(Accuracy, Pawn) {
   expect_scores(SyntheticScene("pawn", 16, 320, 240), 96,
                 {{Method::kHull, 87.28, 86.3, 94.35, 93.3},
                  {Method::kSpaceCarving, 86.12, 85.1, 95.58, 94.6},
-                 {Method::kRefine, 98.54, 97.5, 99.94, 99.4}});
+                 {Method::kRefine, 98.37, 97.4, 99.99, 99.4}});
 }
 
 }  // namespace
