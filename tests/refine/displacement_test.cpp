@@ -129,14 +129,6 @@ std::vector<float> regularized(const VertexGraph& graph, const std::vector<Peak>
   return regularize(graph, peaks, positions, normals, options);
 }
 
-/// On a row of vertices in a plane.
-std::vector<float> regularize_row(std::size_t row, const std::vector<Peak>& peaks,
-                                  const RegularizeOptions& options) {
-  std::vector<glm::vec3> positions, normals(peaks.size(), glm::vec3(0, 0, 1));
-  for (std::size_t i = 0; i < peaks.size(); ++i) positions.emplace_back(float(i), 0, 0);
-  return regularize(row_of(row), peaks, positions, normals, options);
-}
-
 TEST(Regularize, ConstantFieldIsReproduced) {
   const std::vector<Peak> peaks(51, Peak{0.7f, 1, 1});
   for (const float d : regularized(row_of(50), peaks)) EXPECT_NEAR(d, 0.7, 0.002);
