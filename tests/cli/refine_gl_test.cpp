@@ -54,7 +54,8 @@ TEST_F(Refine, SameBytesInEveryRunWhateverTheThreads) {
 TEST_F(Refine, WithoutMasksBetterThanTheHull) {
   succeed(reconstruct({"--method", "hull", "--masks", "none"}));
   const double hull = error();
-  succeed(reconstruct({"--method", "refine", "--masks", "none", "--tune", kSparse}));
+  succeed(reconstruct(
+      {"--method", "refine", "--masks", "none", "--tune", kSparse, "--tune", "levels=3"}));
   EXPECT_EQ(report()["masks"]["source"], "none");
   EXPECT_LT(error(), 0.6 * hull);
 }
