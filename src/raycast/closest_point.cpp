@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "raycast/check_mesh.h"
 
 namespace photohull {
 namespace {
@@ -44,15 +45,6 @@ void try_face(const glm::dvec3& p, const std::array<glm::dvec3, 3>& t, TriangleP
   const glm::dvec3 away = p - found.point;
   found.squared_distance = glm::dot(away, away);
   if (found.squared_distance < best.squared_distance) best = found;
-}
-
-void check_mesh(const TriMesh& mesh) {
-  if (mesh.triangles.empty()) throw Error("the mesh has no triangles; give one with faces");
-  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-    const glm::vec3& p = mesh.positions[i];
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-      throw Error(concat("vertex ", i, " of the mesh has a coordinate that is not finite"));
-  }
 }
 
 }  // namespace

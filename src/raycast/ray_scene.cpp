@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "core/error.h"
+#include "raycast/check_mesh.h"
 
 namespace photohull {
 namespace {
@@ -41,15 +42,6 @@ RTCIntersectContext coherent_context() {
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   return context;
-}
-
-void check_mesh(const TriMesh& mesh) {
-  if (mesh.triangles.empty()) throw Error("the mesh has no triangles; give one with faces");
-  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-    const glm::vec3& p = mesh.positions[i];
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-      throw Error(concat("vertex ", i, " of the mesh has a coordinate that is not finite"));
-  }
 }
 
 }  // namespace

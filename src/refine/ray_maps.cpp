@@ -17,7 +17,10 @@ namespace {
 
 using gpu::Buffer;
 
-constexpr int kLengths[] = {8, 16, 32, 64};                 // samples along a ray
+constexpr int kLengths[] = {8, 16, 32, 64};  // samples along a ray
+// Degrees between a view and those it is matched with, and what deviations cost.
+constexpr double kNearestPartner = 4, kFarthestPartner = 60, kBestPartner = 15;
+constexpr double kDuplicate = 8, kDuplicateCost = 30;
 constexpr std::size_t kMostThreads = std::size_t(1) << 21;  // of a dispatch
 
 struct Ray {
@@ -28,6 +31,10 @@ struct Ray {
 
 double value_at(const SparseVolume& v, const glm::dvec3& p) {
   return v.at(glm::ivec3(glm::floor(p + 0.5)));
+}
+
+double degrees_between(const glm::dvec3& a, const glm::dvec3& b) {
+  return glm::degrees(std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0)));
 }
 
 class RayMatcher {
@@ -61,14 +68,13 @@ class RayMatcher {
         double least = 1e9;
         for (std::size_t j = 0; j < d.size(); ++j) {
           if (std::find(chosen.begin(), chosen.end(), int(j)) != chosen.end()) continue;
-          const double angle = glm::degrees(std::acos(std::clamp(glm::dot(d[i], d[j]), -1.0, 1.0)));
-          if (angle < 4 || angle > 60) continue;
+          const double angle = degrees_between(d[i], d[j]);
+          if (angle < kNearestPartner || angle > kFarthestPartner) continue;
           double nearest = 180;
           for (const int k : chosen)
-            nearest = std::min(
-                nearest,
-                glm::degrees(std::acos(std::clamp(glm::dot(d[std::size_t(k)], d[j]), -1.0, 1.0))));
-          const double cost = std::abs(angle - 15) + (nearest < 8 ? 30 : 0);
+            nearest = std::min(nearest, degrees_between(d[std::size_t(k)], d[j]));
+          const double cost =
+              std::abs(angle - kBestPartner) + (nearest < kDuplicate ? kDuplicateCost : 0);
           if (cost < least) least = cost, best = int(j);
         }
         if (best < 0) break;
