@@ -33,7 +33,30 @@ struct MatchChoice {
   ivec4 second;  // x, y: the last two; z: views that see it; w: number of views chosen
 };
 
+// Fitting planes to the images after matching.
+struct FitParameters {
+  ivec4 counts;  // x: surfels, z: Gauss-Newton steps
+  vec4 search;   // x, y: the patch's spacing as in MatchParameters::search.zw, z: largest offset in
+                 // all, w: in one step
+  vec4 robust;   // x: variance of image noise, y, z: correlations of weight 0 and 1,
+                 // w: standard deviation of the surfels' slopes
+};
+
+struct FitShape {
+  vec4 curvature;  // x, y, z: second derivatives of the height over the tangent plane along uu, uv, vv
+                   // of patch_axes; w: 1 where a view is held out
+};
+
+struct FitResult {
+  vec4 plane;     // xyz: unit normal, w: offset along the surfel's own normal
+  vec4 evidence;  // x: information on the offset, 1 / voxel^2, y: score,
+                  // z, w: the held-out view's score before and after, kNoScore without
+};
+
 #ifdef __cplusplus
+static_assert(sizeof(FitParameters) == 48);
+static_assert(sizeof(FitShape) == 16);
+static_assert(sizeof(FitResult) == 32);
 static_assert(sizeof(MatchParameters) == 80);
 static_assert(sizeof(MatchChoice) == 32);
 }  // namespace photohull::shaders

@@ -237,6 +237,9 @@ class Job {
     SparseVolume volume = refine::refine_surface(
         *context_, grid_, [&](const GridSpec& grid) { return hull_at(grid); }, silhouettes(),
         *images_, cameras_, o, progress_, &counts);
+    for (const refine::FitReport& fit : counts.fits)
+      report_.refine_fits.push_back(
+          {fit.seconds, fit.held_before, fit.held_after, fit.mean_move, fit.kept});
     for (const refine::LevelReport& level : counts.levels) {
       report_.refine_levels.push_back({level.voxel_size, level.seconds, level.surfels,
                                        level.samples, level.bricks, level.restored,

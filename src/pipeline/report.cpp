@@ -50,6 +50,13 @@ std::string Report::to_json() const {
                            {"bricks", level.bricks},
                            {"restored_voxels", level.restored},
                            {"mean_move_voxels", level.mean_move}});
+  j["refine_fits"] = ordered_json::array();
+  for (const RefineFitReport& fit : refine_fits)
+    j["refine_fits"].push_back({{"wall_seconds", fit.wall_seconds},
+                                {"held_out_score", fit.held_out},
+                                {"held_out_score_fitted", fit.held_out_fitted},
+                                {"mean_move_voxels", fit.mean_move},
+                                {"kept", fit.kept}});
   j["voxels_kept"] = voxels_kept;
   j["mesh"] = {{"vertices", vertices}, {"triangles", triangles}, {"unseen_share", unseen_share}};
   j["wall_seconds"] = wall_seconds;

@@ -30,6 +30,14 @@ struct RefineLevelReport {
   double mean_move = 0;       ///< voxels, in its last iteration
 };
 
+/// One pass of the photometric refinement.
+struct RefineFitReport {
+  double wall_seconds = 0;
+  double held_out = 0, held_out_fitted = 0;  ///< mean scores of the views that were held out
+  double mean_move = 0;                      ///< voxels
+  bool kept = false;
+};
+
 struct Report {
   std::string version;
   std::string scene, format, device;
@@ -47,6 +55,7 @@ struct Report {
   std::int64_t bricks_stored = 0;
   int sweeps = 0;
   std::vector<RefineLevelReport> refine_levels;
+  std::vector<RefineFitReport> refine_fits;
   std::int64_t vertices = 0, triangles = 0;
   double unseen_share = 0;  ///< of the mesh's vertices
   std::int64_t peak_memory_bytes = 0;

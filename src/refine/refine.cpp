@@ -112,6 +112,7 @@ class Refiner {
         if (last && i + 1 == iterations) restore(volume, hull, counts);
         progress.update((double(level) + double(i + 1) / iterations) / double(grids.size()));
       }
+      if (last) fit(volume, hull, counts, progress, report);
       counts.bricks = std::int64_t(volume.bricks.size());
       counts.seconds =
           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -165,6 +166,48 @@ class Refiner {
     double sum = 0;
     for (const float move : moves) sum += std::abs(move);
     counts.mean_move = sum / double(std::max<std::size_t>(moves.size(), 1));
+  }
+
+  /// Fits the surface to the photographs while the views that were held out gain by it.
+  void fit(SparseVolume& volume, const SparseVolume& hull, LevelReport& counts, Progress& progress,
+           RefineReport& report) {
+    SparseVolume before;
+    double best = -1;
+    for (int i = 0; i <= options_.photometric && options_.photometric > 0; ++i) {
+      progress.check_cancelled();
+      const auto start = std::chrono::steady_clock::now();
+      const TriMesh mesh = extract_mesh(volume);
+      const VertexGraph graph = make_graph(mesh);
+      std::vector<shaders::MatchChoice> choices;
+      const Matches matches =
+          match_patches(context_, volume.grid, mesh, images_, cameras_, options_.noise_sigma,
+                        OffsetRange{}, options_.match, &choices);
+      const auto results = fit_patches(context_, volume.grid, mesh, graph, images_, cameras_,
+                                       choices, options_.noise_sigma, options_.fit);
+      counts.samples += matches.samples + samples_of(choices, options_.fit);
+      const HeldOut held = held_out(results);
+      const bool better = held.before > best;
+      if (!report.fits.empty()) report.fits.back().kept = better;
+      if (!better) volume = std::move(before);
+      if (!better || i == options_.photometric) break;
+      best = held.before;
+      std::vector<Peak> peaks = peaks_of(results, options_.fit);
+      trust_thickness(volume, mesh, options_.peak.thick, peaks);
+      RegularizeOptions smooth = options_.regularize;
+      smooth.membrane = options_.fit.membrane, smooth.fairing = options_.fit.fairing;
+      const std::vector<float> moves =
+          regularize(graph, peaks, voxel_positions(volume.grid, mesh), mesh.normals, smooth);
+      before = volume;
+      move_surface(volume, mesh, moves);
+      volume =
+          bounded(distance_from_mesh(extract_mesh(volume), volume, hull.grid, kFullReach), hull);
+      FitReport pass;
+      for (const float move : moves) pass.mean_move += std::abs(move) / double(moves.size());
+      pass.held_before = held.before, pass.held_after = held.after;
+      pass.seconds =
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      report.fits.push_back(pass);
+    }
   }
 
   gpu::Context& context_;

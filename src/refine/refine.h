@@ -13,6 +13,7 @@
 #include "projtex/image_set.h"
 #include "refine/close_unseen.h"
 #include "refine/displacement.h"
+#include "refine/fit_patches.h"
 #include "refine/match.h"
 #include "refine/restore.h"
 #include "refine/vote.h"
@@ -38,6 +39,8 @@ struct RefineOptions {
   CloseOptions close;
   RestoreOptions restore;
   MatchOptions match;
+  int photometric = 0;  ///< iterations of fitting patches, at the end; fewer when they stop helping
+  FitOptions fit;
   PeakOptions peak;
   RegularizeOptions regularize;
 
@@ -55,8 +58,17 @@ struct LevelReport {
   double mean_move = 0;       ///< of the last iteration, voxels
 };
 
+/// One pass of the photometric refinement.
+struct FitReport {
+  double seconds = 0;                      ///< wall
+  double held_before = 0, held_after = 0;  ///< mean score of the held-out views
+  double mean_move = 0;                    ///< voxels
+  bool kept = false;                       ///< did the next pass find the surface better?
+};
+
 struct RefineReport {
   std::vector<LevelReport> levels;
+  std::vector<FitReport> fits;
 };
 
 /// The visual hull on a grid.

@@ -1,0 +1,179 @@
+// Offset and slopes of patches by Gauss-Newton on normalised colours [Goesele07; Furukawa10].
+#include "refine/fit_patches.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "gpu/buffer.h"
+#include "gpu/program.h"
+#include "projtex/gpu_views.h"
+#include "render/surface_points.h"
+#include "shared/bake.h"
+
+namespace photohull::refine {
+namespace {
+
+using gpu::Buffer;
+
+constexpr std::size_t kBatch = std::size_t(1) << 18;  // surfels on the device at once
+constexpr int kSmoothings = 2;                        // of the curvature over neighbours
+
+template <typename F>
+void for_vertices(std::size_t count, F&& f) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 2048), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) f(i);
+  });
+}
+
+/// Least squares for the symmetric map from steps in the tangent plane to changes of the normal.
+glm::dmat3 curvature_tensor(const VertexGraph& graph, std::span<const glm::vec3> positions,
+                            std::span<const glm::vec3> normals, std::size_t i) {
+  const glm::dvec3 n(normals[i]);
+  const auto [u, v] = tangent_axes(n);
+  double ss = 1e-3, st = 0, tt = 1e-3;
+  glm::dvec3 right(0);  // for uu, uv, vv
+  for (const std::uint32_t j : graph.of(i)) {
+    const glm::dvec3 step(positions[j] - positions[i]), other(normals[j]);
+    const double facing = glm::dot(other, n);
+    if (facing < 0.3) continue;
+    const double s = glm::dot(step, u), t = glm::dot(step, v);
+    const double a = -glm::dot(other, u) / facing, b = -glm::dot(other, v) / facing;
+    ss += s * s, st += s * t, tt += t * t;
+    right += glm::dvec3(s * a, t * a + s * b, t * b);
+  }
+  const glm::dmat3 normal_equations(ss, st, 0, st, ss + tt, st, 0, st, tt);
+  const glm::dvec3 k = glm::inverse(normal_equations) * right;
+  return k.x * glm::outerProduct(u, u) + k.z * glm::outerProduct(v, v) +
+         k.y * (glm::outerProduct(u, v) + glm::outerProduct(v, u));
+}
+
+shaders::FitParameters parameters_of(double noise_sigma, const FitOptions& o) {
+  shaders::FitParameters p{};
+  p.counts = {0, 0, o.steps, 0};
+  p.search = {float(o.least_spacing), float(o.pixel_spacing), float(o.largest_offset),
+              float(o.largest_step)};
+  p.robust = {float(noise_sigma * noise_sigma), float(o.least_score), float(o.sure_score),
+              float(o.slope)};
+  return p;
+}
+
+}  // namespace
+
+TangentAxes tangent_axes(const glm::dvec3& normal) {
+  const glm::dvec3 helper = std::abs(normal.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+  const glm::dvec3 u = glm::normalize(glm::cross(helper, normal));
+  return {u, glm::cross(normal, u)};
+}
+
+std::vector<glm::vec3> curvatures(const VertexGraph& graph, std::span<const glm::vec3> positions,
+                                  std::span<const glm::vec3> normals, double most) {
+  const std::size_t n = graph.vertices();
+  std::vector<glm::mat3> tensor(n), next(n);
+  for_vertices(n, [&](std::size_t i) {
+    tensor[i] = glm::mat3(curvature_tensor(graph, positions, normals, i));
+  });
+  for (int pass = 0; pass < kSmoothings; ++pass) {
+    for_vertices(n, [&](std::size_t i) {
+      next[i] = tensor[i];
+      float total = 1;
+      for (const std::uint32_t j : graph.of(i)) {
+        if (glm::dot(normals[i], normals[j]) < 0.3f) continue;
+        next[i] += tensor[j];
+        total += 1;
+      }
+      next[i] /= total;
+    });
+    tensor.swap(next);
+  }
+  std::vector<glm::vec3> out(n);
+  for_vertices(n, [&](std::size_t i) {
+    const auto [u, v] = tangent_axes(glm::dvec3(normals[i]));
+    const glm::dmat3 k(tensor[i]);
+    const glm::dvec3 c(glm::dot(u, k * u), glm::dot(u, k * v), glm::dot(v, k * v));
+    const double size = std::sqrt(c.x * c.x + 2 * c.y * c.y + c.z * c.z);
+    if (std::isfinite(size)) out[i] = glm::vec3(c * std::min(1.0, most / std::max(size, 1e-9)));
+  });
+  return out;
+}
+
+std::vector<shaders::FitResult> fit_patches(gpu::Context& context, const GridSpec& grid,
+                                            const TriMesh& mesh, const VertexGraph& graph,
+                                            const projtex::ImageSet& images,
+                                            std::span<const Camera> cameras,
+                                            std::span<const shaders::MatchChoice> choices,
+                                            double noise_sigma, const FitOptions& options) {
+  PHOTOHULL_CHECK_OP(choices.size(), ==, mesh.positions.size());
+  const std::vector<shaders::BakeVertex> surfels = render::to_voxels(grid, mesh);
+  std::vector<glm::vec3> positions;
+  for (const shaders::BakeVertex& surfel : surfels) positions.emplace_back(surfel.position);
+  const std::vector<glm::vec3> bends =
+      curvatures(graph, positions, mesh.normals, options.most_bend);
+  std::vector<shaders::FitShape> shapes(surfels.size());
+  for (std::size_t i = 0; i < shapes.size(); ++i)
+    shapes[i].curvature =
+        glm::vec4(bends[i], options.hold_out > 0 && i % std::size_t(options.hold_out) == 0);
+
+  const glm::ivec2 size(images.texture().width(), images.texture().height());
+  std::vector<shaders::GpuView> gpu_views;
+  for (const Camera& camera : cameras)
+    gpu_views.push_back(projtex::to_gpu_view(projtex::to_grid(camera, grid), size));
+  const Buffer views = Buffer::of(gpu_views);
+  const auto program = gpu::Program::compute("refine_fit_patches.comp.glsl");
+  shaders::FitParameters parameters = parameters_of(noise_sigma, options);
+  std::vector<shaders::FitResult> out(surfels.size());
+  for (std::size_t first = 0; first < surfels.size(); first += kBatch) {
+    const std::size_t count = std::min(kBatch, surfels.size() - first);
+    parameters.counts.x = int(count);
+    const Buffer uniforms(sizeof parameters, &parameters);
+    const Buffer part = Buffer::of(std::span(surfels).subspan(first, count));
+    const Buffer chosen = Buffer::of(choices.subspan(first, count));
+    const Buffer shape =
+        Buffer::of(std::span<const shaders::FitShape>(shapes).subspan(first, count));
+    const Buffer results(count * sizeof(shaders::FitResult));
+    uniforms.bind_uniform(0);
+    views.bind_storage(0);
+    part.bind_storage(1);
+    chosen.bind_storage(2);
+    results.bind_storage(3);
+    shape.bind_storage(4);
+    images.texture().bind(0);
+    program.dispatch(context, "refine_fit_patches", gpu::group_count(count, 64));
+    results.read(0, count * sizeof(shaders::FitResult), out.data() + first);
+  }
+  return out;
+}
+
+std::vector<Peak> peaks_of(std::span<const shaders::FitResult> results, const FitOptions& options) {
+  std::vector<Peak> peaks(results.size());
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const shaders::FitResult& r = results[i];
+    const double weight = r.evidence.x * options.sure * options.sure;
+    if (!(weight > 0)) continue;
+    peaks[i] = {r.plane.w, float(std::min(weight, options.most_weight)), r.evidence.y};
+  }
+  return peaks;
+}
+
+std::int64_t samples_of(std::span<const shaders::MatchChoice> choices, const FitOptions& options) {
+  std::int64_t views = 0;
+  for (const shaders::MatchChoice& choice : choices)
+    if (choice.second.w >= 2) views += choice.second.w;
+  return views * 2 * shaders::kMatchTaps * (options.steps + 1);
+}
+
+HeldOut held_out(std::span<const shaders::FitResult> results) {
+  HeldOut out;
+  for (const shaders::FitResult& r : results) {
+    if (r.evidence.z == shaders::kNoScore || r.evidence.w == shaders::kNoScore) continue;
+    out.before += r.evidence.z, out.after += r.evidence.w;
+    ++out.surfels;
+  }
+  if (out.surfels) out.before /= double(out.surfels), out.after /= double(out.surfels);
+  return out;
+}
+
+}  // namespace photohull::refine

@@ -1,0 +1,73 @@
+// Planes fitted to the photographs: where matching found the surface, to a fraction of a voxel.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/grid.h"
+#include "core/mesh.h"
+#include "gpu/context.h"
+#include "projtex/image_set.h"
+#include "refine/displacement.h"
+#include "refine/surface.h"
+#include "shared/refine.h"
+
+namespace photohull::refine {
+
+struct FitOptions {
+  int steps = 3;               ///< of Gauss and Newton
+  int hold_out = 4;            ///< one surfel in so many leaves a view out; 0: none does
+  double least_spacing = 0.4;  ///< of a patch's taps, voxels
+  double pixel_spacing = 1.0;  ///< of a patch's taps, pixels of the reference view
+  double least_score = 0.3;    ///< correlation with the other views below which one has no weight
+  double sure_score = 0.8;     ///< from which it has full weight
+  double slope = 0.2;          ///< standard deviation of the surfels' slopes
+  double largest_offset = 1;   ///< voxels
+  double largest_step = 0.5;   ///< voxels
+  double most_bend = 0.2;      ///< largest curvature that a patch follows, 1 / voxel
+  double sure = 0.05;          ///< standard deviation (voxels) of an offset that weighs 1
+  double most_weight = 4;      ///< of an offset in the regularisation
+  double membrane = 2;         ///< as RegularizeOptions has them, for the fitted offsets
+  double fairing = 0.1;
+};
+
+/// Standing of a surface in the views that were held out.
+struct HeldOut {
+  double before = 0, after = 0;  ///< mean correlations, in [-1, 1]
+  std::size_t surfels = 0;
+};
+
+/// Curvature of the mesh at its vertices (unit normals; positions in voxels), smoothed over
+/// neighbours: second derivatives of the height over the tangent plane, 1 / voxel, along uu, uv
+/// and vv of tangent_axes(normal); negative where the body is convex. At most `most` in size.
+std::vector<glm::vec3> curvatures(const VertexGraph& graph, std::span<const glm::vec3> positions,
+                                  std::span<const glm::vec3> normals, double most);
+
+/// Unit tangents u and v, as patch_axes (shaders/include/patch.glsl) has them but for their length.
+struct TangentAxes {
+  glm::dvec3 u, v;
+};
+TangentAxes tangent_axes(const glm::dvec3& normal);
+
+/// Fits a patch to every vertex of `mesh` (with normals), in the views that `choices` (from
+/// match_patches, one per vertex) names: minimises over offset and slopes the robust squared
+/// differences of the views' patches from their mean, gain and offset of each eliminated
+/// [Goesele07; Furukawa10].
+std::vector<shaders::FitResult> fit_patches(gpu::Context& context, const GridSpec& grid,
+                                            const TriMesh& mesh, const VertexGraph& graph,
+                                            const projtex::ImageSet& images,
+                                            std::span<const Camera> cameras,
+                                            std::span<const shaders::MatchChoice> choices,
+                                            double noise_sigma, const FitOptions& options);
+
+/// The fitted offsets as peaks, weighed by their information: 1 at a standard deviation of
+/// options.sure, never more than options.most_weight.
+std::vector<Peak> peaks_of(std::span<const shaders::FitResult> results, const FitOptions& options);
+
+/// Texture samples that fitting takes.
+std::int64_t samples_of(std::span<const shaders::MatchChoice> choices, const FitOptions& options);
+
+HeldOut held_out(std::span<const shaders::FitResult> results);
+
+}  // namespace photohull::refine
