@@ -63,7 +63,8 @@ std::vector<Triangle> triangulate(const std::vector<glm::dvec2>& polygon) {
   return triangles;
 }
 
-void MeshBuilder::add_part(const std::vector<glm::dvec3>& points, std::vector<Triangle> triangles) {
+void MeshBuilder::add_part(const std::vector<glm::dvec3>& points,
+                           const std::vector<Triangle>& triangles) {
   double volume = 0;
   for (const auto& [a, b, c] : triangles) volume += dot(points[a], cross(points[b], points[c]));
   const auto first = std::uint32_t(mesh_.positions.size());

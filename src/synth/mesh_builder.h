@@ -34,7 +34,7 @@ class MeshBuilder {
                 const glm::dvec3& side);
   /// A ready closed part.
   void add_part(const std::vector<glm::dvec3>& points,
-                std::vector<std::array<std::uint32_t, 3>> triangles);
+                const std::vector<std::array<std::uint32_t, 3>>& triangles);
 
   TriMesh take() { return std::move(mesh_); }
 
