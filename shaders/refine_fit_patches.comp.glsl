@@ -18,6 +18,9 @@ layout(std430, binding = 3) writeonly buffer Results { FitResult results[]; };
 layout(std430, binding = 4) readonly buffer Shapes { FitShape shapes[]; };
 
 const float kValues = 3.0 * float(kTaps);
+// Variance of a derivative (per texel) over that of a value (the mean of two fetches) where both are
+// noise of independent texels: bilinear weights, averaged over places and directions.
+const float kDerivativeNoise = 2.4;
 
 // A quadratic model of the cost about one patch: half the sum over views of w |x - mean|^2.
 struct Model {
@@ -26,6 +29,7 @@ struct Model {
   float score;     // mean correlation of the views with those before them, from the least score up
   float variance;  // of a value about the mean
   float held;      // correlation of the view held out
+  float noise;     // what variance alone makes of the hessian's entry for the offset
 };
 
 // Of the view in hand: colours of the taps, then those normalised; derivatives along the normal.
@@ -37,9 +41,9 @@ vec2 tap_place(int k) {
   return vec2(float(k % kEdge - PATCH_RADIUS), float(k / kEdge - PATCH_RADIUS));
 }
 
-// Fills value and slope; false where the patch is not before the camera. Each tap is fetched half a
+// Fills value and slope, and how many texels a tap moves per voxel; false where the patch is not before the camera. Each tap is fetched half a
 // texel to both sides along the direction in which it moves.
-bool fetch(int v, vec3 centre, vec3 normal, vec3 u, vec3 w, vec2 slopes, vec3 bend) {
+bool fetch(int v, vec3 centre, vec3 normal, vec3 u, vec3 w, vec2 slopes, vec3 bend, out float per_voxel) {
   GpuView view = views[v];
   vec3 p = project(view, centre);
   bool before = p.z > 1.0;
@@ -52,7 +56,7 @@ bool fetch(int v, vec3 centre, vec3 normal, vec3 u, vec3 w, vec2 slopes, vec3 be
   float speed = length(dn);
   float reach = 0.5 * exp2(lod);
   vec2 aside = dn * (reach / max(speed, 1e-6)) * view.size.zw;
-  float per_voxel = speed / (2.0 * reach);
+  per_voxel = speed / (2.0 * reach);  // texels
   vec2 origin = texture_coordinate(view, pixel);
   du = (du + slopes.x * dn) * view.size.zw;
   dv = (dv + slopes.y * dn) * view.size.zw;
@@ -82,10 +86,11 @@ Model evaluate(int chosen[kMatchViews], int count, int held, vec3 centre, vec3 n
   m.hessian = mat3(0.0);
   m.gradient = vec3(0.0);
   m.held = kNoScore;
-  float weights = 0.0, squares = 0.0, floors = 0.0, scores = 0.0;
+  float weights = 0.0, squares = 0.0, floors = 0.0, scores = 0.0, speeds = 0.0;
   int scored = 0;
   for (int v = 0; v < count; ++v) {
-    bool before = fetch(chosen[v], centre, normal, u, w, slopes, bend);
+    float per_voxel;
+    bool before = fetch(chosen[v], centre, normal, u, w, slopes, bend, per_voxel);
     vec3 mean = vec3(0.0), mean0 = vec3(0.0), mean1 = vec3(0.0), mean2 = vec3(0.0);
     float square = 0.0;
     for (int k = 0; k < kTaps; ++k) {
@@ -123,6 +128,7 @@ Model evaluate(int chosen[kMatchViews], int count, int held, vec3 centre, vec3 n
     scored += counts && !first ? 1 : 0;
     weights += weight;
     squares += weight * own;
+    speeds += weight * per_voxel * per_voxel;
     floors += weight * (1.0 - own);
     mat3 h = mat3(0.0);
     for (int k = 0; k < kTaps; ++k) {
@@ -158,6 +164,7 @@ Model evaluate(int chosen[kMatchViews], int count, int held, vec3 centre, vec3 n
   m.hessian[2].y = m.hessian[1].z;
   float cost = max(squares - per_weight * joint, 0.0);
   m.variance = max(cost / max(weights - 1.0, 0.5), floors * per_weight) / kValues;
+  m.noise = kDerivativeNoise * kValues * m.variance * speeds * max(1.0 - per_weight, 0.0);
   m.score = scored > 0 ? scores / float(scored) : kNoScore;
   return m;
 }
@@ -206,11 +213,15 @@ void main() {
     theta.yz = clamp(theta.yz, -3.0 * steep, 3.0 * steep);
   }
 
-  // What the images say of the offset when the slopes are left to them, and what the surface knows.
+  // What the images say of the offset when the slopes are left to them and to what the surface knows.
+  // Noise has derivatives too, which say nothing; a slope's taps lie twice as far out in the mean
+  // square as an offset's.
   float prior = best.variance / (steep * steep) + 1e-6;
   mat3 h = best.hessian;
-  float a = h[1].y + prior, b = h[1].z, c = h[2].z + prior, d = h[0].y, e = h[0].z;
-  float marginal = h[0].x - (d * d * c - 2.0 * d * e * b + e * e * a) / max(a * c - b * b, 1e-12);
+  float a = max(h[1].y - 2.0 * best.noise, 0.0) + prior, b = h[1].z;
+  float c = max(h[2].z - 2.0 * best.noise, 0.0) + prior, d = h[0].y, e = h[0].z;
+  float marginal =
+      h[0].x - best.noise - (d * d * c - 2.0 * d * e * b + e * e * a) / max(a * c - b * b, 1e-12);
   float information = best.score > kNoScore ? max(marginal, 0.0) / max(best.variance, 1e-12) : 0.0;
   results[i].plane = vec4(normalize(normal - (best_theta.y * u + best_theta.z * w) / (spacing * spacing)),
                           best_theta.x);

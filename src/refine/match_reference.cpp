@@ -48,32 +48,6 @@ int best_of(const std::vector<Candidate>& candidates, int tie,
   return best;
 }
 
-/// How a step of one in the tangent plane moves the pixel position: quotient rule on s / q, t / q.
-dvec2 derivative(const projtex::GridCamera& camera, const dvec3& at, const dvec3& step) {
-  const dvec3 p = camera.projection * glm::dvec4(at, 1);
-  const dvec3 by = camera.projection * glm::dvec4(step, 0);
-  return (dvec2(by) * p.z - dvec2(p) * by.z) / (p.z * p.z);
-}
-
-/// Square-root encoded colour; `pixel` counts in pixels of level 0, borders are repeated.
-dvec3 sample(const MatchView& view, const dvec2& pixel, int level) {
-  const auto& base = view.mips.front();
-  const auto& image = view.mips[std::size_t(std::clamp(level, 0, int(view.mips.size()) - 1))];
-  const dvec2 size(image.width, image.height);
-  const dvec2 at =
-      glm::clamp((pixel + 0.5) * size / dvec2(base.width, base.height) - 0.5, dvec2(-1), size);
-  const dvec2 low = glm::floor(at), share = at - low;
-  dvec3 sum(0);
-  for (int corner = 0; corner < 4; ++corner) {
-    const int dx = corner & 1, dy = corner >> 1;
-    const int x = std::clamp(int(low.x) + dx, 0, image.width - 1);
-    const int y = std::clamp(int(low.y) + dy, 0, image.height - 1);
-    const double weight = (dx ? share.x : 1 - share.x) * (dy ? share.y : 1 - share.y);
-    sum += weight * dvec3(image.pixels[std::size_t(y) * image.width + x]);
-  }
-  return glm::sqrt(glm::max(sum, 0.0));
-}
-
 /// Colours of the taps about their mean.
 std::vector<dvec3> taps(const MatchView& view, const Patch& patch, const dvec3& u, const dvec3& v) {
   const dvec3 p = view.camera.projection * glm::dvec4(patch.centre, 1);
@@ -101,6 +75,31 @@ double product(const std::vector<dvec3>& a, const std::vector<dvec3>& b) {
 }
 
 }  // namespace
+
+// Quotient rule on s / q, t / q.
+dvec2 derivative(const projtex::GridCamera& camera, const dvec3& at, const dvec3& step) {
+  const dvec3 p = camera.projection * glm::dvec4(at, 1);
+  const dvec3 by = camera.projection * glm::dvec4(step, 0);
+  return (dvec2(by) * p.z - dvec2(p) * by.z) / (p.z * p.z);
+}
+
+dvec3 sample(const MatchView& view, const dvec2& pixel, int level) {
+  const auto& base = view.mips.front();
+  const auto& image = view.mips[std::size_t(std::clamp(level, 0, int(view.mips.size()) - 1))];
+  const dvec2 size(image.width, image.height);
+  const dvec2 at =
+      glm::clamp((pixel + 0.5) * size / dvec2(base.width, base.height) - 0.5, dvec2(-1), size);
+  const dvec2 low = glm::floor(at), share = at - low;
+  dvec3 sum(0);
+  for (int corner = 0; corner < 4; ++corner) {
+    const int dx = corner & 1, dy = corner >> 1;
+    const int x = std::clamp(int(low.x) + dx, 0, image.width - 1);
+    const int y = std::clamp(int(low.y) + dy, 0, image.height - 1);
+    const double weight = (dx ? share.x : 1 - share.x) * (dy ? share.y : 1 - share.y);
+    sum += weight * dvec3(image.pixels[std::size_t(y) * image.width + x]);
+  }
+  return glm::sqrt(glm::max(sum, 0.0));
+}
 
 Choice choose_views(std::span<const MatchView> views, const dvec3& position, const dvec3& normal,
                     const MatchOptions& options, std::span<const int> ties) {

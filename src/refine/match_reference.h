@@ -20,6 +20,13 @@ struct MatchView {
   std::vector<projtex::reference::LinearImage> mips;
 };
 
+/// How a step in space moves the pixel position of a point: the projection's derivative.
+glm::dvec2 derivative(const projtex::GridCamera& camera, const glm::dvec3& at,
+                      const glm::dvec3& step);
+
+/// Square-root encoded colour; `pixel` counts in pixels of level 0, borders are repeated.
+glm::dvec3 sample(const MatchView& view, const glm::dvec2& pixel, int level);
+
 struct Choice {
   std::vector<int> views;  ///< the reference view first; at most kMatchViews
   int seen = 0;            ///< views that see the surfel
