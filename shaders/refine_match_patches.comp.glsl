@@ -3,7 +3,8 @@
 // Photo-consistency of tangent patches at offsets along the normal: all chosen views are projected
 // onto the patch by one affine footprint each, at the mip level of its area, and compared with the
 // reference view by zero-mean normalised cross-correlation over all channels, with the image noise
-// as a floor of both variances; the score is the mean of the best share of the pairs. One thread
+// as a floor of both variances; the score is the mean of the best share of the pairs. With PATCH_BENT
+// patches follow the surface's curvature. One thread
 // an offset of a surfel, so that the threads of a vector share their views.
 // Reference: refine::reference::match_patch.
 #include "include/projection.glsl"
@@ -16,6 +17,9 @@ layout(std140, binding = 0) uniform Parameters { MatchParameters parameters; };
 layout(std430, binding = 1) readonly buffer Surfels { BakeVertex surfels[]; };
 layout(std430, binding = 2) readonly buffer Choices { MatchChoice choices[]; };
 layout(std430, binding = 3) writeonly buffer Scores { float scores[]; };
+#ifdef PATCH_BENT
+layout(std430, binding = 4) readonly buffer Bends { vec4 bends[]; };  // curvature along uu, uv, vv
+#endif
 
 void main() {
   uint offsets = uint(parameters.counts.z);
@@ -35,12 +39,18 @@ void main() {
   vec3 u, w;
   patch_axes(centre, normal, views[chosen[0]], parameters.search.z, parameters.search.w, u, w);
 
+#ifdef PATCH_BENT
+  vec3 bend = vec3(0.5, 1.0, 0.5) * bends[i].xyz * dot(u, u);
+#else
+  vec3 bend = vec3(0.0);
+#endif
+
   vec3 patch_of_reference[kTaps];
   vec3 sum = vec3(0.0);
   float squares = 0.0;
-  Footprint f = footprint(chosen[0], centre, u, w);
+  Footprint f = footprint(chosen[0], centre, u, w, normal);
   for (int k = 0; k < kTaps; ++k) {
-    vec3 x = tap(f, k);
+    vec3 x = tap(f, k, bend);
     patch_of_reference[k] = x;
     sum += x;
     squares += dot(x, x);
@@ -52,11 +62,11 @@ void main() {
   float pairs[kMatchViews - 1];
   for (int k = 0; k < kMatchViews - 1; ++k) pairs[k] = -1.0;
   for (int v = 1; v < count; ++v) {
-    f = footprint(chosen[v], centre, u, w);
+    f = footprint(chosen[v], centre, u, w, normal);
     vec3 other_sum = vec3(0.0);
     float other_squares = 0.0, product = 0.0;
     for (int k = 0; k < kTaps; ++k) {
-      vec3 x = tap(f, k);
+      vec3 x = tap(f, k, bend);
       other_sum += x;
       other_squares += dot(x, x);
       product += dot(x, patch_of_reference[k]);

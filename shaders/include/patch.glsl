@@ -1,4 +1,5 @@
-// A view's image on a patch of a tangent plane: one affine footprint, taps at its steps.
+// A view's image on a patch of a tangent plane, or of the paraboloid that touches it there
+// (PATCH_BENT): one affine footprint, taps at its steps.
 #ifndef PATCH_RADIUS
 #define PATCH_RADIUS 2
 #endif
@@ -9,28 +10,35 @@ layout(binding = 0) uniform sampler2DArray images;
 
 struct Footprint {
   vec2 origin, du, dv;  // texture coordinates of the first tap and steps between taps
+  vec2 dn;              // step along the normal, texture coordinates a voxel
   float layer, lod;
 };
 
 // The mip level is that of the tap's area.
-Footprint footprint(int v, vec3 centre, vec3 u, vec3 w) {
+Footprint footprint(int v, vec3 centre, vec3 u, vec3 w, vec3 normal) {
   GpuView view = views[v];
   vec3 p = project(view, centre);
   vec2 pixel = p.xy / p.z;
-  vec2 du = (vec2(dot(view.row_s.xyz, u), dot(view.row_t.xyz, u)) - pixel * dot(view.row_q.xyz, u)) / p.z;
-  vec2 dv = (vec2(dot(view.row_s.xyz, w), dot(view.row_t.xyz, w)) - pixel * dot(view.row_q.xyz, w)) / p.z;
+  vec3 s = (view.row_s.xyz - pixel.x * view.row_q.xyz) / p.z, t = (view.row_t.xyz - pixel.y * view.row_q.xyz) / p.z;
+  vec2 du = vec2(dot(s, u), dot(t, u)), dv = vec2(dot(s, w), dot(t, w));
   Footprint f;
   f.lod = floor(max(0.5 * log2(abs(du.x * dv.y - du.y * dv.x)), 0.0) + 0.5);
   f.du = du * view.size.zw;
   f.dv = dv * view.size.zw;
+  f.dn = vec2(dot(s, normal), dot(t, normal)) * view.size.zw;
   f.origin = texture_coordinate(view, pixel) - float(PATCH_RADIUS) * (f.du + f.dv);
   f.layer = float(v);
   return f;
 }
 
 // Square roots of linear light, which makes the noise even, centred so that products keep precision.
-vec3 tap(Footprint f, int k) {
+// `bend`: the height over the plane is bend . (a^2, a b, b^2) voxels, a and b in steps between taps.
+vec3 tap(Footprint f, int k, vec3 bend) {
   vec2 at = f.origin + float(k % kEdge) * f.du + float(k / kEdge) * f.dv;
+#ifdef PATCH_BENT
+  float a = float(k % kEdge - PATCH_RADIUS), b = float(k / kEdge - PATCH_RADIUS);
+  at += dot(bend, vec3(a * a, a * b, b * b)) * f.dn;
+#endif
   return sqrt(max(textureLod(images, vec3(at, f.layer), f.lod).rgb, 0.0)) - 0.5;
 }
 

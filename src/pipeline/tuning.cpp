@@ -77,6 +77,7 @@ void tune(const std::vector<std::string>& assignments, refine::RefineOptions& o)
                        {"restore.least_inside", &o.restore.least_inside},
                        {"match.least_spacing", &o.match.least_spacing},
                        {"match.pixel_spacing", &o.match.pixel_spacing},
+                       {"match.most_bend", &o.match.most_bend},
                        {"match.best_pairs", &o.match.best_pairs},
                        {"match.shift", &o.match.shift},
                        {"match.depth_bias", &o.match.depth_bias},

@@ -9,6 +9,9 @@
 namespace photohull::refine {
 namespace {
 
+/// Of the fairing in Jacobi's method, whose operator (the Laplacian's square) reaches up to 4.
+constexpr double kDamping = 2;
+
 template <typename F>
 void for_vertices(std::size_t count, F&& f) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 2048), [&](const auto& range) {
@@ -80,30 +83,37 @@ std::vector<Peak> find_peaks(const Matches& matches, const PeakOptions& options)
 
 std::vector<float> regularize(const VertexGraph& graph, const std::vector<Peak>& peaks,
                               std::span<const glm::vec3> positions,
-                              std::span<const glm::vec3> normals,
+                              std::span<const glm::vec3> normals, std::span<const float> fair,
                               const RegularizeOptions& options) {
   const std::size_t n = peaks.size();
-  std::vector<float> d(n, 0.0f), next(n), weight(n);
+  std::vector<float> d(n, 0.0f), next(n), weight(n), height(n);
   for (int outer = 0; outer < options.reweightings; ++outer) {
     for_vertices(n, [&](std::size_t i) {
       const double off = outer == 0 ? 0 : (peaks[i].offset - d[i]) / options.robust;
       weight[i] = float(peaks[i].weight / ((1 + off * off) * (1 + off * off)));
     });
     for (int iteration = 0; iteration < options.iterations; ++iteration) {
+      // How far the moved vertices' neighbours stand above them.
+      for_vertices(n, [&](std::size_t i) {
+        glm::vec3 middle(0);
+        for (const std::uint32_t j : graph.of(i))
+          middle += positions[j] + d[j] * normals[j] - positions[i];
+        height[i] =
+            glm::dot(middle, normals[i]) / float(std::max<std::size_t>(graph.of(i).size(), 1));
+      });
       for_vertices(n, [&](std::size_t i) {
         const auto around = graph.of(i);
-        double sum = 0;
-        glm::dvec3 middle(0);
+        double sum = 0, curved = 0;
         for (const std::uint32_t j : around) {
           sum += d[j];
-          middle += glm::dvec3(positions[j] + d[j] * normals[j] - positions[i]);
+          curved += height[j] - d[j];
         }
         const double count = double(std::max<std::size_t>(around.size(), 1));
         const double m = around.empty() ? 0 : options.membrane;
-        const double f = around.empty() ? 0 : options.fairing;
-        const double fair = glm::dot(middle / count, glm::dvec3(normals[i]));
-        next[i] = float((weight[i] * peaks[i].offset + m * sum / count + f * fair) /
-                        (weight[i] + m + f + 1e-3));
+        const double f = around.empty() ? 0 : fair[i] * options.fairing;
+        const double even = kDamping * d[i] + (height[i] - d[i]) - curved / count;
+        next[i] = float((weight[i] * peaks[i].offset + m * sum / count + f * even) /
+                        (weight[i] + m + kDamping * f + 1e-3));
       });
       d.swap(next);
     }

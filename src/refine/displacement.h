@@ -24,7 +24,7 @@ struct Peak {
 struct PeakOptions {
   double least_score = 0.3;  ///< below: no evidence
   double sure_score = 0.8;   ///< above: full weight
-  double thick = 5;          ///< voxels of body behind a vertex that give full weight
+  double thick = 4;          ///< voxels of body behind a vertex that give full weight
   double distinct_by = 0.1;  ///< lead over the second peak that gives full weight
 };
 
@@ -33,16 +33,18 @@ std::vector<Peak> find_peaks(const Matches& matches, const PeakOptions& options)
 
 struct RegularizeOptions {
   double membrane = 2.0;  ///< weight of a difference between neighbours' displacements
-  double fairing = 0.1;   ///< weight of the moved surface's distance from its neighbours' mean
+  double fairing = 0.4;   ///< weight of the moved surface's bending otherwise than its neighbours
   double robust = 1.0;    ///< voxels from the smooth surface at which a peak counts a quarter
   int reweightings = 3;
   int iterations = 15;  ///< of Jacobi's method for each reweighting
 };
 
 /// Least squares on the surface graph: displacements near the peaks, by their weights, and smooth.
-/// `positions` (voxels) and unit `normals` are the vertices'.
+/// `positions` (voxels) and unit `normals` are the vertices', and `fair` in [0, 1] is the share of
+/// the fairing that acts on each.
 std::vector<float> regularize(const VertexGraph& graph, const std::vector<Peak>& peaks,
                               std::span<const glm::vec3> positions,
-                              std::span<const glm::vec3> normals, const RegularizeOptions& options);
+                              std::span<const glm::vec3> normals, std::span<const float> fair,
+                              const RegularizeOptions& options);
 
 }  // namespace photohull::refine

@@ -56,9 +56,10 @@ class Matcher {
     for (shaders::BakeVertex& surfel : surfels_) surfel.position.w = 1;  // scale of the offsets
   }
 
-  void match(const shaders::MatchParameters& parameters, Matches& out,
-             std::vector<shaders::MatchChoice>* chosen) {
-    const auto program = gpu::Program::compute("refine_match_patches.comp.glsl");
+  void match(const shaders::MatchParameters& parameters, std::span<const glm::vec3> bends,
+             Matches& out, std::vector<shaders::MatchChoice>* chosen) {
+    const auto program = gpu::Program::compute("refine_match_patches.comp.glsl",
+                                               bends.empty() ? "" : "#define PATCH_BENT\n");
     const std::size_t offsets = std::size_t(out.range.count);
     out.scores.resize(surfels_.size() * offsets);
     for_batches(
@@ -66,6 +67,13 @@ class Matcher {
         [&](std::size_t first, std::size_t count, const Buffer& choices) {
           const Buffer scores(count * offsets * sizeof(float));
           scores.bind_storage(3);
+          Buffer curvature;
+          if (!bends.empty()) {
+            std::vector<glm::vec4> part;
+            for (const glm::vec3& b : bends.subspan(first, count)) part.emplace_back(b, 0);
+            curvature = Buffer::of(part);
+            curvature.bind_storage(4);
+          }
           program.dispatch(context_, "refine_match_patches", gpu::group_count(count * offsets, 64));
           scores.read(0, count * offsets * sizeof(float), out.scores.data() + first * offsets);
           for (const auto& choice : choices.download<shaders::MatchChoice>(count)) {
@@ -131,13 +139,13 @@ class Matcher {
 }  // namespace
 
 Matches match_patches(gpu::Context& context, const GridSpec& grid, const TriMesh& mesh,
-                      const projtex::ImageSet& images, std::span<const Camera> cameras,
-                      double noise_sigma, const OffsetRange& range, const MatchOptions& options,
-                      std::vector<shaders::MatchChoice>* choices) {
+                      std::span<const glm::vec3> bends, const projtex::ImageSet& images,
+                      std::span<const Camera> cameras, double noise_sigma, const OffsetRange& range,
+                      const MatchOptions& options, std::vector<shaders::MatchChoice>* choices) {
   Matches out;
   out.range = range;
   Matcher(context, grid, mesh, images, cameras)
-      .match(parameters_of(cameras.size(), noise_sigma, range, options), out, choices);
+      .match(parameters_of(cameras.size(), noise_sigma, range, options), bends, out, choices);
   return out;
 }
 

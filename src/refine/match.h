@@ -16,6 +16,7 @@ namespace photohull::refine {
 struct MatchOptions {
   double least_spacing = 0.4;  ///< of a patch's taps, voxels
   double pixel_spacing = 1.0;  ///< of a patch's taps, pixels of the reference view
+  double most_bend = 1.0;      ///< largest curvature that a patch follows, 1 / voxel
   double best_pairs = 0.6;     ///< share of the pairs of views that the score is the mean of
   double shift = 1.5;          ///< of the receiver along its normal, voxels
   double depth_bias = 2.5;     ///< voxels
@@ -46,10 +47,12 @@ struct Matches {
 };
 
 /// Score in [-1, 1] of every vertex of `mesh` (with normals) moved by each offset. Visibility by
-/// depth maps of the mesh itself. `choices` receives the views that each vertex was matched in.
+/// depth maps of the mesh itself. Patches bend as `bends` (one per vertex, see curvatures()) says;
+/// empty: they are planes. `choices` receives the views that each vertex was matched in.
 Matches match_patches(gpu::Context& context, const GridSpec& grid, const TriMesh& mesh,
-                      const projtex::ImageSet& images, std::span<const Camera> cameras,
-                      double noise_sigma, const OffsetRange& range, const MatchOptions& options,
+                      std::span<const glm::vec3> bends, const projtex::ImageSet& images,
+                      std::span<const Camera> cameras, double noise_sigma, const OffsetRange& range,
+                      const MatchOptions& options,
                       std::vector<shaders::MatchChoice>* choices = nullptr);
 
 }  // namespace photohull::refine

@@ -54,13 +54,17 @@ std::vector<dvec3> taps(const MatchView& view, const Patch& patch, const dvec3& 
   const dvec2 pixel = dvec2(p) / p.z;
   const dvec2 du = derivative(view.camera, patch.centre, u);
   const dvec2 dv = derivative(view.camera, patch.centre, v);
+  const dvec2 dn = derivative(view.camera, patch.centre, patch.normal);
+  const double square = glm::dot(u, u);  // voxels
   const double area = std::abs(du.x * dv.y - du.y * dv.x);
   const int level = area > 1 ? int(std::floor(std::log2(std::sqrt(area)) + 0.5)) : 0;
   std::vector<dvec3> out;
   dvec3 sum(0);
   for (int b = -patch.radius; b <= patch.radius; ++b)
     for (int a = -patch.radius; a <= patch.radius; ++a) {
-      out.push_back(sample(view, pixel + double(a) * du + double(b) * dv, level));
+      const double height =
+          square * (0.5 * a * a * patch.bend.x + a * b * patch.bend.y + 0.5 * b * b * patch.bend.z);
+      out.push_back(sample(view, pixel + double(a) * du + double(b) * dv + height * dn, level));
       sum += out.back();
     }
   const dvec3 mean = sum / double(out.size());

@@ -47,6 +47,7 @@ struct Patch {
   glm::dvec3 centre{0.0};  ///< voxel coordinates
   glm::dvec3 normal{0.0};  ///< unit
   int radius = shaders::kMatchRadius;
+  glm::dvec3 bend{0.0};  ///< curvature along uu, uv, vv of the patch's axes, 1 / voxel
 };
 
 /// Score in [-1, 1] of a patch in the chosen views (the reference view first), kNoScore below two

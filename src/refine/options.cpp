@@ -39,6 +39,7 @@ void check(const MatchOptions& o) {
   require(o.least_spacing > 0 && is_length(o.least_spacing),
           "match.least_spacing must be positive");
   require(is_length(o.pixel_spacing), "match.pixel_spacing must not be negative");
+  require(is_length(o.most_bend), "match.most_bend must lie in [0, 1000] 1 / voxel");
   require(is_share(o.best_pairs), "match.best_pairs must lie in (0, 1]");
   require(is_length(o.shift), "match.shift must lie in [0, 1000] voxels");
   require(is_length(o.depth_bias), "match.depth_bias must lie in [0, 1000] voxels");

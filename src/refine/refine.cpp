@@ -37,21 +37,21 @@ std::vector<glm::vec3> voxel_positions(const GridSpec& grid, const TriMesh& mesh
   return out;
 }
 
-/// Patches reach beyond parts thinner than they are, and mix in what lies behind: peaks there lose
-/// weight.
-void trust_thickness(const SparseVolume& volume, const TriMesh& mesh, double thick,
-                     std::vector<Peak>& peaks) {
-  const glm::dvec3 offset = (mesh.origin - volume.grid.origin) / volume.grid.voxel_size;
-  for (std::size_t i = 0; i < peaks.size(); ++i) {
-    if (!(peaks[i].weight > 0)) continue;
-    const glm::vec3 p(glm::dvec3(mesh.positions[i]) / volume.grid.voxel_size + offset);
+/// How much matching and smoothing may move each vertex, in [0, 1]: patches reach beyond parts
+/// thinner than they are, and mix in what lies behind; smoothing makes such parts thinner still.
+std::vector<float> trust_thickness(const SparseVolume& volume,
+                                   const std::vector<glm::vec3>& positions,
+                                   const std::vector<glm::vec3>& normals, double thick) {
+  std::vector<float> trust(positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
     double depth = 1;
     while (depth < thick &&
-           volume.at(glm::ivec3(glm::floor(p - float(depth) * mesh.normals[i] + 0.5f))) < 0)
+           volume.at(glm::ivec3(glm::floor(positions[i] - float(depth) * normals[i] + 0.5f))) < 0)
       depth += 1;
     const double share = std::min(depth / thick, 1.0);
-    peaks[i].weight *= float(share * share);
+    trust[i] = float(share * share);
   }
+  return trust;
 }
 
 /// Angles to the reference view that the cameras' spacing asks for: where neighbours stand far
@@ -106,9 +106,12 @@ class Refiner {
                                      : options_.middle_iterations;
       for (int i = 0; i < iterations; ++i) {
         progress.check_cancelled();
+        const SparseVolume before = volume;
         step(volume, first ? options_.coarse_offsets : options_.fine_offsets, counts);
         const double reach = last && i + 1 == iterations ? kFullReach : kNearReach;
-        volume = bounded(distance_from_mesh(extract_mesh(volume), volume, hull.grid, reach), hull);
+        SparseVolume after = distance_from_mesh(extract_mesh(volume), volume, hull.grid, reach);
+        keep_still(before, volume, after);
+        volume = bounded(after, hull);
         if (last && i + 1 == iterations) restore(volume, hull, counts);
         progress.update((double(level) + double(i + 1) / iterations) / double(grids.size()));
       }
@@ -145,15 +148,19 @@ class Refiner {
   void step(SparseVolume& volume, int offsets, LevelReport& counts) {
     const TriMesh mesh = extract_mesh(volume);
     const VertexGraph graph = make_graph(mesh);
+    const std::vector<glm::vec3> positions = voxel_positions(volume.grid, mesh);
+    const std::vector<glm::vec3> bends =
+        curvatures(graph, positions, mesh.normals, options_.match.most_bend);
     const OffsetRange range{-options_.step * (offsets / 2), options_.step, offsets};
-    Matches matches = match_patches(context_, volume.grid, mesh, images_, cameras_,
+    Matches matches = match_patches(context_, volume.grid, mesh, bends, images_, cameras_,
                                     options_.noise_sigma, range, options_.match);
     aggregate(graph, options_.aggregations, matches);
     std::vector<Peak> peaks = find_peaks(matches, options_.peak);
-    const std::vector<glm::vec3> positions = voxel_positions(volume.grid, mesh);
-    trust_thickness(volume, mesh, options_.peak.thick, peaks);
+    const std::vector<float> trust =
+        trust_thickness(volume, positions, mesh.normals, options_.peak.thick);
+    for (std::size_t i = 0; i < peaks.size(); ++i) peaks[i].weight *= trust[i];
     std::vector<float> moves =
-        regularize(graph, peaks, positions, mesh.normals, options_.regularize);
+        regularize(graph, peaks, positions, mesh.normals, trust, options_.regularize);
     if (options_.closing) {
       const auto closing = close_unseen(volume.grid, mesh, graph, matches.seen, options_.close);
       for (std::size_t i = 0; i < moves.size(); ++i)
@@ -180,7 +187,7 @@ class Refiner {
       const VertexGraph graph = make_graph(mesh);
       std::vector<shaders::MatchChoice> choices;
       const Matches matches =
-          match_patches(context_, volume.grid, mesh, images_, cameras_, options_.noise_sigma,
+          match_patches(context_, volume.grid, mesh, {}, images_, cameras_, options_.noise_sigma,
                         OffsetRange{}, options_.match, &choices);
       const auto results = fit_patches(context_, volume.grid, mesh, graph, images_, cameras_,
                                        choices, options_.noise_sigma, options_.fit);
@@ -192,11 +199,14 @@ class Refiner {
       if (!better || i == options_.photometric) break;
       best = held.before;
       std::vector<Peak> peaks = peaks_of(results, options_.fit);
-      trust_thickness(volume, mesh, options_.peak.thick, peaks);
+      const std::vector<glm::vec3> positions = voxel_positions(volume.grid, mesh);
+      const std::vector<float> trust =
+          trust_thickness(volume, positions, mesh.normals, options_.peak.thick);
+      for (std::size_t k = 0; k < peaks.size(); ++k) peaks[k].weight *= trust[k];
       RegularizeOptions smooth = options_.regularize;
       smooth.membrane = options_.fit.membrane, smooth.fairing = options_.fit.fairing;
       const std::vector<float> moves =
-          regularize(graph, peaks, voxel_positions(volume.grid, mesh), mesh.normals, smooth);
+          regularize(graph, peaks, positions, mesh.normals, trust, smooth);
       before = volume;
       move_surface(volume, mesh, moves);
       volume =

@@ -1,8 +1,17 @@
 #include "refine/surface.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <cmath>
 
 namespace photohull::refine {
+namespace {
+
+constexpr float kStill = 0.01f;       // voxels
+constexpr float kStillReach = 2.25f;  // voxels from the surface
+
+}  // namespace
 
 VertexGraph make_graph(const TriMesh& mesh) {
   VertexGraph graph;
@@ -27,6 +36,20 @@ VertexGraph make_graph(const TriMesh& mesh) {
     graph.first[i + 1] = std::uint32_t(graph.neighbours.size());
   }
   return graph;
+}
+
+void keep_still(const SparseVolume& before, const SparseVolume& moved, SparseVolume& volume) {
+  tbb::parallel_for(std::size_t(0), volume.bricks.size(), [&](std::size_t slot) {
+    const std::size_t index = volume.grid.brick_index(volume.bricks[slot]);
+    const std::uint32_t a = before.table[index], b = moved.table[index];
+    if (a >= SparseVolume::kInside || b >= SparseVolume::kInside) return;
+    for (std::size_t v = 0; v < kBrickVoxels; ++v) {
+      const float old = before.distance[a * kBrickVoxels + v];
+      const float now = moved.distance[b * kBrickVoxels + v];
+      if (std::abs(old - now) < kStill && std::abs(now) < kStillReach)
+        volume.distance[slot * kBrickVoxels + v] = now;
+    }
+  });
 }
 
 }  // namespace photohull::refine

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/grid.h"
 #include "core/mesh.h"
 
 namespace photohull::refine {
@@ -23,5 +24,9 @@ struct VertexGraph {
 
 /// Triangles have three different corners each.
 VertexGraph make_graph(const TriMesh& mesh);
+
+/// Distances that a step left as they were: where `moved` is what it was `before`, `volume` takes
+/// the latter, for each passage through a mesh rounds thin parts off. All on one grid.
+void keep_still(const SparseVolume& before, const SparseVolume& moved, SparseVolume& volume);
 
 }  // namespace photohull::refine

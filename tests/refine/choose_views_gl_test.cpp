@@ -24,7 +24,7 @@ class ChooseViews : public ::testing::TestWithParam<int> {
     Found out;
     gpu::Context& context = test::gl_context();  // before the images need it
     out.matches =
-        match_patches(context, test::kGrid, mesh, projtex::ImageSet(views_),
+        match_patches(context, test::kGrid, mesh, {}, projtex::ImageSet(views_),
                       projtex::cameras_of(views_), test::kNoise, range_, options_, &out.choices);
     context.check_errors("choose views test");
     expected_ = test::reference_views(views_);

@@ -126,7 +126,8 @@ std::vector<float> regularized(const VertexGraph& graph, const std::vector<Peak>
   std::vector<glm::vec3> positions;
   for (std::size_t i = 0; i < peaks.size(); ++i) positions.emplace_back(i, 0, heights[i]);
   const std::vector<glm::vec3> normals(peaks.size(), {0, 0, 1});
-  return regularize(graph, peaks, positions, normals, options);
+  return regularize(graph, peaks, positions, normals, std::vector<float>(peaks.size(), 1.0f),
+                    options);
 }
 
 TEST(Regularize, ConstantFieldIsReproduced) {
@@ -192,6 +193,19 @@ TEST(Regularize, FairingLowersWhatStandsOut) {
   EXPECT_GT(d[5], -1.0f);
   EXPECT_GT(d[4], d[5]);
   for (const float flat : regularized(row_of(10), unknown, fair)) EXPECT_EQ(flat, 0);
+}
+
+TEST(Regularize, FairingKeepsAnEvenCurve) {
+  std::vector<Peak> ends(31);
+  for (std::size_t i = 0; i < 31; ++i)
+    if (i < 4 || i > 26) ends[i] = {0, 1, 1};
+  RegularizeOptions options;
+  options.fairing = 5;
+  options.iterations = 300;
+  std::vector<float> arc(31);
+  for (int i = 0; i < 31; ++i) arc[std::size_t(i)] = -0.02f * float((i - 15) * (i - 15));
+  const std::vector<float> d = regularized(row_of(30), ends, options, arc);
+  for (std::size_t i = 8; i < 23; ++i) EXPECT_NEAR(d[i], 0, 0.15) << i;
 }
 
 }  // namespace

@@ -23,6 +23,7 @@ struct Probe {
   dvec3 position{0}, normal{0};  // voxels
   double scale = 1;              // of the offsets
   std::vector<int> views;
+  dvec3 bend{0};  // curvature, 1 / voxel
 };
 
 class MatchPatches : public ::testing::Test {
@@ -50,6 +51,10 @@ class MatchPatches : public ::testing::Test {
     const gpu::Buffer uniforms(sizeof p, &p), view_buffer = gpu::Buffer::of(gpu_views),
                                               surfel_buffer = gpu::Buffer::of(surfels),
                                               choice_buffer = gpu::Buffer::of(choices);
+    std::vector<glm::vec4> bends;
+    for (const Probe& probe : probes) bends.emplace_back(probe.bend, 0);
+    const gpu::Buffer bend_buffer = gpu::Buffer::of(bends);
+    bend_buffer.bind_storage(4);
     const gpu::Buffer scores(count * sizeof(float));
     uniforms.bind_uniform(0);
     view_buffer.bind_storage(0);
@@ -57,8 +62,9 @@ class MatchPatches : public ::testing::Test {
     choice_buffer.bind_storage(2);
     scores.bind_storage(3);
     images.texture().bind(0);
-    gpu::Program::compute("refine_match_patches.comp.glsl",
-                          "#define PATCH_RADIUS " + std::to_string(radius) + "\n")
+    gpu::Program::compute(
+        "refine_match_patches.comp.glsl",
+        "#define PATCH_RADIUS " + std::to_string(radius) + "\n#define PATCH_BENT\n")
         .dispatch(context, "refine_match_patches", gpu::group_count(count, 64));
     context.check_errors("match patches test");
     return scores.download<float>(count);
@@ -73,8 +79,9 @@ class MatchPatches : public ::testing::Test {
       const Probe& probe = probes[i / std::size_t(range_.count)];
       const double offset = range_.at(double(i % std::size_t(range_.count))) * probe.scale;
       const double expected = reference::match_patch(
-          views, probe.views, {probe.position + offset * probe.normal, probe.normal, radius},
-          noise_, options_);
+          views, probe.views,
+          {probe.position + offset * probe.normal, probe.normal, radius, probe.bend}, noise_,
+          options_);
       const double error = std::abs(scores[i] - expected);
       wrong += !(error < bound_);
       worst_ = std::max(worst_, error);
@@ -96,6 +103,7 @@ class MatchPatches : public ::testing::Test {
             projtex::to_grid(views_[std::size_t(probe.views[0])].camera, test::kGrid).centre;
         if (glm::dot(probe.normal, centre - probe.position) < 0) probe.normal = -probe.normal;
       }
+      if (i % 2) probe.bend = 0.4 * test::random_direction(rng_);
       probes.push_back(probe);
     }
     return probes;
