@@ -19,8 +19,8 @@ packages=(
   libegl-dev libopengl-dev libegl1 libegl-mesa0 libgl1-mesa-dri
   # Volumes; OpenVDB's CMake module asks for Boost.
   libopenvdb-dev libopenvdb-tools libtbb-dev libboost-iostreams-dev
-  # Meshes in other formats; distances to meshes; nearest neighbours.
-  libassimp-dev libembree-dev libnanoflann-dev
+  # Meshes in other formats; distances to meshes; fewer triangles; nearest neighbours.
+  libassimp-dev libembree-dev libmeshoptimizer-dev libnanoflann-dev
   # Images; OpenImageIO's CMake files ask for its tools.
   libopenimageio-dev openimageio-tools libopencv-dev
   libglm-dev libcli11-dev nlohmann-json3-dev

@@ -1,0 +1,28 @@
+// Private to module volume: simplification of a part of a mesh.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/mesh.h"
+
+namespace photohull {
+
+using Triangles = std::vector<std::array<std::uint32_t, 3>>;
+
+struct BlockLimits {
+  double error = 0;    ///< largest distance in either direction, world units
+  double spacing = 0;  ///< of the points at which it is measured
+};
+
+/// Marks triangles of which a corner is marked, and then their corners, `rings` times.
+void mark_rings(const Triangles& triangles, int rings, std::vector<std::uint8_t>& vertices,
+                std::vector<std::uint8_t>& marked);
+
+/// Triangles between the block's vertices in place of its own. `kept` holds a flag for each
+/// triangle: one that is set stays, and what failed a check is added. The block's border stays.
+Triangles simplify_block(const TriMesh& block, const BlockLimits& limits,
+                         std::vector<std::uint8_t>& kept);
+
+}  // namespace photohull
