@@ -63,6 +63,16 @@ shaders::FitParameters parameters_of(double noise_sigma, const FitOptions& o) {
 
 }  // namespace
 
+bool holds_out(const glm::vec3& position, int one_in) {
+  if (one_in <= 0) return false;
+  std::uint32_t hash = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    hash = (hash ^ std::uint32_t(int(std::floor(position[axis])))) * 2654435761u;
+    hash ^= hash >> 15;
+  }
+  return hash % std::uint32_t(one_in) == 0;
+}
+
 TangentAxes tangent_axes(const glm::dvec3& normal) {
   const glm::dvec3 helper = std::abs(normal.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
   const glm::dvec3 u = glm::normalize(glm::cross(helper, normal));
@@ -114,8 +124,7 @@ std::vector<shaders::FitResult> fit_patches(gpu::Context& context, const GridSpe
       curvatures(graph, positions, mesh.normals, options.most_bend);
   std::vector<shaders::FitShape> shapes(surfels.size());
   for (std::size_t i = 0; i < shapes.size(); ++i)
-    shapes[i].curvature =
-        glm::vec4(bends[i], options.hold_out > 0 && i % std::size_t(options.hold_out) == 0);
+    shapes[i].curvature = glm::vec4(bends[i], holds_out(positions[i], options.hold_out));
 
   const glm::ivec2 size(images.texture().width(), images.texture().height());
   std::vector<shaders::GpuView> gpu_views;

@@ -22,11 +22,11 @@ struct FitOptions {
   double pixel_spacing = 1.0;  ///< of a patch's taps, pixels of the reference view
   double least_score = 0.3;    ///< correlation with the other views below which one has no weight
   double sure_score = 0.8;     ///< from which it has full weight
-  double slope = 0.2;          ///< standard deviation of the surfels' slopes
+  double slope = 0.05;         ///< standard deviation of the surfels' slopes
   double largest_offset = 1;   ///< voxels
   double largest_step = 0.5;   ///< voxels
-  double most_bend = 0.2;      ///< largest curvature that a patch follows, 1 / voxel
-  double sure = 0.05;          ///< standard deviation (voxels) of an offset that weighs 1
+  double most_bend = 0.5;      ///< largest curvature that a patch follows, 1 / voxel
+  double sure = 0.1;           ///< standard deviation (voxels) of an offset that weighs 1
   double most_weight = 4;      ///< of an offset in the regularisation
   double membrane = 2;         ///< as RegularizeOptions has them, for the fitted offsets
   double fairing = 0.1;
@@ -43,6 +43,10 @@ struct HeldOut {
 /// and vv of tangent_axes(normal); negative where the body is convex. At most `most` in size.
 std::vector<glm::vec3> curvatures(const VertexGraph& graph, std::span<const glm::vec3> positions,
                                   std::span<const glm::vec3> normals, double most);
+
+/// Does a surfel at a position (voxels) leave a view out? The same in every pass, so that passes
+/// can be compared.
+bool holds_out(const glm::vec3& position, int one_in);
 
 /// Unit tangents u and v, as patch_axes (shaders/include/patch.glsl) has them but for their length.
 struct TangentAxes {

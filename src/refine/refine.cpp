@@ -209,8 +209,8 @@ class Refiner {
           regularize(graph, peaks, positions, mesh.normals, trust, smooth);
       before = volume;
       move_surface(volume, mesh, moves);
-      volume =
-          bounded(distance_from_mesh(extract_mesh(volume), volume, hull.grid, kFullReach), hull);
+      // Not measured anew: steps are short, and passing through the mesh costs more than they gain.
+      volume = bounded(volume, hull);
       FitReport pass;
       for (const float move : moves) pass.mean_move += std::abs(move) / double(moves.size());
       pass.held_before = held.before, pass.held_after = held.after;

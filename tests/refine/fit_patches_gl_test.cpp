@@ -57,7 +57,7 @@ class FitPatches : public ::testing::Test {
     int wrong = 0;
     for (std::size_t i = 0; i < probes.size(); ++i) {
       FitSurfel surfel{dvec3(vertices[i].position), dvec3(vertices[i].normal)};
-      surfel.hold_out = options_.hold_out > 0 && i % std::size_t(options_.hold_out) == 0;
+      surfel.hold_out = holds_out(glm::vec3(vertices[i].position), options_.hold_out);
       const FittedPatch expected =
           reference::fit_patch(views, probes[i].views, surfel, noise_, options_);
       const shaders::FitResult& r = results[i];
