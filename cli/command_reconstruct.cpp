@@ -13,7 +13,7 @@ namespace {
 
 struct Arguments {
   SceneArguments scene;
-  std::string out, quality = "normal", device = "auto";
+  std::string out, quality = "normal", device = "auto", mesh_error = "0", unseen = "closed";
   std::optional<std::string> method;
   std::optional<int> resolution;
   std::optional<double> voxel_size;
@@ -46,6 +46,8 @@ pipeline::ReconstructOptions to_options(const Arguments& a) {
               {Method::kHull, Method::kVoxelColoring, Method::kSpaceCarving, Method::kRefine});
   o.resolution = a.resolution;
   o.voxel_size = a.voxel_size;
+  o.mesh_error = pipeline::parse_mesh_error(a.mesh_error);
+  o.unseen = parse("--unseen", a.unseen, {pipeline::Unseen::kOpen, pipeline::Unseen::kClosed});
   o.device = a.device;
   o.threads = a.threads;
   o.tune = a.tune;
@@ -93,6 +95,13 @@ void add_reconstruct(CLI::App& app) {
   c->add_option("--method", a->method,
                 "hull, voxel-coloring, space-carving or refine (default: hull for draft, else "
                 "space-carving)");
+  c->add_option(
+       "--mesh-error", a->mesh_error,
+       "fewer triangles: how far mesh.ply may be from the uniform mesh, in voxels, or with "
+       "a u in world units (0: uniform)")
+      ->capture_default_str();
+  c->add_option("--unseen", a->unseen, "surface that no camera sees: closed, or open (left out)")
+      ->capture_default_str();
   c->add_option("--device", a->device, "auto, software, or an index from 'photohull devices'")
       ->capture_default_str();
   c->add_option("--threads", a->threads, "threads to use (0: one a core)")->capture_default_str();
@@ -105,6 +114,7 @@ void add_reconstruct(CLI::App& app) {
       "  photohull reconstruct datasets/templeSparseRing --out out/temple\n"
       "  photohull reconstruct scan --out out/scan --quality draft\n"
       "  photohull reconstruct scan --out out/scan --resolution 512 --method hull\n"
+      "  photohull reconstruct scan --out out/scan --mesh-error 0.25 --unseen open\n"
       "  photohull reconstruct colmap/sparse/0 --out out/plant --box \"-1 -1 0 1 1 2\"\n"
       "  photohull reconstruct transforms.json --out out/x --masks my_masks --views 0-23 --json");
   c->callback([a] { run(*a); });

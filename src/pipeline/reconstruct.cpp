@@ -28,6 +28,8 @@
 #include "volume/attributes.h"
 #include "volume/components.h"
 #include "volume/extract_mesh.h"
+#include "volume/remove_unseen.h"
+#include "volume/simplify_mesh.h"
 #include "volume/write_mesh.h"
 #include "volume/write_vdb.h"
 
@@ -45,7 +47,7 @@ constexpr double kBoxSlack = 0.5;         // voxels that the surface may stand o
 struct Weights {
   static constexpr double kScene = 0.1, kViews = 3, kDevice = 0.5, kHull = 3.5, kImages = 2,
                           kPhoto = 110, kRefine = 50, kClean = 0.2, kMesh = 0.6, kColour = 2,
-                          kPreview = 2.7, kFiles = 2;
+                          kSimplify = 15, kPreview = 2.7, kFiles = 2;
 };
 
 std::string number(double value) {
@@ -129,11 +131,19 @@ class Job {
       volume = clock_.run("photo", Weights::kPhoto, [&] { return carve_photo(volume); });
     clock_.run("clean", Weights::kClean, [&] { remove_small_components(volume, kDebrisFraction); });
     TriMesh mesh = clock_.run("mesh", Weights::kMesh, [&] { return extract_mesh(volume); });
-    clock_.run("colour", Weights::kColour, [&] { colour(mesh); });
-    keep_only_preview_photograph(mesh);
+    VolumeAttributes attributes = clock_.run("colour", Weights::kColour, [&] {
+      colour(mesh);
+      return attributes_from_mesh(volume, mesh);
+    });
     images_.reset();
     context_->release_deleted();
-    clock_.run("files", Weights::kFiles, [&] { write(volume, mesh, files); });
+    if (options_.unseen == Unseen::kOpen) open_unseen(mesh);
+    report_.uniform_triangles = std::int64_t(mesh.triangles.size());
+    if (options_.mesh_error.value > 0)
+      clock_.run("simplify", Weights::kSimplify, [&] { simplify(mesh); });
+    keep_only_preview_photograph(mesh);  // of the mesh that it will show
+    clock_.run("files", Weights::kFiles, [&] { write(volume, attributes, mesh, files); });
+    attributes = {};
     context_->release_deleted();
     clock_.run("preview", Weights::kPreview, [&] { write_preview(mesh, files); });
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
@@ -297,9 +307,29 @@ class Job {
                   " % of the surface is seen by no camera: it is the hull's guess"));
   }
 
-  void write(const SparseVolume& volume, const TriMesh& mesh, ResultFiles& files) {
-    write_vdb(files.open("volume.vdb"), volume, attributes_from_mesh(volume, mesh),
-              {{"photohull_options", option_line()}});
+  /// After colouring, which tells what is seen, and before simplification, which keeps the border.
+  void open_unseen(TriMesh& mesh) {
+    mesh = remove_unseen(mesh);
+    if (mesh.triangles.empty())
+      throw Error(
+          "--unseen open leaves nothing: no camera sees any of the surface; check the cameras "
+          "(photohull info) or use --unseen closed");
+  }
+
+  void simplify(TriMesh& mesh) {
+    const double voxel = grid_.voxel_size;
+    const double error = options_.mesh_error.value * (options_.mesh_error.world_units ? 1 : voxel);
+    TriMesh simple = simplify_mesh(mesh, error);
+    progress_.check_cancelled();
+    const MeshDistance d = measure_distance(mesh, simple, mean_edge(mesh));
+    report_.mesh_error = MeshErrorReport{error / voxel, d.mean / voxel, d.p95 / voxel,
+                                         d.p999 / voxel, d.max / voxel};
+    mesh = std::move(simple);
+  }
+
+  void write(const SparseVolume& volume, const VolumeAttributes& attributes, const TriMesh& mesh,
+             ResultFiles& files) {
+    write_vdb(files.open("volume.vdb"), volume, attributes, {{"photohull_options", option_line()}});
     progress_.check_cancelled();
     write_ply(files.open("mesh.ply"), mesh);
   }
@@ -367,6 +397,9 @@ class Job {
     if (options_.resolution) list.emplace_back("resolution", std::to_string(*options_.resolution));
     if (options_.voxel_size) list.emplace_back("voxel_size", number(*options_.voxel_size));
     if (!options_.load.views.empty()) list.emplace_back("views", options_.load.views);
+    list.emplace_back("mesh_error", number(options_.mesh_error.value) +
+                                        (options_.mesh_error.world_units ? "u" : ""));
+    list.emplace_back("unseen", to_string(options_.unseen));
     list.emplace_back("masks", mask_option());
     if (options_.load.pixel_center)
       list.emplace_back("pixel_center", number(*options_.load.pixel_center));
@@ -418,6 +451,21 @@ const char* to_string(Method method) {
   return "?";
 }
 
+const char* to_string(Unseen unseen) { return unseen == Unseen::kOpen ? "open" : "closed"; }
+
+MeshError parse_mesh_error(const std::string& text) {
+  MeshError error;
+  char* end = nullptr;
+  error.value = std::strtod(text.c_str(), &end);
+  error.world_units = end != text.c_str() && *end == 'u';
+  const bool whole = end != text.c_str() && *(end + (error.world_units ? 1 : 0)) == 0;
+  if (!whole || !std::isfinite(error.value) || error.value < 0)
+    throw UsageError(concat("--mesh-error ", text,
+                            ": expected 0 or a positive number, of voxels (0.25) or, with a u, of "
+                            "world units (0.002u)"));
+  return error;
+}
+
 double footprint_factor(Quality quality) {
   switch (quality) {
     case Quality::kDraft:
@@ -443,6 +491,8 @@ void ReconstructOptions::validate() const {
     throw UsageError(concat("--resolution ", *resolution, ": at least 2"));
   if (voxel_size && !(std::isfinite(*voxel_size) && *voxel_size > 0))
     throw UsageError(concat("--voxel-size ", *voxel_size, ": must be finite and positive"));
+  if (!(std::isfinite(mesh_error.value) && mesh_error.value >= 0))
+    throw UsageError(concat("--mesh-error ", mesh_error.value, ": must be finite, 0 or more"));
   if (threads < 0) throw UsageError(concat("--threads ", threads, ": 0 (one a core) or more"));
   check_tuning(tune, effective_method());
 }
@@ -458,7 +508,8 @@ double total_weight(const ReconstructOptions& options) {
          (method == Method::kHull     ? 0
           : method == Method::kRefine ? Weights::kRefine
                                       : Weights::kPhoto) +
-         Weights::kClean + Weights::kMesh + Weights::kColour + Weights::kPreview + Weights::kFiles;
+         (options.mesh_error.value > 0 ? Weights::kSimplify : 0) + Weights::kClean +
+         Weights::kMesh + Weights::kColour + Weights::kPreview + Weights::kFiles;
 }
 
 Report reconstruct(const ReconstructOptions& options, Progress& progress) {

@@ -15,8 +15,21 @@ namespace photohull::pipeline {
 enum class Quality { kDraft, kNormal, kHigh };
 enum class Method { kHull, kVoxelColoring, kSpaceCarving, kRefine };
 
+/// Surface that no camera sees: closed as the hull has it, or left out of mesh.ply.
+enum class Unseen { kOpen, kClosed };
+
 const char* to_string(Quality quality);
 const char* to_string(Method method);
+const char* to_string(Unseen unseen);
+
+/// How far mesh.ply may be from the uniform mesh; 0 keeps the uniform one.
+struct MeshError {
+  double value = 0;          ///< finite, >= 0
+  bool world_units = false;  ///< else voxels
+};
+
+/// Reads "0.25" (voxels) or "0.002u" (world units). Throws UsageError.
+MeshError parse_mesh_error(const std::string& text);
 
 struct ReconstructOptions {
   std::filesystem::path scene;   ///< folder or file
@@ -25,7 +38,9 @@ struct ReconstructOptions {
   std::optional<int> resolution;     ///< voxels along the box's longest side, >= 2
   std::optional<double> voxel_size;  ///< world units, > 0; excludes `resolution`
   Quality quality = Quality::kNormal;
-  std::optional<Method> method;   ///< default: hull for draft, space carving otherwise
+  std::optional<Method> method;  ///< default: hull for draft, space carving otherwise
+  MeshError mesh_error;
+  Unseen unseen = Unseen::kClosed;
   std::string device = "auto";    ///< auto, software or an index
   int threads = 0;                ///< 0: one a core
   std::vector<std::string> tune;  ///< NAME=VALUE, see pipeline/tuning.h

@@ -58,7 +58,16 @@ std::string Report::to_json() const {
                                 {"mean_move_voxels", fit.mean_move},
                                 {"kept", fit.kept}});
   j["voxels_kept"] = voxels_kept;
-  j["mesh"] = {{"vertices", vertices}, {"triangles", triangles}, {"unseen_share", unseen_share}};
+  j["mesh"] = {{"vertices", vertices},
+               {"triangles", triangles},
+               {"uniform_triangles", uniform_triangles},
+               {"unseen_share", unseen_share}};
+  if (mesh_error)
+    j["mesh"]["error_voxels"] = {{"limit", mesh_error->limit},
+                                 {"mean", mesh_error->mean},
+                                 {"p95", mesh_error->p95},
+                                 {"p999", mesh_error->p999},
+                                 {"max", mesh_error->max}};
   j["wall_seconds"] = wall_seconds;
   j["cpu_seconds"] = cpu_seconds;
   j["peak_memory_bytes"] = peak_memory_bytes;

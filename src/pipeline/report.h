@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,6 +39,12 @@ struct RefineFitReport {
   bool kept = false;
 };
 
+/// Distances between mesh.ply and the uniform mesh, both ways, in voxels.
+struct MeshErrorReport {
+  double limit = 0;  ///< as asked for
+  double mean = 0, p95 = 0, p999 = 0, max = 0;
+};
+
 struct Report {
   std::string version;
   std::string scene, format, device;
@@ -57,6 +64,8 @@ struct Report {
   std::vector<RefineLevelReport> refine_levels;
   std::vector<RefineFitReport> refine_fits;
   std::int64_t vertices = 0, triangles = 0;
+  std::int64_t uniform_triangles = 0;  ///< before simplification
+  std::optional<MeshErrorReport> mesh_error;
   double unseen_share = 0;  ///< of the mesh's vertices
   std::int64_t peak_memory_bytes = 0;
   double wall_seconds = 0, cpu_seconds = 0;

@@ -1,0 +1,17 @@
+// Surface that no camera sees, left out of a mesh.
+#pragma once
+
+#include "core/mesh.h"
+
+namespace photohull {
+
+/// The mesh without the parts that nobody sees: triangles whose three corners have confidence 0.
+/// Unseen patches of fewer than kLeastPatch triangles stay, for they are gaps between pixels and
+/// not sides that nobody photographed; islands of fewer that removal would leave go, and so do
+/// triangles left hanging by one edge. Vertices that are left keep their attributes and order; the
+/// border may have vertices of confidence 0. A mesh without confidence comes back as it is.
+TriMesh remove_unseen(const TriMesh& mesh);
+
+constexpr int kLeastPatch = 32;
+
+}  // namespace photohull
