@@ -50,7 +50,7 @@ TEST_F(Reconstruct, ReportHasTheDocumentedFields) {
     "grid": {"origin": [], "voxel_size": 0.1, "voxels": [], "bricks_stored": 1},
     "hull": {"nodes_tested": 1, "bricks_evaluated": 1},
     "photo": {"sweeps": 1, "voxels_judged": 1, "voxels_carved": 1, "voxels_undecided": 1},
-    "refine": [], "mesh": {"vertices": 1, "triangles": 1, "unseen_share": 0.1}})");
+    "refine": [], "mesh": {"vertices": 1, "triangles": 1, "uniform_triangles": 1, "unseen_share": 0.1}})");
   const json fields = schema.flatten();
   for (const auto& [key, value] : fields.items()) {
     const json::json_pointer pointer(key);
@@ -71,6 +71,35 @@ TEST_F(Reconstruct, ReportHasTheDocumentedFields) {
   for (const json& stage : r["stages"]) stages.push_back(stage["name"]);
   EXPECT_THAT(stages, ElementsAre("scene", "device", "views", "hull", "images", "photo", "clean",
                                   "mesh", "colour", "files", "preview"));
+}
+
+TEST_F(Reconstruct, MeshErrorLeavesFewerTriangles) {
+  succeed(reconstruct({"--method", "hull"}));
+  const std::size_t uniform = mesh().triangles.size();
+  EXPECT_EQ(report()["mesh"]["uniform_triangles"], uniform);
+  EXPECT_FALSE(report()["mesh"].contains("error_voxels"));
+  succeed(reconstruct({"--method", "hull", "--mesh-error", "0.25"}));
+  const TriMesh simple = mesh();
+  const json r = report()["mesh"];
+  EXPECT_LT(simple.triangles.size(), uniform / 3);
+  EXPECT_EQ(open_edges(simple), 0u);
+  EXPECT_EQ(simple.colours.size(), simple.positions.size());
+  EXPECT_EQ(r["triangles"], simple.triangles.size());
+  EXPECT_EQ(r["uniform_triangles"], uniform);
+  EXPECT_DOUBLE_EQ(r["error_voxels"]["limit"], 0.25);
+  EXPECT_LE(r["error_voxels"]["max"], 0.25);
+  EXPECT_GT(r["error_voxels"]["max"], 0.0);
+  // The same in world units.
+  const double voxel = report()["grid"]["voxel_size"];
+  succeed(reconstruct({"--method", "hull", "--mesh-error", std::to_string(voxel) + "u"}));
+  EXPECT_NEAR(report()["mesh"]["error_voxels"]["limit"], 1, 1e-3);
+  EXPECT_LT(mesh().triangles.size(), simple.triangles.size());
+}
+
+TEST_F(Reconstruct, RejectsBadMeshErrors) {
+  for (const char* text : {"-1", "nan", "inf", "x", "0.2v", "0.2uu", "u"})
+    fail(2, reconstruct({"--mesh-error", text}), {std::string("--mesh-error ") + text});
+  fail(2, reconstruct({"--unseen", "maybe"}), {"--unseen maybe", "open, closed"});
 }
 
 TEST_F(Reconstruct, VolumeIsReadableByOpenVdbsOwnTool) {
