@@ -72,6 +72,7 @@ void tune(const std::vector<std::string>& assignments, refine::RefineOptions& o)
                        {"closing", &o.closing},
                        {"close.iterations", &o.close.iterations},
                        {"close.rings", &o.close.rings},
+                       {"close.belt", &o.close.belt},
                        {"close.thickness", &o.close.thickness},
                        {"restore.least_views", &o.restore.least_views},
                        {"restore.least_inside", &o.restore.least_inside},

@@ -56,12 +56,14 @@ void grow(const VertexGraph& graph, std::vector<bool>& marked) {
       if (old[j]) marked[i] = true;
 }
 
-/// The unseen vertices without patches narrower than twice the rings: an opening.
-std::vector<bool> wide_patches(const VertexGraph& graph, const std::vector<bool>& seen, int rings) {
+/// The unseen vertices without patches narrower than twice the rings, and without a belt around the
+/// rest: an opening, and a little less.
+std::vector<bool> wide_patches(const VertexGraph& graph, const std::vector<bool>& seen,
+                               const CloseOptions& options) {
   std::vector<bool> marked = seen;
-  for (int i = 0; i < rings; ++i) grow(graph, marked);
+  for (int i = 0; i < options.rings; ++i) grow(graph, marked);
   marked.flip();
-  for (int i = 0; i < rings; ++i) grow(graph, marked);
+  for (int i = 0; i < options.rings - options.belt; ++i) grow(graph, marked);
   for (std::size_t i = 0; i < marked.size(); ++i) marked[i] = marked[i] && !seen[i];
   return marked;
 }
@@ -74,7 +76,7 @@ std::vector<float> close_unseen(const GridSpec& grid, const TriMesh& mesh, const
   const vec3 offset((mesh.origin - grid.origin) / grid.voxel_size);
   std::vector<vec3> start(mesh.positions.size());
   std::vector<std::uint32_t> unseen;
-  const std::vector<bool> wide = wide_patches(graph, seen, options.rings);
+  const std::vector<bool> wide = wide_patches(graph, seen, options);
   for (std::size_t i = 0; i < start.size(); ++i) {
     start[i] = scale * mesh.positions[i] + offset;
     if (wide[i] && !graph.of(i).empty()) unseen.push_back(std::uint32_t(i));

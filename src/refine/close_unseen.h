@@ -12,6 +12,7 @@ namespace photohull::refine {
 
 struct CloseOptions {
   int rings = 3;           ///< edges: unseen patches narrower than twice that stay as they are
+  int belt = 2;            ///< edges around the others that stay: the rim would give way bit by bit
   int iterations = 150;    ///< of the Gauss-Seidel method
   double longest = 2.0;    ///< voxels that a vertex moves at once
   double thickness = 2.0;  ///< voxels that stay between unseen surface and seen surface before it

@@ -29,6 +29,7 @@ void check(const VoteOptions& o) {
 
 void check(const CloseOptions& o) {
   require(o.rings >= 0 && o.rings <= 1000, "close.rings must be 0 to 1000");
+  require(o.belt >= 0 && o.belt <= o.rings, "close.belt must be 0 to close.rings");
   require(o.iterations >= 0, "close.iterations must not be negative");
   require(o.longest >= 0 && o.longest <= SparseVolume::kBand,
           "close.longest must lie in [0, 3] voxels");

@@ -2,12 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
-#include "gpu/buffer.h"
-#include "visibility/depth_maps.h"
+#include "refine/coverage.h"
 #include "volume/combine.h"
 
 namespace photohull::refine {
@@ -20,10 +15,10 @@ class Restorer {
   Restorer(gpu::Context& context, const SparseVolume& volume, const SparseVolume& hull,
            std::span<const Camera> cameras, std::span<const carving::Silhouette> silhouettes,
            const RestoreOptions& options)
-      : volume_(volume), hull_(hull), silhouettes_(silhouettes), options_(options) {
-    for (const Camera& camera : cameras) cameras_.push_back(projtex::to_grid(camera, hull.grid));
-    draw(context);
-  }
+      : volume_(volume),
+        hull_(hull),
+        options_(options),
+        coverage_(context, volume.grid, skin(volume), cameras, silhouettes) {}
 
   /// Voxels that came back, as a volume with the hull's distances at them and their neighbours.
   SparseVolume run(std::size_t& restored) const {
@@ -44,7 +39,8 @@ class Restorer {
     tbb::parallel_for(std::size_t(0), bricks.size(), [&](std::size_t b) {
       for (int i = 0; i < kBrickVoxels; ++i) {
         const ivec3 voxel = bricks[b] * kBrickEdge + ivec3(i >> 6, (i >> 3) & 7, i & 7);
-        if (hull_.at(voxel) < 0 && volume_.at(voxel) > 0.5f && asked_for(glm::dvec3(voxel)))
+        if (hull_.at(voxel) < 0 && volume_.at(voxel) > 0.5f &&
+            coverage_.lacks(glm::dvec3(voxel), options_.least_views, options_.least_inside))
           found[b].push_back(voxel);
       }
     });
@@ -59,47 +55,16 @@ class Restorer {
   }
 
  private:
-  void draw(gpu::Context& context) {
-    std::vector<glm::ivec4> voxels(1, glm::ivec4(0));
-    for (std::size_t slot = 0; slot < volume_.bricks.size(); ++slot)
+  /// Voxels at the surface of a volume.
+  static std::vector<ivec3> skin(const SparseVolume& volume) {
+    std::vector<ivec3> voxels;
+    for (std::size_t slot = 0; slot < volume.bricks.size(); ++slot)
       for (int i = 0; i < kBrickVoxels; ++i) {
-        const float d = volume_.distance[slot * kBrickVoxels + std::size_t(i)];
+        const float d = volume.distance[slot * kBrickVoxels + std::size_t(i)];
         if (d <= 0.3f && d > -1)
-          voxels.emplace_back(
-              volume_.bricks[slot] * kBrickEdge + ivec3(i >> 6, (i >> 3) & 7, i & 7), 0);
+          voxels.push_back(volume.bricks[slot] * kBrickEdge + ivec3(i >> 6, (i >> 3) & 7, i & 7));
       }
-    voxels[0].x = int(voxels.size() - 1);
-    visibility::DepthMaps maps(cameras_, volume_.grid);
-    std::vector<shaders::GpuView> views;
-    for (const auto& camera : cameras_)
-      views.push_back(projtex::to_gpu_view(camera, glm::ivec2(camera.width, camera.height)));
-    const gpu::Buffer view_buffer = gpu::Buffer::of(views);
-    view_buffer.bind_storage(0);
-    maps.splat(context, gpu::Buffer::of(voxels), voxels.size() - 1);
-    infos_ = maps.infos();
-    for (std::size_t v = 0; v < cameras_.size(); ++v) depths_.push_back(maps.download(v));
-  }
-
-  /// Does the view show foreground at the point, and nothing of the volume?
-  bool uncovered(std::size_t v, const glm::dvec3& point) const {
-    const SilhouetteDistance* s = silhouettes_[v].distance;
-    const glm::dvec3 q = cameras_[v].projection * glm::dvec4(point, 1);
-    if (!s || q.z <= 1) return false;
-    const double x = q.x / q.z, y = q.y / q.z;
-    const int px = int(std::floor(x + 0.5)), py = int(std::floor(y + 0.5));
-    if (px < 0 || py < 0 || px >= s->width || py >= s->height) return false;
-    if (s->pixels[std::size_t(py) * s->width + px] > -options_.least_inside) return false;
-    const auto& info = infos_[v];
-    const int tx = std::clamp(int((x + 0.5) * info.scale.x), 0, info.size.x - 1);
-    const int ty = std::clamp(int((y + 0.5) * info.scale.x), 0, info.size.y - 1);
-    return std::isinf(depths_[v][std::size_t(ty) * info.size.x + tx]);
-  }
-
-  bool asked_for(const glm::dvec3& point) const {
-    int count = 0;
-    for (std::size_t v = 0; v < cameras_.size() && count < options_.least_views; ++v)
-      count += uncovered(v, point);
-    return count >= options_.least_views;
+    return voxels;
   }
 
   void store(SparseVolume& out, const ivec3& voxel) const {
@@ -118,11 +83,8 @@ class Restorer {
 
   const SparseVolume& volume_;
   const SparseVolume& hull_;
-  std::span<const carving::Silhouette> silhouettes_;
   const RestoreOptions& options_;
-  std::vector<projtex::GridCamera> cameras_;
-  std::vector<shaders::DepthMapInfo> infos_;
-  std::vector<std::vector<float>> depths_;
+  Coverage coverage_;
 };
 
 }  // namespace

@@ -1,0 +1,49 @@
+#include "refine/coverage.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gpu/buffer.h"
+
+namespace photohull::refine {
+
+Coverage::Coverage(gpu::Context& context, const GridSpec& grid, std::span<const glm::ivec3> voxels,
+                   std::span<const Camera> cameras,
+                   std::span<const carving::Silhouette> silhouettes)
+    : silhouettes_(silhouettes) {
+  for (const Camera& camera : cameras) cameras_.push_back(projtex::to_grid(camera, grid));
+  std::vector<glm::ivec4> list{glm::ivec4(int(voxels.size()), 0, 0, 0)};
+  for (const glm::ivec3& voxel : voxels) list.emplace_back(voxel, 0);
+  visibility::DepthMaps maps(cameras_, grid);
+  std::vector<shaders::GpuView> views;
+  for (const auto& camera : cameras_)
+    views.push_back(projtex::to_gpu_view(camera, glm::ivec2(camera.width, camera.height)));
+  const gpu::Buffer view_buffer = gpu::Buffer::of(views);
+  view_buffer.bind_storage(0);
+  maps.splat(context, gpu::Buffer::of(list), voxels.size());
+  infos_ = maps.infos();
+  for (std::size_t v = 0; v < cameras_.size(); ++v) depths_.push_back(maps.download(v));
+}
+
+bool Coverage::lacks(const glm::dvec3& point, int least_views, double inside) const {
+  int count = 0;
+  for (std::size_t v = 0; v < cameras_.size() && count < least_views; ++v)
+    count += lacks_in(v, point, inside);
+  return count >= least_views;
+}
+
+bool Coverage::lacks_in(std::size_t view, const glm::dvec3& point, double inside) const {
+  const SilhouetteDistance* s = silhouettes_[view].distance;
+  const glm::dvec3 q = cameras_[view].projection * glm::dvec4(point, 1);
+  if (!s || q.z <= 1) return false;
+  const double x = q.x / q.z, y = q.y / q.z;
+  const int px = int(std::floor(x + 0.5)), py = int(std::floor(y + 0.5));
+  if (px < 0 || py < 0 || px >= s->width || py >= s->height) return false;
+  if (s->pixels[std::size_t(py) * s->width + px] > -inside) return false;
+  const auto& info = infos_[view];
+  const int tx = std::clamp(int((x + 0.5) * info.scale.x), 0, info.size.x - 1);
+  const int ty = std::clamp(int((y + 0.5) * info.scale.x), 0, info.size.y - 1);
+  return std::isinf(depths_[view][std::size_t(ty) * info.size.x + tx]);
+}
+
+}  // namespace photohull::refine
