@@ -38,6 +38,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr int kPhotometricPasses = 3;     // of fitting patches at the end, for high quality
 constexpr double kDebrisFraction = 5e-4;  // of the largest part's voxels
 constexpr int kCropMargin = 24;           // pixels around the box's projection: patches, mip levels
 constexpr double kBoxSlack = 0.5;         // voxels that the surface may stand out of the box
@@ -242,6 +243,7 @@ class Job {
   SparseVolume refine() {
     refine::RefineOptions o;
     o.noise_sigma = report_.noise_sigma;
+    if (options_.quality == Quality::kHigh) o.photometric = kPhotometricPasses;
     tune(options_.tune, o);
     refine::RefineReport counts;
     SparseVolume volume = refine::refine_surface(

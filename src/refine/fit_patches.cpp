@@ -156,13 +156,36 @@ std::vector<shaders::FitResult> fit_patches(gpu::Context& context, const GridSpe
   return out;
 }
 
-std::vector<Peak> peaks_of(std::span<const shaders::FitResult> results, const FitOptions& options) {
+std::vector<float> tap_spacings(const GridSpec& grid, std::span<const glm::vec3> positions,
+                                std::span<const Camera> cameras,
+                                std::span<const shaders::MatchChoice> choices,
+                                const FitOptions& options) {
+  std::vector<projtex::GridCamera> views;
+  for (const Camera& camera : cameras) views.push_back(projtex::to_grid(camera, grid));
+  std::vector<float> out(positions.size(), float(options.least_spacing));
+  for_vertices(out.size(), [&](std::size_t i) {
+    if (choices[i].second.w == 0) return;
+    const projtex::GridCamera& view = views[std::size_t(choices[i].first.x)];
+    const double pixel = glm::distance(view.centre, glm::dvec3(positions[i])) / view.focal;
+    out[i] = float(std::max(options.least_spacing, options.pixel_spacing * pixel));
+  });
+  return out;
+}
+
+std::vector<Peak> peaks_of(std::span<const shaders::FitResult> results,
+                           std::span<const float> spacings, const FitOptions& options) {
   std::vector<Peak> peaks(results.size());
   for (std::size_t i = 0; i < results.size(); ++i) {
     const shaders::FitResult& r = results[i];
-    const double weight = r.evidence.x * options.sure * options.sure;
+    if (std::abs(r.plane.w) >= options.largest_offset) continue;  // it wanted to go farther
+    const double agreement = std::clamp(
+        (r.evidence.y - options.least_score) / (options.sure_score - options.least_score), 0.0,
+        1.0);
+    const double weight =
+        agreement * std::min(r.evidence.x * options.sure * options.sure, options.most_weight);
     if (!(weight > 0)) continue;
-    peaks[i] = {r.plane.w, float(std::min(weight, options.most_weight)), r.evidence.y};
+    const double square = double(spacings[i]) * spacings[i];
+    peaks[i] = {r.plane.w, float(weight / (square * square)), r.evidence.y};
   }
   return peaks;
 }

@@ -16,20 +16,20 @@
 namespace photohull::refine {
 
 struct FitOptions {
-  int steps = 3;               ///< of Gauss and Newton
-  int hold_out = 4;            ///< one surfel in so many leaves a view out; 0: none does
-  double least_spacing = 0.4;  ///< of a patch's taps, voxels
-  double pixel_spacing = 1.0;  ///< of a patch's taps, pixels of the reference view
-  double least_score = 0.3;    ///< correlation with the other views below which one has no weight
-  double sure_score = 0.8;     ///< from which it has full weight
-  double slope = 0.05;         ///< standard deviation of the surfels' slopes
-  double largest_offset = 1;   ///< voxels
-  double largest_step = 0.5;   ///< voxels
-  double most_bend = 0.5;      ///< largest curvature that a patch follows, 1 / voxel
-  double sure = 0.1;           ///< standard deviation (voxels) of an offset that weighs 1
-  double most_weight = 4;      ///< of an offset in the regularisation
-  double membrane = 2;         ///< as RegularizeOptions has them, for the fitted offsets
-  double fairing = 0.1;
+  int steps = 3;                ///< of Gauss and Newton
+  int hold_out = 4;             ///< one surfel in so many leaves a view out; 0: none does
+  double least_spacing = 0.4;   ///< of a patch's taps, voxels
+  double pixel_spacing = 1.0;   ///< of a patch's taps, pixels of the reference view
+  double least_score = 0.3;     ///< correlation with the other views below which one has no weight
+  double sure_score = 0.8;      ///< from which it has full weight
+  double slope = 0.05;          ///< standard deviation of the surfels' slopes
+  double largest_offset = 0.5;  ///< voxels; fits that reach it do not count
+  double largest_step = 0.5;    ///< voxels
+  double most_bend = 0.5;       ///< largest curvature that a patch follows, 1 / voxel
+  double sure = 0.1;            ///< standard deviation (voxels) of an offset that weighs 1
+  double most_weight = 4;       ///< of an offset in the regularisation
+  double membrane = 30;         ///< as RegularizeOptions has them, for the fitted offsets
+  double fairing = 3;
 };
 
 /// Standing of a surface in the views that were held out.
@@ -65,9 +65,18 @@ std::vector<shaders::FitResult> fit_patches(gpu::Context& context, const GridSpe
                                             std::span<const shaders::MatchChoice> choices,
                                             double noise_sigma, const FitOptions& options);
 
+/// Voxels between the taps of each vertex's patch.
+std::vector<float> tap_spacings(const GridSpec& grid, std::span<const glm::vec3> positions,
+                                std::span<const Camera> cameras,
+                                std::span<const shaders::MatchChoice> choices,
+                                const FitOptions& options);
+
 /// The fitted offsets as peaks, weighed by their information: 1 at a standard deviation of
-/// options.sure, never more than options.most_weight.
-std::vector<Peak> peaks_of(std::span<const shaders::FitResult> results, const FitOptions& options);
+/// options.sure, never more than options.most_weight, both for taps a voxel apart. By the inverse
+/// fourth power of the spacing, the surface is smoothed over as many pixels whatever the voxels'
+/// size: more vertices share a tap's evidence, and smoothing must reach across more of them.
+std::vector<Peak> peaks_of(std::span<const shaders::FitResult> results,
+                           std::span<const float> spacings, const FitOptions& options);
 
 /// Texture samples that fitting takes.
 std::int64_t samples_of(std::span<const shaders::MatchChoice> choices, const FitOptions& options);

@@ -61,6 +61,24 @@ void check(const PeakOptions& o) {
   require(o.distinct_by > 0, "peak.distinct_by must be positive");
 }
 
+void check(const FitOptions& o) {
+  require(o.steps >= 0 && o.steps <= 100, "fit.steps must be 0 to 100");
+  require(o.hold_out >= 0, "fit.hold_out must not be negative");
+  require(o.least_spacing > 0 && is_length(o.least_spacing), "fit.least_spacing must be positive");
+  require(is_length(o.pixel_spacing), "fit.pixel_spacing must not be negative");
+  require(o.least_score < o.sure_score && is_score(o.least_score) && is_score(o.sure_score),
+          "fit.least_score must lie below fit.sure_score, both in [-1, 1]");
+  require(o.slope > 0 && is_length(o.slope), "fit.slope must be positive");
+  require(o.largest_offset >= 0 && o.largest_offset < SparseVolume::kBand,
+          "fit.largest_offset must lie in [0, 3) voxels");
+  require(o.largest_step > 0 && is_length(o.largest_step), "fit.largest_step must be positive");
+  require(o.most_bend >= 0 && is_length(o.most_bend), "fit.most_bend must not be negative");
+  require(is_length(o.sure), "fit.sure must not be negative");
+  require(o.most_weight > 0 && is_length(o.most_weight), "fit.most_weight must be positive");
+  require(o.membrane >= 0, "fit.membrane must not be negative");
+  require(o.fairing >= 0, "fit.fairing must not be negative");
+}
+
 void check(const RegularizeOptions& o) {
   require(o.membrane >= 0, "regularize.membrane must not be negative");
   require(o.fairing >= 0, "regularize.fairing must not be negative");
@@ -84,6 +102,8 @@ void RefineOptions::validate() const {
   check(close);
   require(restore.least_views >= 1, "restore.least_views must be at least 1");
   check(match);
+  require(photometric >= 0 && photometric <= 100, "photometric must be 0 to 100");
+  check(fit);
   check(peak);
   check(regularize);
 }

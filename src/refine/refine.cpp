@@ -198,11 +198,14 @@ class Refiner {
       if (!better) volume = std::move(before);
       if (!better || i == options_.photometric) break;
       best = held.before;
-      std::vector<Peak> peaks = peaks_of(results, options_.fit);
       const std::vector<glm::vec3> positions = voxel_positions(volume.grid, mesh);
+      std::vector<Peak> peaks = peaks_of(
+          results, tap_spacings(volume.grid, positions, cameras_, choices, options_.fit),
+          options_.fit);
       const std::vector<float> trust =
           trust_thickness(volume, positions, mesh.normals, options_.peak.thick);
-      for (std::size_t k = 0; k < peaks.size(); ++k) peaks[k].weight *= trust[k];
+      // What patches cannot be trusted with stays where it is.
+      for (std::size_t k = 0; k < peaks.size(); ++k) peaks[k].offset *= trust[k];
       RegularizeOptions smooth = options_.regularize;
       smooth.membrane = options_.fit.membrane, smooth.fairing = options_.fit.fairing;
       const std::vector<float> moves =

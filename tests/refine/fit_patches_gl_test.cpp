@@ -201,6 +201,7 @@ TEST_F(FitPatches, ComesBackToAPlane) {
   add_plane_views(6, 11, 400);
   for (View& view : views_) view.image = test::to_half(view.image);
   options_.steps = 5;
+  options_.largest_offset = 1;
   options_.slope = 1;
   std::vector<Probe> probes = plane_probes(60, 0, 10);
   for (std::size_t i = 0; i < probes.size(); ++i) probes[i].position.z += i % 2 ? 0.5 : -0.5;
@@ -243,6 +244,7 @@ TEST_F(FitPatches, ComesBackToASphereWithItsCurvature) {
   const std::vector<shaders::MatchChoice> choices(mesh.positions.size(),
                                                   test::choice_of({0, 1, 2, 3, 4, 5}));
   options_.steps = 5;
+  options_.largest_offset = 1;
   const auto error = [&] {
     double sum = 0;
     for (const auto& r : fit_patches(test::gl_context(), test::kGrid, mesh, make_graph(mesh),
@@ -272,7 +274,6 @@ TEST_F(FitPatches, LessNoiseMoreInformation) {
     for (const auto& r : run(probes)) information.push_back(r.evidence.x);
     std::sort(information.begin(), information.end());
     EXPECT_LT(information[20], 0.7 * previous) << sigma;
-    std::cout << information[20] << ' ';
     previous = information[20];
     views_ = clean;
   }
@@ -302,6 +303,40 @@ TEST_F(FitPatches, PlainImagesSayNothing) {
   }
 }
 
+TEST_F(FitPatches, PeaksWeighInformationByPixel) {
+  shaders::FitResult r{{0, 0, 1, 0.25f}, {100, 0.9f, 0, 0}};
+  options_.largest_offset = 0.5;
+  options_.sure = 0.1, options_.most_weight = 4;
+  options_.least_score = 0.1, options_.sure_score = 0.9;
+  const std::vector<Peak> peaks = peaks_of(std::vector{r,
+                                                       r,
+                                                       {r.plane, {1e6, 0.9, 0, 0}},
+                                                       {r.plane, {0, 0.9, 0, 0}},
+                                                       {r.plane, {100, 0.5, 0, 0}},
+                                                       {{0, 0, 1, 0.5f}, r.evidence}},
+                                           std::vector<float>{1, 2, 0.5, 1, 1, 1}, options_);
+  EXPECT_FLOAT_EQ(peaks[0].weight, 1);
+  EXPECT_FLOAT_EQ(peaks[0].offset, 0.25);
+  EXPECT_FLOAT_EQ(peaks[1].weight, 1.0 / 16);
+  EXPECT_FLOAT_EQ(peaks[2].weight, 4 * 16);
+  EXPECT_EQ(peaks[3].weight, 0);
+  EXPECT_FLOAT_EQ(peaks[4].weight, 0.5);
+  EXPECT_EQ(peaks[5].weight, 0) << "at the limit";
+}
+
+TEST_F(FitPatches, SpacingIsAPixelOrTheLeast) {
+  add_plane_views(2, 11, 400);  // 10 world units, 200 voxels away
+  const std::vector<glm::vec3> positions(3, glm::vec3(24));
+  const std::vector<shaders::MatchChoice> choices{test::choice_of({0, 1}), test::choice_of({}),
+                                                  test::choice_of({1})};
+  options_.least_spacing = 0.1, options_.pixel_spacing = 2;
+  const auto spacings =
+      tap_spacings(test::kGrid, positions, projtex::cameras_of(views_), choices, options_);
+  EXPECT_NEAR(spacings[0], 1, 1e-3);
+  EXPECT_FLOAT_EQ(spacings[1], 0.1f);
+  EXPECT_NEAR(spacings[2], 1, 1e-3);
+}
+
 TEST_F(FitPatches, TooFewViewsLeaveTheSurfel) {
   add_plane_views(2, 11, 400);
   std::vector<Probe> probes = plane_probes(2, 0.3, 4);
@@ -314,7 +349,7 @@ TEST_F(FitPatches, TooFewViewsLeaveTheSurfel) {
               glm::vec4(0, shaders::kNoScore, shaders::kNoScore, shaders::kNoScore));
     EXPECT_LT(glm::distance(dvec3(results[i].plane), probes[i].normal), 1e-6);
   }
-  EXPECT_EQ(peaks_of(results, options_)[1].weight, 0);
+  EXPECT_EQ(peaks_of(results, std::vector<float>{1, 1}, options_)[1].weight, 0);
   EXPECT_EQ(held_out(results).surfels, 0u);
 }
 

@@ -85,6 +85,17 @@ TEST_F(RefineSurface, VotingFindsWhatTheSearchAloneCannotReach) {
   EXPECT_LT(test::mean_error(run(5)), 0.7 * searched);
 }
 
+TEST_F(RefineSurface, FittingThePhotographsBringsItNearer) {
+  const double matched = test::mean_error(run(8));
+  EXPECT_TRUE(report_.fits.empty());
+  options_.photometric = 2;
+  EXPECT_LT(test::mean_error(run(8)), matched);
+  ASSERT_FALSE(report_.fits.empty());
+  EXPECT_TRUE(report_.fits[0].kept);
+  EXPECT_GT(report_.fits[0].held_before, 0.3);
+  EXPECT_GT(report_.fits[0].mean_move, 0);
+}
+
 TEST_F(RefineSurface, CanBeCancelled) {
   request_cancellation();
   EXPECT_THROW(run(4), Cancelled);
@@ -111,6 +122,10 @@ TEST_F(RefineSurface, BadOptionsAreNamed) {
       [](RefineOptions& o) { o.match.best_pairs = 0; },
       [](RefineOptions& o) { o.match.nearest_angle = o.match.farthest_angle; },
       [](RefineOptions& o) { o.peak.sure_score = o.peak.least_score; },
+      [](RefineOptions& o) { o.photometric = -1; },
+      [](RefineOptions& o) { o.fit.slope = 0; },
+      [](RefineOptions& o) { o.fit.largest_offset = 3; },
+      [&](RefineOptions& o) { o.fit.sure = nan; },
       [](RefineOptions& o) { o.regularize.robust = 0; }};
   for (std::size_t i = 0; i < mistakes.size(); ++i) {
     options_ = {};
