@@ -16,7 +16,7 @@
 namespace photohull::refine {
 
 struct FitOptions {
-  int steps = 3;                ///< of Gauss and Newton
+  int steps = 2;                ///< of Gauss and Newton
   int hold_out = 4;             ///< one surfel in so many leaves a view out; 0: none does
   double least_spacing = 0.4;   ///< of a patch's taps, voxels
   double pixel_spacing = 1.0;   ///< of a patch's taps, pixels of the reference view

@@ -17,7 +17,7 @@ struct MatchOptions {
   double least_spacing = 0.4;  ///< of a patch's taps, voxels
   double pixel_spacing = 1.0;  ///< of a patch's taps, pixels of the reference view
   double most_bend = 1.0;      ///< largest curvature that a patch follows, 1 / voxel
-  double best_pairs = 0.6;     ///< share of the pairs of views that the score is the mean of
+  double best_pairs = 0.4;     ///< share of the pairs of views that the score is the mean of
   double shift = 1.5;          ///< of the receiver along its normal, voxels
   double depth_bias = 2.5;     ///< voxels
   double least_cosine = 0.2;   ///< between a normal and a camera's direction

@@ -27,9 +27,9 @@ struct RefineOptions {
   static constexpr int kCoarsestVoxels = 80;
   int coarse_iterations = 3;  ///< of matching and moving, at the first level
   int middle_iterations = 2;
-  int fine_iterations = 2;  ///< at the last level
+  int fine_iterations = 1;  ///< at the last level
   int coarse_offsets = 11;  ///< places along the normal that are tried
-  int fine_offsets = 9;
+  int fine_offsets = 7;
   double step = 0.5;           ///< between them, voxels
   int aggregations = 2;        ///< passes of averaging scores over neighbours
   double noise_sigma = 0.003;  ///< of the images, square-root encoding
@@ -39,7 +39,7 @@ struct RefineOptions {
   CloseOptions close;
   RestoreOptions restore;
   MatchOptions match;
-  int photometric = 0;  ///< iterations of fitting patches, at the end; fewer when they stop helping
+  int photometric = 1;  ///< iterations of fitting patches, at the end; fewer when they stop helping
   FitOptions fit;
   PeakOptions peak;
   RegularizeOptions regularize;
