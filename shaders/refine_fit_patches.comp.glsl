@@ -37,10 +37,6 @@ vec3 value[kTaps], slope[kTaps];
 // Weighted sums over the views so far: normalised colours, and their derivatives by the parameters.
 vec3 sum_value[kTaps], sum_d0[kTaps], sum_d1[kTaps], sum_d2[kTaps];
 
-vec2 tap_place(int k) {
-  return vec2(float(k % kEdge - PATCH_RADIUS), float(k / kEdge - PATCH_RADIUS));
-}
-
 // Fills value and slope, and how many texels a tap moves per voxel; false where the patch is not before the camera. Each tap is fetched half a
 // texel to both sides along the direction in which it moves.
 bool fetch(int v, vec3 centre, vec3 normal, vec3 u, vec3 w, vec2 slopes, vec3 bend, out float per_voxel) {
@@ -62,7 +58,7 @@ bool fetch(int v, vec3 centre, vec3 normal, vec3 u, vec3 w, vec2 slopes, vec3 be
   dv = (dv + slopes.y * dn) * view.size.zw;
   dn *= view.size.zw;
   for (int k = 0; k < kTaps; ++k) {
-    vec2 at = tap_place(k);
+    vec2 at = place_of_tap(k);
     float height = dot(bend, vec3(at.x * at.x, at.x * at.y, at.y * at.y));
     vec2 place = origin + at.x * du + at.y * dv + height * dn;
     vec3 a = sqrt(max(textureLod(images, vec3(place - aside, float(v)), lod).rgb, 0.0));
@@ -94,7 +90,7 @@ Model evaluate(int chosen[kMatchViews], int count, int held, vec3 centre, vec3 n
     vec3 mean = vec3(0.0), mean0 = vec3(0.0), mean1 = vec3(0.0), mean2 = vec3(0.0);
     float square = 0.0;
     for (int k = 0; k < kTaps; ++k) {
-      vec2 at = tap_place(k);
+      vec2 at = place_of_tap(k);
       mean += value[k];
       square += dot(value[k], value[k]);
       mean0 += slope[k];
@@ -110,7 +106,7 @@ Model evaluate(int chosen[kMatchViews], int count, int held, vec3 centre, vec3 n
     float correlation = 0.0, own = 0.0;
     vec3 along = vec3(0.0);  // products of the normalised colours with their derivatives
     for (int k = 0; k < kTaps; ++k) {
-      vec2 at = tap_place(k);
+      vec2 at = place_of_tap(k);
       vec3 x = (value[k] - mean) * scale;
       value[k] = x;
       correlation += dot(x, sum_value[k]);
@@ -132,7 +128,7 @@ Model evaluate(int chosen[kMatchViews], int count, int held, vec3 centre, vec3 n
     floors += weight * (1.0 - own);
     mat3 h = mat3(0.0);
     for (int k = 0; k < kTaps; ++k) {
-      vec2 at = tap_place(k);
+      vec2 at = place_of_tap(k);
       vec3 x = value[k];
       vec3 d0 = (slope[k] - mean0) * scale - along.x * x;
       vec3 d1 = (at.x * slope[k] - mean1) * scale - along.y * x;

@@ -13,8 +13,8 @@ using glm::vec4;
 
 constexpr int kMatchViews = 6;        // the reference view and those compared with it
 constexpr int kMatchCandidates = 16;  // views, the most frontal ones, that the choice is made among
-constexpr int kMatchRadius = 2;       // taps: patches of 5 x 5 in the tangent plane
-constexpr int kMatchTaps = 25;
+constexpr int kMatchRadius = 2;  // taps: every other place of 5 x 5 in the tangent plane
+constexpr int kMatchTaps = 13;
 constexpr float kNoScore = -2.0f;  // too few views to compare
 
 struct MatchParameters {

@@ -78,6 +78,7 @@ Sight look(const MatchView& view, const Frame& frame, const dvec3& theta, double
   int k = 0;
   for (int j = -kRadius; j <= kRadius; ++j)
     for (int i = -kRadius; i <= kRadius; ++i) {
+      if ((i + j) % 2 != 0) continue;
       const double s = i * frame.spacing, t = j * frame.spacing;
       const double height = 0.5 * (frame.curvature.x * s * s + 2 * frame.curvature.y * s * t +
                                    frame.curvature.z * t * t);

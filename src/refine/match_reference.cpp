@@ -62,6 +62,7 @@ std::vector<dvec3> taps(const MatchView& view, const Patch& patch, const dvec3& 
   dvec3 sum(0);
   for (int b = -patch.radius; b <= patch.radius; ++b)
     for (int a = -patch.radius; a <= patch.radius; ++a) {
+      if (patch.radius > 1 && (a + b) % 2 != 0) continue;
       const double height =
           square * (0.5 * a * a * patch.bend.x + a * b * patch.bend.y + 0.5 * b * b * patch.bend.z);
       out.push_back(sample(view, pixel + double(a) * du + double(b) * dv + height * dn, level));
@@ -156,8 +157,8 @@ double match_patch(std::span<const MatchView> views, std::span<const int> chosen
   const dvec3 u = spacing * glm::normalize(glm::cross(axis, patch.normal));
   const dvec3 v = glm::cross(patch.normal, u);
 
-  const double edge = 2 * patch.radius + 1, noise = 3 * edge * edge * noise_sigma * noise_sigma;
   const std::vector<dvec3> own = taps(reference, patch, u, v);
+  const double noise = 3 * double(own.size()) * noise_sigma * noise_sigma;
   std::vector<double> scores;
   for (const int other : chosen.subspan(1)) {
     const std::vector<dvec3> theirs = taps(views[std::size_t(other)], patch, u, v);

@@ -199,9 +199,9 @@ class Refiner {
       if (!better || i == options_.photometric) break;
       best = held.before;
       const std::vector<glm::vec3> positions = voxel_positions(volume.grid, mesh);
-      std::vector<Peak> peaks = peaks_of(
-          results, tap_spacings(volume.grid, positions, cameras_, choices, options_.fit),
-          options_.fit);
+      std::vector<Peak> peaks =
+          peaks_of(results, tap_spacings(volume.grid, positions, cameras_, choices, options_.fit),
+                   options_.fit);
       const std::vector<float> trust =
           trust_thickness(volume, positions, mesh.normals, options_.peak.thick);
       // What patches cannot be trusted with stays where it is.

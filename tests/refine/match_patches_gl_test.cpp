@@ -185,6 +185,7 @@ TEST_F(MatchPatches, BestShareOfThePairs) {
 TEST_F(MatchPatches, TrueSurfaceScoresBest) {
   add_plane_views(5, 12, 400);
   range_ = {-3, 1, 7};
+  options_.best_pairs = 0.6;  // fewer pairs agree by chance now and then
   std::vector<Probe> probes;
   for (int i = 0; i < 40; ++i)
     probes.push_back({{test::uniform(rng_, 14, 34), test::uniform(rng_, 14, 34), 24},

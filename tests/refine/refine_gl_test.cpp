@@ -86,6 +86,7 @@ TEST_F(RefineSurface, VotingFindsWhatTheSearchAloneCannotReach) {
 }
 
 TEST_F(RefineSurface, FittingThePhotographsBringsItNearer) {
+  options_.photometric = 0;
   const double matched = test::mean_error(run(8));
   EXPECT_TRUE(report_.fits.empty());
   options_.photometric = 2;
