@@ -53,7 +53,7 @@ void print_text(const pipeline::Inspection& info) {
                 info.nearest_angle, info.farthest_angle);
     std::printf("pixel          %g world units at the box's centre\n", info.voxel_size);
     std::printf("normal quality %d x %d x %d voxels of %g\n", n.x, n.y, n.z, info.grid.voxel_size);
-    std::printf("estimate       %lld MiB, %.0f CPU seconds (space carving, software rasterizer)\n",
+    std::printf("estimate       %lld MiB, %.0f CPU seconds (normal quality, software rasterizer)\n",
                 static_cast<long long>(info.memory_bytes >> 20), info.cpu_seconds);
   }
   for (const std::string& text : info.warnings) std::printf("warning: %s\n", text.c_str());

@@ -94,7 +94,7 @@ void add_reconstruct(CLI::App& app) {
       ->capture_default_str();
   c->add_option("--method", a->method,
                 "hull, voxel-coloring, space-carving or refine (default: hull for draft, else "
-                "space-carving)");
+                "refine)");
   c->add_option(
        "--mesh-error", a->mesh_error,
        "fewer triangles: how far mesh.ply may be from the uniform mesh, in voxels, or with "

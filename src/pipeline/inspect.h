@@ -16,7 +16,7 @@ struct Inspection {
   double voxel_size = 0;          ///< world: one pixel's footprint at the box's centre, the median
   GridSpec grid;                  ///< of the normal quality
   std::int64_t memory_bytes = 0;  ///< estimate for that grid, images included
-  double cpu_seconds = 0;         ///< estimate for the software rasterizer, space carving
+  double cpu_seconds = 0;         ///< estimate for the software rasterizer
   std::vector<std::string> warnings;
 };
 

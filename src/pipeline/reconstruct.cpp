@@ -38,7 +38,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kPhotometricPasses = 3;     // of fitting patches at the end, for high quality
+// High quality: iterations of matching at the finest voxels, passes of fitting patches to the
+// photographs after them, and Gauss-Newton steps of each.
+constexpr int kHighIterations = 2, kHighPasses = 3, kHighSteps = 3;
+constexpr double kLeastEvidence = 0.1;    // share of the surface below which a result is doubtful
 constexpr double kDebrisFraction = 5e-4;  // of the largest part's voxels
 constexpr int kCropMargin = 24;           // pixels around the box's projection: patches, mip levels
 constexpr double kBoxSlack = 0.5;         // voxels that the surface may stand out of the box
@@ -243,7 +246,11 @@ class Job {
   SparseVolume refine() {
     refine::RefineOptions o;
     o.noise_sigma = report_.noise_sigma;
-    if (options_.quality == Quality::kHigh) o.photometric = kPhotometricPasses;
+    if (options_.quality == Quality::kHigh) {
+      o.fine_iterations = kHighIterations;
+      o.photometric = kHighPasses;
+      o.fit.steps = kHighSteps;
+    }
     tune(options_.tune, o);
     refine::RefineReport counts;
     SparseVolume volume = refine::refine_surface(
@@ -258,6 +265,15 @@ class Job {
                                        level.mean_move});
       refine_samples_ += level.samples;
     }
+    if (volume.inside_voxels() == 0)
+      throw Error(
+          "refinement left nothing: the photographs disagree everywhere; check the cameras "
+          "(photohull info) or use --method hull");
+    const double evidence = counts.levels.back().evidence;
+    if (evidence < kLeastEvidence)
+      warn(concat("the photographs tell where the surface is on ", std::lround(100 * evidence),
+                  " % of it only (too little texture, or too few cameras that see the same): the "
+                  "rest is the hull's guess"));
     return volume;
   }
 
@@ -265,7 +281,7 @@ class Job {
     if (!any_mask() && options_.effective_method() == Method::kHull)
       warn(
           "without masks the hull is the box clipped by the frusta: give masks or use "
-          "--method space-carving");
+          "--method refine");
     return hull_at(grid_);
   }
 
@@ -475,7 +491,7 @@ double footprint_factor(Quality quality) {
     case Quality::kNormal:
       return 1.5;
     case Quality::kHigh:
-      return 0.75;
+      return 1.25;
   }
   return 1.5;
 }
@@ -501,7 +517,7 @@ void ReconstructOptions::validate() const {
 
 Method ReconstructOptions::effective_method() const {
   if (method) return *method;
-  return quality == Quality::kDraft ? Method::kHull : Method::kSpaceCarving;
+  return quality == Quality::kDraft ? Method::kHull : Method::kRefine;
 }
 
 double total_weight(const ReconstructOptions& options) {

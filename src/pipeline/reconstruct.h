@@ -38,7 +38,7 @@ struct ReconstructOptions {
   std::optional<int> resolution;     ///< voxels along the box's longest side, >= 2
   std::optional<double> voxel_size;  ///< world units, > 0; excludes `resolution`
   Quality quality = Quality::kNormal;
-  std::optional<Method> method;  ///< default: hull for draft, space carving otherwise
+  std::optional<Method> method;  ///< default: hull for draft, refine otherwise
   MeshError mesh_error;
   Unseen unseen = Unseen::kClosed;
   std::string device = "auto";    ///< auto, software or an index

@@ -29,6 +29,11 @@ GridSpec coarser(const GridSpec& grid) {
   return out;
 }
 
+bool any_silhouette(std::span<const carving::Silhouette> silhouettes) {
+  return std::any_of(silhouettes.begin(), silhouettes.end(),
+                     [](const carving::Silhouette& s) { return s.distance; });
+}
+
 std::vector<glm::vec3> voxel_positions(const GridSpec& grid, const TriMesh& mesh) {
   const glm::dvec3 offset = (mesh.origin - grid.origin) / grid.voxel_size;
   std::vector<glm::vec3> out;
@@ -107,7 +112,7 @@ class Refiner {
       for (int i = 0; i < iterations; ++i) {
         progress.check_cancelled();
         const SparseVolume before = volume;
-        step(volume, first ? options_.coarse_offsets : options_.fine_offsets, counts);
+        step(volume, first, counts);
         const double reach = last && i + 1 == iterations ? kFullReach : kNearReach;
         SparseVolume after = distance_from_mesh(extract_mesh(volume), volume, hull.grid, reach);
         keep_still(before, volume, after);
@@ -144,13 +149,17 @@ class Refiner {
     return out;
   }
 
-  /// Moves the surface to where the photographs agree.
-  void step(SparseVolume& volume, int offsets, LevelReport& counts) {
+  /// Moves the surface to where the photographs agree; `first`: at the first level.
+  void step(SparseVolume& volume, bool first, LevelReport& counts) {
+    const int offsets = first ? options_.coarse_offsets : options_.fine_offsets;
     const TriMesh mesh = extract_mesh(volume);
     const VertexGraph graph = make_graph(mesh);
     const std::vector<glm::vec3> positions = voxel_positions(volume.grid, mesh);
+    // The curvature of a guess that no silhouette shaped says nothing of the surface's.
     const std::vector<glm::vec3> bends =
-        curvatures(graph, positions, mesh.normals, options_.match.most_bend);
+        first && !any_silhouette(silhouettes_)
+            ? std::vector<glm::vec3>()
+            : curvatures(graph, positions, mesh.normals, options_.match.most_bend);
     const OffsetRange range{-options_.step * (offsets / 2), options_.step, offsets};
     Matches matches = match_patches(context_, volume.grid, mesh, bends, images_, cameras_,
                                     options_.noise_sigma, range, options_.match);
@@ -172,6 +181,9 @@ class Refiner {
     counts.samples += matches.samples;
     double sum = 0;
     for (const float move : moves) sum += std::abs(move);
+    const auto told =
+        std::count_if(peaks.begin(), peaks.end(), [](const Peak& peak) { return peak.weight > 0; });
+    counts.evidence = double(told) / double(std::max<std::size_t>(peaks.size(), 1));
     counts.mean_move = sum / double(std::max<std::size_t>(moves.size(), 1));
   }
 
@@ -247,8 +259,10 @@ SparseVolume refine_surface(gpu::Context& context, const GridSpec& finest, const
     const glm::ivec3 n = grid.voxels();
     return std::max({n.x, n.y, n.z});
   };
+  const int coarsest = any_silhouette(silhouettes) ? RefineOptions::kCoarsestVoxels
+                                                   : RefineOptions::kCoarsestWithoutMasks;
   while (options.levels > 0 ? int(grids.size()) < options.levels
-                            : longest(grids.front()) > RefineOptions::kCoarsestVoxels)
+                            : longest(grids.front()) > coarsest)
     grids.insert(grids.begin(), coarser(grids.front()));
   RefineReport counts;
   SparseVolume volume =

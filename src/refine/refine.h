@@ -22,9 +22,10 @@ namespace photohull::refine {
 
 struct RefineOptions {
   /// Voxel sizes, each half the one before; the last is the result's. 0: as many as bring the first
-  /// grid to kCoarsestVoxels along its longest side.
+  /// grid to kCoarsestVoxels along its longest side, or to fewer where no silhouette brings the
+  /// first guess near the surface.
   int levels = 0;
-  static constexpr int kCoarsestVoxels = 80;
+  static constexpr int kCoarsestVoxels = 80, kCoarsestWithoutMasks = 40;
   int coarse_iterations = 3;  ///< of matching and moving, at the first level
   int middle_iterations = 2;
   int fine_iterations = 1;  ///< at the last level
@@ -56,6 +57,7 @@ struct LevelReport {
   std::int64_t bricks = 0;    ///< stored at the end
   std::int64_t restored = 0;  ///< voxels of the hull that silhouettes brought back
   double mean_move = 0;       ///< of the last iteration, voxels
+  double evidence = 0;        ///< share of its surfels that the photographs say a place for
 };
 
 /// One pass of the photometric refinement.

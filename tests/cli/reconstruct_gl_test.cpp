@@ -50,7 +50,7 @@ TEST_F(Reconstruct, ReportHasTheDocumentedFields) {
     "grid": {"origin": [], "voxel_size": 0.1, "voxels": [], "bricks_stored": 1},
     "hull": {"nodes_tested": 1, "bricks_evaluated": 1},
     "photo": {"sweeps": 1, "voxels_judged": 1, "voxels_carved": 1, "voxels_undecided": 1},
-    "refine": [], "mesh": {"vertices": 1, "triangles": 1, "uniform_triangles": 1, "unseen_share": 0.1}})");
+    "refine": [], "refine_fits": [], "mesh": {"vertices": 1, "triangles": 1, "uniform_triangles": 1, "unseen_share": 0.1}})");
   const json fields = schema.flatten();
   for (const auto& [key, value] : fields.items()) {
     const json::json_pointer pointer(key);
@@ -69,7 +69,7 @@ TEST_F(Reconstruct, ReportHasTheDocumentedFields) {
   EXPECT_EQ(r["mesh"]["triangles"], mesh().triangles.size());
   std::vector<std::string> stages;
   for (const json& stage : r["stages"]) stages.push_back(stage["name"]);
-  EXPECT_THAT(stages, ElementsAre("scene", "device", "views", "hull", "images", "photo", "clean",
+  EXPECT_THAT(stages, ElementsAre("scene", "device", "views", "hull", "images", "refine", "clean",
                                   "mesh", "colour", "files", "preview"));
 }
 
@@ -145,8 +145,18 @@ TEST_F(Reconstruct, MasksMayBeFoundOrLeftOut) {
 }
 
 TEST_F(Reconstruct, WithoutMasksColoursCarve) {
-  succeed(reconstruct({"--masks", "none"}));
+  succeed(reconstruct({"--masks", "none", "--method", "space-carving"}));
   EXPECT_GT(report()["photo"]["voxels_carved"], 100);
+  EXPECT_EQ(open_edges(mesh()), 0u);
+}
+
+TEST_F(Reconstruct, WithoutMasksPhotographsFindTheSurface) {
+  succeed(reconstruct({"--masks", "none", "--method", "hull"}));
+  const double hull = signed_volume(mesh());
+  succeed(reconstruct({"--masks", "none"}));
+  EXPECT_FALSE(report()["refine"].empty());
+  EXPECT_GT(signed_volume(mesh()), kSphereVolume);
+  EXPECT_LT(signed_volume(mesh()), 0.8 * hull);
   EXPECT_EQ(open_edges(mesh()), 0u);
 }
 

@@ -64,7 +64,7 @@ TEST_F(Refine, ParametersCanBeTuned) {
   succeed(
       reconstruct({"--method", "refine", "--tune", "levels=1", "--tune", "peak.least_score=0.4"}));
   EXPECT_EQ(report()["options"]["tune"], "levels=1 peak.least_score=0.4");
-  succeed(reconstruct({"--tune", "max_rounds=1"}));
+  succeed(reconstruct({"--method", "space-carving", "--tune", "max_rounds=1"}));
 }
 
 TEST_F(Refine, WrongTuningIsRefused) {

@@ -35,7 +35,7 @@ TEST(Accuracy, Sphere) {
   expect_scores(SyntheticScene("sphere", 12, 320, 240), 64,
                 {{Method::kHull, 95.68, 94.7, 99.72, 99.2},
                  {Method::kSpaceCarving, 96.57, 95.6, 99.88, 99.4},
-                 {Method::kRefine, 97.23, 96.2, 99.45, 98.8}});
+                 {Method::kRefine, 98.33, 97.3, 99.86, 99.2}});
 }
 
 TEST(Accuracy, Block) {
@@ -49,14 +49,14 @@ TEST(Accuracy, RodsBeforeTexture) {
   expect_scores(SyntheticScene("rods_before_texture", 24, 320, 240), 96,
                 {{Method::kHull, 20.55, 19.5, 26.6, 25.6},
                  {Method::kSpaceCarving, 18.09, 17.1, 24.62, 23.6},
-                 {Method::kRefine, 61.27, 59.8, 67.13, 65.6}});
+                 {Method::kRefine, 73.01, 71.5, 77.6, 76}});
 }
 
 TEST(Accuracy, Pawn) {
   expect_scores(SyntheticScene("pawn", 16, 320, 240), 96,
                 {{Method::kHull, 87.28, 86.3, 94.35, 93.3},
                  {Method::kSpaceCarving, 86.12, 85.1, 95.58, 94.6},
-                 {Method::kRefine, 98.37, 97.4, 99.99, 99.4}});
+                 {Method::kRefine, 99.47, 98.5, 99.98, 99.4}});
 }
 
 }  // namespace
