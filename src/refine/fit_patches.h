@@ -25,7 +25,7 @@ struct FitOptions {
   double slope = 0.05;          ///< standard deviation of the surfels' slopes
   double largest_offset = 0.5;  ///< voxels; fits that reach it do not count
   double largest_step = 0.5;    ///< voxels
-  double most_bend = 0.5;       ///< largest curvature that a patch follows, 1 / voxel
+  double most_bend = 1.0;       ///< largest curvature that a patch follows, 1 / voxel
   double sure = 0.1;            ///< standard deviation (voxels) of an offset that weighs 1
   double most_weight = 4;       ///< of an offset in the regularisation
   double membrane = 30;         ///< as RegularizeOptions has them, for the fitted offsets

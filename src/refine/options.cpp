@@ -36,6 +36,11 @@ void check(const CloseOptions& o) {
   require(is_length(o.thickness), "close.thickness must lie in [0, 1000] voxels");
 }
 
+void check(const RimOptions& o) {
+  require(o.weight >= 0 && o.weight <= 1000, "rims.weight must lie in [0, 1000]");
+  require(o.reach > 0 && is_length(o.reach), "rims.reach must lie in (0, 1000] voxels");
+}
+
 void check(const MatchOptions& o) {
   require(o.least_spacing > 0 && is_length(o.least_spacing),
           "match.least_spacing must be positive");
@@ -100,6 +105,7 @@ void RefineOptions::validate() const {
   require(noise_sigma > 0 && std::isfinite(noise_sigma), "noise_sigma must be positive");
   check(vote);
   check(close);
+  check(rims);
   require(restore.least_views >= 1, "restore.least_views must be at least 1");
   check(match);
   require(photometric >= 0 && photometric <= 100, "photometric must be 0 to 100");

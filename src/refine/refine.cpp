@@ -112,7 +112,7 @@ class Refiner {
       for (int i = 0; i < iterations; ++i) {
         progress.check_cancelled();
         const SparseVolume before = volume;
-        step(volume, first, counts);
+        step(volume, hull, first, counts);
         const double reach = last && i + 1 == iterations ? kFullReach : kNearReach;
         SparseVolume after = distance_from_mesh(extract_mesh(volume), volume, hull.grid, reach);
         keep_still(before, volume, after);
@@ -150,7 +150,7 @@ class Refiner {
   }
 
   /// Moves the surface to where the photographs agree; `first`: at the first level.
-  void step(SparseVolume& volume, bool first, LevelReport& counts) {
+  void step(SparseVolume& volume, const SparseVolume& hull, bool first, LevelReport& counts) {
     const int offsets = first ? options_.coarse_offsets : options_.fine_offsets;
     const TriMesh mesh = extract_mesh(volume);
     const VertexGraph graph = make_graph(mesh);
@@ -168,6 +168,8 @@ class Refiner {
     const std::vector<float> trust =
         trust_thickness(volume, positions, mesh.normals, options_.peak.thick);
     for (std::size_t i = 0; i < peaks.size(); ++i) peaks[i].weight *= trust[i];
+    // Not at first: what no silhouette shows is still to be found under the hull.
+    if (!first && any_silhouette(silhouettes_)) pull_to_hull(hull, positions, options_.rims, peaks);
     std::vector<float> moves =
         regularize(graph, peaks, positions, mesh.normals, trust, options_.regularize);
     if (options_.closing) {
@@ -218,6 +220,7 @@ class Refiner {
           trust_thickness(volume, positions, mesh.normals, options_.peak.thick);
       // What patches cannot be trusted with stays where it is.
       for (std::size_t k = 0; k < peaks.size(); ++k) peaks[k].offset *= trust[k];
+      if (any_silhouette(silhouettes_)) pull_to_hull(hull, positions, options_.rims, peaks);
       RegularizeOptions smooth = options_.regularize;
       smooth.membrane = options_.fit.membrane, smooth.fairing = options_.fit.fairing;
       const std::vector<float> moves =

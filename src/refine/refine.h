@@ -16,6 +16,7 @@
 #include "refine/fit_patches.h"
 #include "refine/match.h"
 #include "refine/restore.h"
+#include "refine/rims.h"
 #include "refine/vote.h"
 
 namespace photohull::refine {
@@ -39,6 +40,7 @@ struct RefineOptions {
   bool closing = true;  ///< of surface that no camera sees
   CloseOptions close;
   RestoreOptions restore;
+  RimOptions rims;
   MatchOptions match;
   int photometric = 1;  ///< iterations of fitting patches, at the end; fewer when they stop helping
   FitOptions fit;

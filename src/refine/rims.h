@@ -1,0 +1,23 @@
+// What silhouettes say where photographs say little.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/grid.h"
+#include "refine/displacement.h"
+
+namespace photohull::refine {
+
+struct RimOptions {
+  double weight = 0.5;  ///< of the hull among the peaks, where the surface lies on it; 0: none
+  double reach = 1.0;   ///< voxels under the hull at which it has lost its say
+};
+
+/// Mixes into the peaks of vertices on the hull, or just under it, that they want to lie on it:
+/// the less the photographs say (weight of the peak below 1) the more it counts. `positions`
+/// in voxels of the hull's grid.
+void pull_to_hull(const SparseVolume& hull, std::span<const glm::vec3> positions,
+                  const RimOptions& options, std::vector<Peak>& peaks);
+
+}  // namespace photohull::refine

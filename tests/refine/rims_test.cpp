@@ -1,0 +1,63 @@
+#include "refine/rims.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace photohull::refine {
+namespace {
+
+using glm::vec3;
+
+/// A ball of radius 8 voxels about the middle of a grid of 24.
+SparseVolume ball() {
+  SparseVolume volume;
+  volume.grid = {{0, 0, 0}, 1, {3, 3, 3}};
+  for (int z = 0; z < 3; ++z)
+    for (int y = 0; y < 3; ++y)
+      for (int x = 0; x < 3; ++x) {
+        volume.table.push_back(std::uint32_t(volume.bricks.size()));
+        volume.bricks.emplace_back(x, y, z);
+        for (int i = 0; i < kBrickVoxels; ++i) {
+          const vec3 at(8 * x + (i >> 6), 8 * y + ((i >> 3) & 7), 8 * z + (i & 7));
+          volume.distance.push_back(glm::clamp(glm::distance(at, vec3(12)) - 8, -3.0f, 3.0f));
+        }
+      }
+  return volume;
+}
+
+/// The peak of a vertex so far under the ball's surface, after the hull has had its say.
+Peak pulled(float under, const Peak& peak, const RimOptions& options = {}) {
+  const std::vector<vec3> positions = {vec3(12) + (8 - under) * glm::normalize(vec3(1, 2, -0.5))};
+  std::vector<Peak> peaks = {peak};
+  pull_to_hull(ball(), positions, options, peaks);
+  return peaks[0];
+}
+
+TEST(PullToHull, WithoutEvidenceTheHullIsThePlace) {
+  const Peak peak = pulled(0.5f, {});
+  EXPECT_NEAR(peak.offset, 0.5, 0.1);
+  EXPECT_NEAR(peak.weight, 0.5 * RimOptions().weight, 0.1 * RimOptions().weight);
+}
+
+TEST(PullToHull, WhatLiesDeeperIsNotItsBusiness) {
+  const Peak peak = pulled(1.6f, {-0.7f, 0.4f, 0.6f});
+  EXPECT_FLOAT_EQ(peak.offset, -0.7f);
+  EXPECT_FLOAT_EQ(peak.weight, 0.4f);
+}
+
+TEST(PullToHull, StrongEvidenceHardlyGivesWay) {
+  const Peak peak = pulled(0.2f, {-0.5f, 4, 0.9f});
+  EXPECT_NEAR(peak.offset, -0.5, 0.05);
+  const Peak weaker = pulled(0.2f, {-0.5f, 0.5f, 0.9f});
+  EXPECT_GT(weaker.offset, -0.45f);
+}
+
+TEST(PullToHull, NoWeightNoChange) {
+  const Peak peak = pulled(0.2f, {}, {.weight = 0});
+  EXPECT_EQ(peak.offset, 0);
+  EXPECT_EQ(peak.weight, 0);
+}
+
+}  // namespace
+}  // namespace photohull::refine
