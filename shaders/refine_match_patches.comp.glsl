@@ -3,7 +3,8 @@
 // Photo-consistency of tangent patches at offsets along the normal: all chosen views are projected
 // onto the patch by one affine footprint each, at the mip level of its area, and compared with the
 // reference view by zero-mean normalised cross-correlation over all channels, with the image noise
-// as a floor of both variances; the score is the mean of the best share of the pairs. With PATCH_BENT
+// as a floor of both variances; the score is the mean of the best share of the pairs. The share of the
+// reference's variance that is not noise, at the middle offset, is the surfel's texture. With PATCH_BENT
 // patches follow the surface's curvature. One thread
 // an offset of a surfel, so that the threads of a vector share their views.
 // Reference: refine::reference::match_patch.
@@ -17,6 +18,7 @@ layout(std140, binding = 0) uniform Parameters { MatchParameters parameters; };
 layout(std430, binding = 1) readonly buffer Surfels { BakeVertex surfels[]; };
 layout(std430, binding = 2) readonly buffer Choices { MatchChoice choices[]; };
 layout(std430, binding = 3) writeonly buffer Scores { float scores[]; };
+layout(std430, binding = 5) writeonly buffer Textures { float textures[]; };  // of the surfels, [0, 1]
 #ifdef PATCH_BENT
 layout(std430, binding = 4) readonly buffer Bends { vec4 bends[]; };  // curvature along uu, uv, vv
 #endif
@@ -32,6 +34,7 @@ void main() {
   int count = choices[i].second.w;
   if (count < 2) {
     scores[gl_GlobalInvocationID.x] = kNoScore;
+    textures[i] = 1.0;
     return;
   }
   int chosen[kMatchViews] = int[kMatchViews](choices[i].first.x, choices[i].first.y, choices[i].first.z,
@@ -57,7 +60,9 @@ void main() {
   }
   const float n = float(kTaps);
   float floor_of_noise = 3.0 * n * parameters.consistency.x;
-  float scale = inversesqrt(max(squares - dot(sum, sum) / n, 0.0) + floor_of_noise);
+  float variance = max(squares - dot(sum, sum) / n, 0.0);
+  float scale = inversesqrt(variance + floor_of_noise);
+  if (gl_GlobalInvocationID.x % offsets == offsets / 2u) textures[i] = variance * scale * scale;
 
   float pairs[kMatchViews - 1];
   for (int k = 0; k < kMatchViews - 1; ++k) pairs[k] = -1.0;

@@ -67,6 +67,8 @@ class Matcher {
         [&](std::size_t first, std::size_t count, const Buffer& choices) {
           const Buffer scores(count * offsets * sizeof(float));
           scores.bind_storage(3);
+          const Buffer textures(count * sizeof(float));
+          textures.bind_storage(5);
           Buffer curvature;
           if (!bends.empty()) {
             std::vector<glm::vec4> part;
@@ -76,6 +78,8 @@ class Matcher {
           }
           program.dispatch(context_, "refine_match_patches", gpu::group_count(count * offsets, 64));
           scores.read(0, count * offsets * sizeof(float), out.scores.data() + first * offsets);
+          const auto texture = textures.download<float>(count);
+          out.texture.insert(out.texture.end(), texture.begin(), texture.end());
           for (const auto& choice : choices.download<shaders::MatchChoice>(count)) {
             if (chosen) chosen->push_back(choice);
             out.seen.push_back(choice.second.z > 0);

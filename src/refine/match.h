@@ -37,9 +37,11 @@ struct OffsetRange {
 
 struct Matches {
   OffsetRange range;
-  std::vector<float> scores;  ///< vertices x range.count; kNoScore where nothing is known
-  std::vector<bool> seen;     ///< per vertex: by any camera, however flatly
-  std::int64_t samples = 0;   ///< texture samples taken
+  std::vector<float> scores;   ///< vertices x range.count; kNoScore where nothing is known
+  std::vector<float> texture;  ///< per vertex, [0, 1]: share of a patch's variance that noise does
+                               ///< not explain; 1 where nothing is known
+  std::vector<bool> seen;      ///< per vertex: by any camera, however flatly
+  std::int64_t samples = 0;    ///< texture samples taken
 
   std::span<const float> of(std::size_t vertex) const {
     return {scores.data() + vertex * std::size_t(range.count), std::size_t(range.count)};

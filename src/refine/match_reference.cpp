@@ -79,6 +79,22 @@ double product(const std::vector<dvec3>& a, const std::vector<dvec3>& b) {
   return sum;
 }
 
+/// Steps between the taps of a patch.
+struct Frame {
+  dvec3 u, v;
+};
+
+Frame frame(const MatchView& reference, const Patch& patch, const MatchOptions& options) {
+  const double pixel =
+      glm::distance(reference.camera.centre, patch.centre) / reference.camera.focal;
+  const double spacing = std::max(options.least_spacing, options.pixel_spacing * pixel);
+  const dvec3 axis = std::abs(patch.normal.x) < 0.6 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
+  const dvec3 u = spacing * glm::normalize(glm::cross(axis, patch.normal));
+  const dvec3 v = glm::cross(patch.normal, u);
+
+  return {u, v};
+}
+
 }  // namespace
 
 // Quotient rule on s / q, t / q.
@@ -149,19 +165,12 @@ Choice choose_views(std::span<const MatchView> views, const dvec3& position, con
 double match_patch(std::span<const MatchView> views, std::span<const int> chosen,
                    const Patch& patch, double noise_sigma, const MatchOptions& options) {
   if (chosen.size() < 2) return shaders::kNoScore;
-  const MatchView& reference = views[std::size_t(chosen[0])];
-  const double pixel =
-      glm::distance(reference.camera.centre, patch.centre) / reference.camera.focal;
-  const double spacing = std::max(options.least_spacing, options.pixel_spacing * pixel);
-  const dvec3 axis = std::abs(patch.normal.x) < 0.6 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
-  const dvec3 u = spacing * glm::normalize(glm::cross(axis, patch.normal));
-  const dvec3 v = glm::cross(patch.normal, u);
-
-  const std::vector<dvec3> own = taps(reference, patch, u, v);
+  const Frame f = frame(views[std::size_t(chosen[0])], patch, options);
+  const std::vector<dvec3> own = taps(views[std::size_t(chosen[0])], patch, f.u, f.v);
   const double noise = 3 * double(own.size()) * noise_sigma * noise_sigma;
   std::vector<double> scores;
   for (const int other : chosen.subspan(1)) {
-    const std::vector<dvec3> theirs = taps(views[std::size_t(other)], patch, u, v);
+    const std::vector<dvec3> theirs = taps(views[std::size_t(other)], patch, f.u, f.v);
     scores.push_back(product(own, theirs) /
                      std::sqrt((product(own, own) + noise) * (product(theirs, theirs) + noise)));
   }
@@ -170,6 +179,15 @@ double match_patch(std::span<const MatchView> views, std::span<const int> chosen
   double sum = 0;
   for (std::size_t i = 0; i < best; ++i) sum += scores[i];
   return sum / double(best);
+}
+
+double texture_of(std::span<const MatchView> views, std::span<const int> chosen, const Patch& patch,
+                  double noise_sigma, const MatchOptions& options) {
+  if (chosen.size() < 2) return 1;
+  const Frame f = frame(views[std::size_t(chosen[0])], patch, options);
+  const std::vector<dvec3> own = taps(views[std::size_t(chosen[0])], patch, f.u, f.v);
+  const double variance = product(own, own);
+  return variance / (variance + 3 * double(own.size()) * noise_sigma * noise_sigma);
 }
 
 }  // namespace photohull::refine::reference

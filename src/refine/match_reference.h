@@ -60,4 +60,9 @@ struct Patch {
 double match_patch(std::span<const MatchView> views, std::span<const int> chosen,
                    const Patch& patch, double noise_sigma, const MatchOptions& options);
 
+/// Share of the variance of the patch in the reference view that noise does not explain; 1 below
+/// two views.
+double texture_of(std::span<const MatchView> views, std::span<const int> chosen, const Patch& patch,
+                  double noise_sigma, const MatchOptions& options);
+
 }  // namespace photohull::refine::reference

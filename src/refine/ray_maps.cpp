@@ -164,6 +164,8 @@ class RayMatcher {
       surfel_buffer.bind_storage(1);
       choice_buffer.bind_storage(2);
       scores.bind_storage(3);
+      const Buffer textures(count * sizeof(float));
+      textures.bind_storage(5);
       images_.texture().bind(0);
       program.dispatch(context_, "refine_vote", gpu::group_count(count * std::size_t(length), 64));
       const auto s = scores.download<float>(count * std::size_t(length));

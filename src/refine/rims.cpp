@@ -23,12 +23,13 @@ float distance_at(const SparseVolume& volume, const glm::vec3& p) {
 }  // namespace
 
 void pull_to_hull(const SparseVolume& hull, std::span<const glm::vec3> positions,
-                  const RimOptions& options, std::vector<Peak>& peaks) {
+                  std::span<const float> texture, const RimOptions& options,
+                  std::vector<Peak>& peaks) {
   tbb::parallel_for(std::size_t(0), peaks.size(), [&](std::size_t i) {
     const float under = -distance_at(hull, positions[i]);
     const float share = 1 - std::clamp(under, 0.0f, float(options.reach)) / float(options.reach);
     Peak& peak = peaks[i];
-    const float weight = float(options.weight) * share * std::max(1 - peak.weight, 0.0f);
+    const float weight = float(options.weight) * share * (1 - texture[i]);
     if (!(weight > 0)) return;
     peak.offset = (peak.weight * peak.offset + weight * under) / (peak.weight + weight);
     peak.weight += weight;

@@ -10,14 +10,15 @@
 namespace photohull::refine {
 
 struct RimOptions {
-  double weight = 0.5;  ///< of the hull among the peaks, where the surface lies on it; 0: none
+  double weight = 3.0;  ///< of the hull among the peaks, where nothing has texture; 0: none
   double reach = 1.0;   ///< voxels under the hull at which it has lost its say
 };
 
 /// Mixes into the peaks of vertices on the hull, or just under it, that they want to lie on it:
-/// the less the photographs say (weight of the peak below 1) the more it counts. `positions`
+/// the less texture a vertex has (Matches::texture) the more it counts. `positions`
 /// in voxels of the hull's grid.
 void pull_to_hull(const SparseVolume& hull, std::span<const glm::vec3> positions,
-                  const RimOptions& options, std::vector<Peak>& peaks);
+                  std::span<const float> texture, const RimOptions& options,
+                  std::vector<Peak>& peaks);
 
 }  // namespace photohull::refine

@@ -61,12 +61,15 @@ class MatchPatches : public ::testing::Test {
     surfel_buffer.bind_storage(1);
     choice_buffer.bind_storage(2);
     scores.bind_storage(3);
+    const gpu::Buffer textures(probes.size() * sizeof(float));
+    textures.bind_storage(5);
     images.texture().bind(0);
     gpu::Program::compute(
         "refine_match_patches.comp.glsl",
         "#define PATCH_RADIUS " + std::to_string(radius) + "\n#define PATCH_BENT\n")
         .dispatch(context, "refine_match_patches", gpu::group_count(count, 64));
     context.check_errors("match patches test");
+    textures_ = textures.download<float>(probes.size());
     return scores.download<float>(count);
   }
 
@@ -86,6 +89,15 @@ class MatchPatches : public ::testing::Test {
       wrong += !(error < bound_);
       worst_ = std::max(worst_, error);
       greatest_ = std::max(greatest_, double(scores[i]));
+    }
+    for (std::size_t i = 0; i < probes.size(); ++i) {
+      const Probe& probe = probes[i];
+      const double offset = range_.at(range_.count / 2) * probe.scale;
+      const double expected = reference::texture_of(
+          views, probe.views,
+          {probe.position + offset * probe.normal, probe.normal, radius, probe.bend}, noise_,
+          options_);
+      wrong += !(std::abs(textures_[i] - expected) < bound_);
     }
     return wrong;
   }
@@ -141,6 +153,7 @@ class MatchPatches : public ::testing::Test {
   MatchOptions options_;
   double noise_ = test::kNoise;
   double bound_ = kBound;
+  std::vector<float> textures_;
   double worst_ = 0, greatest_ = -1;
 };
 

@@ -27,34 +27,35 @@ SparseVolume ball() {
 }
 
 /// The peak of a vertex so far under the ball's surface, after the hull has had its say.
-Peak pulled(float under, const Peak& peak, const RimOptions& options = {}) {
+Peak pulled(float under, const Peak& peak, float texture, const RimOptions& options = {}) {
   const std::vector<vec3> positions = {vec3(12) + (8 - under) * glm::normalize(vec3(1, 2, -0.5))};
   std::vector<Peak> peaks = {peak};
-  pull_to_hull(ball(), positions, options, peaks);
+  pull_to_hull(ball(), positions, {&texture, 1}, options, peaks);
   return peaks[0];
 }
 
 TEST(PullToHull, WithoutEvidenceTheHullIsThePlace) {
-  const Peak peak = pulled(0.5f, {});
+  const Peak peak = pulled(0.5f, {}, 0);
   EXPECT_NEAR(peak.offset, 0.5, 0.1);
   EXPECT_NEAR(peak.weight, 0.5 * RimOptions().weight, 0.1 * RimOptions().weight);
 }
 
 TEST(PullToHull, WhatLiesDeeperIsNotItsBusiness) {
-  const Peak peak = pulled(1.6f, {-0.7f, 0.4f, 0.6f});
+  const Peak peak = pulled(1.6f, {-0.7f, 0.4f, 0.6f}, 0);
   EXPECT_FLOAT_EQ(peak.offset, -0.7f);
   EXPECT_FLOAT_EQ(peak.weight, 0.4f);
 }
 
-TEST(PullToHull, StrongEvidenceHardlyGivesWay) {
-  const Peak peak = pulled(0.2f, {-0.5f, 4, 0.9f});
-  EXPECT_NEAR(peak.offset, -0.5, 0.05);
-  const Peak weaker = pulled(0.2f, {-0.5f, 0.5f, 0.9f});
-  EXPECT_GT(weaker.offset, -0.45f);
+TEST(PullToHull, TheMoreTextureTheLess) {
+  const Peak evidence = {-0.5f, 1, 0.9f};
+  EXPECT_FLOAT_EQ(pulled(0.2f, evidence, 1).offset, -0.5f);
+  EXPECT_NEAR(pulled(0.2f, evidence, 0.99f).offset, -0.5, 0.03);
+  EXPECT_GT(pulled(0.2f, evidence, 0).offset, pulled(0.2f, evidence, 0.5f).offset);
+  EXPECT_GT(pulled(0.2f, evidence, 0.5f).offset, -0.3f);
 }
 
 TEST(PullToHull, NoWeightNoChange) {
-  const Peak peak = pulled(0.2f, {}, {.weight = 0});
+  const Peak peak = pulled(0.2f, {}, 0, {.weight = 0});
   EXPECT_EQ(peak.offset, 0);
   EXPECT_EQ(peak.weight, 0);
 }
