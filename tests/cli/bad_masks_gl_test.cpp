@@ -69,10 +69,13 @@ TEST_F(BadMasks, OneEmptyMaskIsNamed) {
 
 TEST_F(BadMasks, UniformPhotographsGiveTheHullAndAWarning) {
   paint_images(90, 255);
-  const Finished run = succeed(reconstruct());
+  const Finished carved = succeed(reconstruct({"--method", "space-carving"}));
   const auto report = nlohmann::json::parse(read_bytes(path("out/report.json")));
   EXPECT_EQ(report["photo"]["voxels_carved"], 0);
-  EXPECT_THAT(run.err, HasSubstr("warning: the photographs show too little texture"));
+  EXPECT_THAT(carved.err, HasSubstr("warning: the photographs show too little texture"));
+  const Finished refined = succeed(reconstruct());
+  EXPECT_THAT(refined.err,
+              HasSubstr("warning: the photographs tell where the surface is on 0 % of it only"));
 }
 
 TEST_F(BadMasks, TransparentPhotographsCountAsUnmasked) {

@@ -68,7 +68,7 @@ TEST_F(Output, SignalsStopTheJobAndLeaveEarlierResults) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     RunOptions stopped;
     stopped.signal = signal;
-    stopped.signal_after = " photo\n";
+    stopped.signal_after = " refine\n";
     stopped.timeout_seconds = 60;
     const Finished run = fail(130, long_job(), {"cancelled"}, stopped);
     EXPECT_THAT(run.err, Not(HasSubstr(" mesh\n")));
@@ -89,7 +89,7 @@ TEST_F(Output, ABarOnATerminal) {
   terminal.error_terminal = true;
   const Finished run = succeed(reconstruct({"--resolution", "96", "--json"}), terminal);
   EXPECT_THAT(run.out, StartsWith("{"));
-  EXPECT_THAT(run.err, ContainsRegex("\\[#*\\.*\\] +[0-9]+ % photo, [0-9]+ s left"));
+  EXPECT_THAT(run.err, ContainsRegex("\\[#*\\.*\\] +[0-9]+ % refine, [0-9]+ s left"));
   EXPECT_THAT(run.err, testing::EndsWith("\r\033[K"));  // the line is given back clean
 }
 

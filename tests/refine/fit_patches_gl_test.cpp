@@ -245,11 +245,12 @@ TEST_F(FitPatches, ComesBackToASphereWithItsCurvature) {
                                                   test::choice_of({0, 1, 2, 3, 4, 5}));
   options_.steps = 5;
   options_.largest_offset = 1;
+  gpu::Context& context = test::gl_context();  // before the images need it
   const auto error = [&] {
     double sum = 0;
-    for (const auto& r : fit_patches(test::gl_context(), test::kGrid, mesh, make_graph(mesh),
-                                     projtex::ImageSet(views_), projtex::cameras_of(views_),
-                                     choices, noise_, options_))
+    for (const auto& r :
+         fit_patches(context, test::kGrid, mesh, make_graph(mesh), projtex::ImageSet(views_),
+                     projtex::cameras_of(views_), choices, noise_, options_))
       sum += r.plane.w + 0.5;
     return std::abs(sum / double(mesh.positions.size()));
   };
