@@ -41,6 +41,10 @@ namespace fs = std::filesystem;
 // High quality: iterations of matching at the finest voxels, passes of fitting patches to the
 // photographs after them, and Gauss-Newton steps of each.
 constexpr int kHighIterations = 2, kHighPasses = 3, kHighSteps = 3;
+// Masks that were made from the background are wrong in places, and mostly at their rims: a part
+// comes back only when one view in so many asks for it, so many pixels within its mask.
+constexpr int kDoubtingViews = 6;
+constexpr double kDoubtfulRim = 2;
 constexpr double kLeastEvidence = 0.1;    // share of the surface below which a result is doubtful
 constexpr double kDebrisFraction = 5e-4;  // of the largest part's voxels
 constexpr int kCropMargin = 24;           // pixels around the box's projection: patches, mip levels
@@ -250,6 +254,11 @@ class Job {
       o.fine_iterations = kHighIterations;
       o.photometric = kHighPasses;
       o.fit.steps = kHighSteps;
+    }
+    if (report_.mask_confidence < 1) {
+      o.restore.least_views =
+          std::max(o.restore.least_views, int(cameras_.size()) / kDoubtingViews);
+      o.restore.least_inside = kDoubtfulRim;
     }
     tune(options_.tune, o);
     refine::RefineReport counts;

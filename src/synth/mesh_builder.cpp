@@ -92,7 +92,7 @@ void MeshBuilder::add_sphere_like(int rows, int columns, const Grid& point) {
       if (row > 0) triangles.push_back({at(row, c), at(row, c + 1), at(row + 1, c)});
       if (row < rows - 1) triangles.push_back({at(row, c + 1), at(row + 1, c + 1), at(row + 1, c)});
     }
-  add_part(points, std::move(triangles));
+  add_part(points, triangles);
 }
 
 void MeshBuilder::add_torus_like(int rows, int columns, const Grid& point) {
@@ -108,7 +108,7 @@ void MeshBuilder::add_torus_like(int rows, int columns, const Grid& point) {
       triangles.push_back({at(row, c), at(row, c + 1), at(row + 1, c)});
       triangles.push_back({at(row, c + 1), at(row + 1, c + 1), at(row + 1, c)});
     }
-  add_part(points, std::move(triangles));
+  add_part(points, triangles);
 }
 
 void MeshBuilder::add_revolution(const std::vector<glm::dvec2>& profile, int columns) {
@@ -135,7 +135,7 @@ void MeshBuilder::add_extrusion(const std::vector<glm::dvec2>& polygon, double l
     triangles.push_back({j, i, i + n});
     triangles.push_back({j, i + n, j + n});
   }
-  add_part(points, std::move(triangles));
+  add_part(points, triangles);
 }
 
 void MeshBuilder::add_box(const glm::dvec3& low, const glm::dvec3& high) {

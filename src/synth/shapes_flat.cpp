@@ -77,7 +77,7 @@ TriMesh make_block(const ShapeValues& v) {
     m.quad(bottom + j, bottom + i, top + i, top + j);
   }
   MeshBuilder builder;
-  builder.add_part(m.points, std::move(m.triangles));
+  builder.add_part(m.points, m.triangles);
   return builder.take();
 }
 
