@@ -12,11 +12,12 @@ namespace photohull::pipeline {
 namespace {
 
 constexpr double kDegrees = 57.29577951308232;
-// Within 30 % of the CPU seconds and the memory that `photohull reconstruct --json` reported for
-// templeRing, bunny and fandisk on a software rasterizer; they only feed the estimate.
+// Within a factor of two of the CPU seconds, and a third of the memory, that `photohull reconstruct
+// --json` reported for templeRing, dinoRing and armadillo on a software rasterizer: how much surface
+// a box holds is not known before. They only feed the estimate.
 constexpr double kSecondsPerPixel = 3.5e-8;
-constexpr double kSecondsPerSurfaceVoxel = 6.6e-5;
-constexpr std::int64_t kBaseMemory = 200 << 20;  // libraries and the driver's compiler
+constexpr double kSecondsPerSurfaceVoxel = 3.5e-5;
+constexpr std::int64_t kBaseMemory = 280 << 20;  // libraries and the driver's compiler
 constexpr double kSmallestBaseline = 3;          // degrees: closer views tell little about depth
 constexpr double kLargestBaseline = 50;          // degrees: farther views hardly correlate
 
