@@ -95,21 +95,6 @@ double median_noise(std::span<const View> views) {
   return std::max(values[values.size() / 2], 1.0 / 255 / std::sqrt(12.0));
 }
 
-/// Throws UsageError for parameters that the method does not have or take.
-void check_tuning(const std::vector<std::string>& assignments, Method method) {
-  if (method == Method::kRefine) {
-    refine::RefineOptions o;
-    tune(assignments, o);
-    o.validate();
-  } else if (method != Method::kHull) {
-    carving::PhotoOptions o;
-    tune(assignments, o);
-    o.validate();
-  } else if (!assignments.empty()) {
-    throw UsageError(concat("--tune ", assignments[0], ": the hull has no parameters"));
-  }
-}
-
 class Job {
  public:
   Job(const ReconstructOptions& options, Progress& progress)
@@ -451,83 +436,6 @@ class Job {
 };
 
 }  // namespace
-
-const char* to_string(Quality quality) {
-  switch (quality) {
-    case Quality::kDraft:
-      return "draft";
-    case Quality::kNormal:
-      return "normal";
-    case Quality::kHigh:
-      return "high";
-  }
-  return "?";
-}
-
-const char* to_string(Method method) {
-  switch (method) {
-    case Method::kHull:
-      return "hull";
-    case Method::kVoxelColoring:
-      return "voxel-coloring";
-    case Method::kSpaceCarving:
-      return "space-carving";
-    case Method::kRefine:
-      return "refine";
-  }
-  return "?";
-}
-
-const char* to_string(Unseen unseen) { return unseen == Unseen::kOpen ? "open" : "closed"; }
-
-MeshError parse_mesh_error(const std::string& text) {
-  MeshError error;
-  char* end = nullptr;
-  error.value = std::strtod(text.c_str(), &end);
-  error.world_units = end != text.c_str() && *end == 'u';
-  const bool whole = end != text.c_str() && *(end + (error.world_units ? 1 : 0)) == 0;
-  if (!whole || !std::isfinite(error.value) || error.value < 0)
-    throw UsageError(concat("--mesh-error ", text,
-                            ": expected 0 or a positive number, of voxels (0.25) or, with a u, of "
-                            "world units (0.002u)"));
-  return error;
-}
-
-double footprint_factor(Quality quality) {
-  switch (quality) {
-    case Quality::kDraft:
-      return 4.0;
-    case Quality::kNormal:
-      return 1.5;
-    case Quality::kHigh:
-      return 1.25;
-  }
-  return 1.5;
-}
-
-void ReconstructOptions::validate() const {
-  load.validate();
-  if (output.empty()) throw UsageError("--out is empty: give a folder for the results");
-  const bool index = !device.empty() && device.find_first_not_of("0123456789") == std::string::npos;
-  if (device != "auto" && device != "software" && !index)
-    throw UsageError(concat("--device ", device,
-                            ": expected auto, software or an index of 'photohull devices'"));
-  if (resolution && voxel_size)
-    throw UsageError("--resolution and --voxel-size exclude each other: give one");
-  if (resolution && *resolution < 2)
-    throw UsageError(concat("--resolution ", *resolution, ": at least 2"));
-  if (voxel_size && !(std::isfinite(*voxel_size) && *voxel_size > 0))
-    throw UsageError(concat("--voxel-size ", *voxel_size, ": must be finite and positive"));
-  if (!(std::isfinite(mesh_error.value) && mesh_error.value >= 0))
-    throw UsageError(concat("--mesh-error ", mesh_error.value, ": must be finite, 0 or more"));
-  if (threads < 0) throw UsageError(concat("--threads ", threads, ": 0 (one a core) or more"));
-  check_tuning(tune, effective_method());
-}
-
-Method ReconstructOptions::effective_method() const {
-  if (method) return *method;
-  return quality == Quality::kDraft ? Method::kHull : Method::kRefine;
-}
 
 double total_weight(const ReconstructOptions& options) {
   const Method method = options.effective_method();

@@ -237,7 +237,10 @@ class Refiner {
       pass.seconds =
           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       report.fits.push_back(pass);
-      if (options_.photometric == 1) break;  // one pass gains with every scene: not judged
+      if (options_.photometric == 1) {  // one pass gains on all development scenes: not judged
+        report.fits.back().kept = true;
+        break;
+      }
     }
   }
 
