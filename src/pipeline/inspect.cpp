@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kDegrees = 57.29577951308232;
 // Within a factor of two of the CPU seconds, and a third of the memory, that `photohull reconstruct
-// --json` reported for templeRing, dinoRing and armadillo on a software rasterizer: how much surface
-// a box holds is not known before. They only feed the estimate.
+// --json` reported for templeRing, dinoRing and armadillo on a software rasterizer: how much
+// surface a box holds is not known before. They only feed the estimate.
 constexpr double kSecondsPerPixel = 3.5e-8;
 constexpr double kSecondsPerSurfaceVoxel = 3.5e-5;
 constexpr std::int64_t kBaseMemory = 280 << 20;  // libraries and the driver's compiler
