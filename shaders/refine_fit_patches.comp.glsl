@@ -37,9 +37,11 @@ vec3 value[kTaps], slope[kTaps];
 // Weighted sums over the views so far: normalised colours, and their derivatives by the parameters.
 vec3 sum_value[kTaps], sum_d0[kTaps], sum_d1[kTaps], sum_d2[kTaps];
 
-// Fills value and slope, and how many texels a tap moves per voxel; false where the patch is not before the camera. Each tap is fetched half a
-// texel to both sides along the direction in which it moves.
-bool fetch(int v, vec3 centre, vec3 normal, vec3 u, vec3 w, vec2 slopes, vec3 bend, out float per_voxel) {
+// Fills value and slope, and how many texels a tap moves per voxel; false where the patch is not
+// before the camera. Each tap is fetched half a texel to both sides along the direction in which it
+// moves.
+bool fetch(int v, vec3 centre, vec3 normal, vec3 u, vec3 w, vec2 slopes, vec3 bend,
+           out float per_voxel) {
   GpuView view = views[v];
   vec3 p = project(view, centre);
   bool before = p.z > 1.0;

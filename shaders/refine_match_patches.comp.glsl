@@ -3,10 +3,10 @@
 // Photo-consistency of tangent patches at offsets along the normal: all chosen views are projected
 // onto the patch by one affine footprint each, at the mip level of its area, and compared with the
 // reference view by zero-mean normalised cross-correlation over all channels, with the image noise
-// as a floor of both variances; the score is the mean of the best share of the pairs. The share of the
-// reference's variance that is not noise, at the middle offset, is the surfel's texture. With PATCH_BENT
-// patches follow the surface's curvature. One thread
-// an offset of a surfel, so that the threads of a vector share their views.
+// as a floor of both variances; the score is the mean of the best share of the pairs. The share of
+// the reference's variance that is not noise, at the middle offset, is the surfel's texture. With
+// PATCH_BENT patches follow the surface's curvature. One thread an offset of a surfel, so that the
+// threads of a vector share their views.
 // Reference: refine::reference::match_patch.
 #include "include/projection.glsl"
 #include "include/patch.glsl"

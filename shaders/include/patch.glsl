@@ -17,7 +17,6 @@ vec2 place_of_tap(int k) {
   return vec2(float(kStride * k % kEdge - PATCH_RADIUS), float(kStride * k / kEdge - PATCH_RADIUS));
 }
 
-
 layout(binding = 0) uniform sampler2DArray images;
 
 struct Footprint {

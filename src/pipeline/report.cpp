@@ -46,6 +46,7 @@ std::string Report::to_json() const {
     j["refine"].push_back({{"voxel_size", level.voxel_size},
                            {"wall_seconds", level.wall_seconds},
                            {"surfels", level.surfels},
+                           {"evidence", level.evidence},
                            {"samples", level.samples},
                            {"bricks", level.bricks},
                            {"restored_voxels", level.restored},

@@ -29,6 +29,7 @@ struct RefineLevelReport {
   std::int64_t bricks = 0;    ///< of 8^3 voxels, stored at its end
   std::int64_t restored = 0;  ///< voxels of the hull that silhouettes brought back
   double mean_move = 0;       ///< voxels, in its last iteration
+  double evidence = 0;        ///< share of its surfels that the photographs say a place for
 };
 
 /// One pass of the photometric refinement.

@@ -26,12 +26,12 @@ struct FittedPatch {
 
 /// A patch fitted to the chosen views (refine_fit_patches.comp.glsl).
 ///
-/// The point of tap (i, j), -2 <= i, j <= 2, is position + i u + j v + (d + a i + b j + q(i, j)) n
-/// with the tangents u, v of the length that matching gives them, the parameters (d, a, b) and the
-/// height q of the curvature; each view sees it by the derivatives of its projection at
-/// position + d n. A view's value there is the mean of two bilinear samples of square-root encoded
-/// colour, half a texel of the tap's mip level to both sides along the image of n, and its
-/// derivative their difference. x_v, 75 values of all taps, is centred per channel and divided by
+/// The point of tap (i, j), -2 <= i, j <= 2 and i + j even, is position + i u + j v + (d + a i + b
+/// j + q(i, j)) n with the tangents u, v of the length that matching gives them, the parameters (d,
+/// a, b) and the height q of the curvature; each view sees it by the derivatives of its projection
+/// at position + d n. A view's value there is the mean of two bilinear samples of square-root
+/// encoded colour, half a texel of the tap's mip level to both sides along the image of n, and its
+/// derivative their difference. x_v, 39 values of all taps, is centred per channel and divided by
 /// the root of the sum of its squares and the noise's.
 ///
 /// Views count in their order with w_v = t^2, t the correlation of x_v with the mean of those

@@ -16,7 +16,7 @@
 namespace photohull::refine {
 namespace {
 
-constexpr double kNearReach = 2.25;       // voxels of exact distance that a step needs
+constexpr double kNearReach = kStillReach;  // voxels of exact distance that a step needs
 constexpr double kAnglePerSpacing = 1.6;  // reach of a view's partners, in spacings of the cameras
 constexpr double kFullReach = SparseVolume::kBand;
 

@@ -8,8 +8,7 @@
 namespace photohull::refine {
 namespace {
 
-constexpr float kStill = 0.01f;       // voxels
-constexpr float kStillReach = 2.25f;  // voxels from the surface
+constexpr float kStill = 0.01f;  // voxels
 
 }  // namespace
 

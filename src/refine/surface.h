@@ -25,8 +25,11 @@ struct VertexGraph {
 /// Triangles have three different corners each.
 VertexGraph make_graph(const TriMesh& mesh);
 
-/// Distances that a step left as they were: where `moved` is what it was `before`, `volume` takes
-/// the latter, for each passage through a mesh rounds thin parts off. All on one grid.
+inline constexpr float kStillReach = 2.25f;  ///< voxels from the surface
+
+/// Distances within kStillReach that a step left as they were: where `moved` is what it was
+/// `before`, `volume` takes the latter, for each passage through a mesh rounds thin parts off. All
+/// on one grid.
 void keep_still(const SparseVolume& before, const SparseVolume& moved, SparseVolume& volume);
 
 }  // namespace photohull::refine

@@ -1,4 +1,5 @@
 // Reconstructions that work: what is written, and what the options do to it.
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -94,6 +95,21 @@ TEST_F(Reconstruct, MeshErrorLeavesFewerTriangles) {
   succeed(reconstruct({"--method", "hull", "--mesh-error", std::to_string(voxel) + "u"}));
   EXPECT_NEAR(report()["mesh"]["error_voxels"]["limit"], 1, 1e-3);
   EXPECT_LT(mesh().triangles.size(), simple.triangles.size());
+}
+
+TEST_F(Reconstruct, UnseenOpenLeavesOutWhatNoCameraSees) {
+  const auto few = [&](const char* unseen) {
+    return reconstruct({"--method", "hull", "--views", "0-2", "--unseen", unseen});
+  };
+  succeed(few("closed"));
+  const TriMesh closed = mesh();
+  EXPECT_EQ(open_edges(closed), 0u);
+  EXPECT_GT(std::count(closed.confidence.begin(), closed.confidence.end(), 0.0f), 20);
+  succeed(few("open"));
+  const TriMesh open = mesh();
+  EXPECT_GT(open_edges(open), 20u);
+  EXPECT_LT(open.triangles.size(), closed.triangles.size());
+  EXPECT_GT(open.triangles.size(), closed.triangles.size() / 8);
 }
 
 TEST_F(Reconstruct, RejectsBadMeshErrors) {
