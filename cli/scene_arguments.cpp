@@ -42,6 +42,9 @@ void SceneArguments::add_to(CLI::App& command) {
                   "auto (files, alpha, else a background model), none, or a folder of masks")
       ->capture_default_str();
   command.add_option("--views", views, "views to use, e.g. \"0-10,15,img_*.png\" (default: all)");
+  command.add_option("--hold-out", hold_out,
+                     "views to leave out of these, a list of the same kind; 'photohull evaluate "
+                     "--photos' judges by them");
   command.add_option("--pixel-center", pixel_center,
                      "coordinate of the top-left pixel's centre in the scene file, 0 or 0.5 "
                      "(default: the format's)");
@@ -55,6 +58,8 @@ io::LoadSceneOptions SceneArguments::options() const {
   if (box) out.box = parse_box(*box);
   if (views && views->empty()) throw UsageError("--views is empty: write e.g. 0-10,15");
   out.views = views.value_or("");
+  if (hold_out && hold_out->empty()) throw UsageError("--hold-out is empty: write e.g. 0,8,16");
+  out.hold_out = hold_out.value_or("");
   if (masks == "none") {
     out.masks = io::MaskSource::kNone;
   } else if (masks != "auto") {

@@ -11,7 +11,7 @@ namespace photohull::cli {
 
 struct SceneArguments {
   std::string scene, masks = "auto";
-  std::optional<std::string> format, box, views;
+  std::optional<std::string> format, box, views, hold_out;
   std::optional<double> pixel_center;
 
   void add_to(CLI::App& command);

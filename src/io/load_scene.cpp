@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 #include "core/error.h"
@@ -135,6 +136,17 @@ void choose_box(const LoadSceneOptions& options, const fs::path& given, const Ra
   }
 }
 
+/// Indices of the views to keep.
+std::vector<std::size_t> kept_views(const LoadSceneOptions& options,
+                                    const std::vector<std::string>& names) {
+  std::vector<std::size_t> kept = select_views(options.views, names), left_out, rest;
+  if (options.hold_out.empty()) return kept;
+  left_out = select_views(options.hold_out, names, "--hold-out");
+  std::set_difference(kept.begin(), kept.end(), left_out.begin(), left_out.end(),
+                      std::back_inserter(rest));
+  return rest;
+}
+
 /// Views selected by the options, their images found and their cameras completed.
 std::vector<RawView> fill_views(const LoadSceneOptions& options, const RawScene& raw,
                                 Scene& scene) {
@@ -144,7 +156,7 @@ std::vector<RawView> fill_views(const LoadSceneOptions& options, const RawScene&
   reject_duplicates(raw, images);
   const std::vector<std::string> names = view_names(raw, images);
   std::vector<RawView> selected;
-  for (const std::size_t i : select_views(options.views, names)) {
+  for (const std::size_t i : kept_views(options, names)) {
     const RawView& view = raw.views[i];
     if (images[i].empty()) report_missing_image(raw, view);
     const double center = options.pixel_center.value_or(raw.pixel_center);
@@ -154,7 +166,9 @@ std::vector<RawView> fill_views(const LoadSceneOptions& options, const RawScene&
   }
   if (scene.views.size() < kFewestViews)
     throw Error(concat(raw.file.string(), ": ", scene.views.size(),
-                       options.views.empty() ? " views are listed" : " views are selected",
+                       !options.hold_out.empty() ? " views are left by --hold-out"
+                       : options.views.empty()   ? " views are listed"
+                                                 : " views are selected",
                        ", but at least ", kFewestViews, " are needed"));
   return selected;
 }

@@ -32,6 +32,8 @@ struct LoadSceneOptions {
   /// Views to keep, e.g. "0-10,15,templeR0003.png,left_*": indices in file order from 0, inclusive
   /// ranges, names, shell patterns. Empty: all.
   std::string views;
+  /// Views to leave out of these, a list of the same kind over all views of the scene. Empty: none.
+  std::string hold_out;
 
   /// Throws UsageError naming the field and its legal values.
   void validate() const;

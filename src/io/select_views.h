@@ -1,4 +1,4 @@
-// The --views option. Internal to io.
+// Lists of views, as --views and --hold-out take them.
 #pragma once
 
 #include <string>
@@ -6,9 +6,11 @@
 
 namespace photohull::io {
 
-/// Indices, ascending and unique, of the names that a selection like "0-10,15,left_*" keeps.
-/// Throws UsageError naming the item that is empty, out of range or matches nothing.
+/// Indices, ascending and unique, of the names that a selection like "0-10,15,left_*" means; all
+/// where it is empty. Throws UsageError naming the option and the item that is empty, out of range
+/// or matches nothing.
 std::vector<std::size_t> select_views(const std::string& selection,
-                                      const std::vector<std::string>& names);
+                                      const std::vector<std::string>& names,
+                                      const std::string& option = "--views");
 
 }  // namespace photohull::io

@@ -409,6 +409,7 @@ class Job {
     if (options_.resolution) list.emplace_back("resolution", std::to_string(*options_.resolution));
     if (options_.voxel_size) list.emplace_back("voxel_size", number(*options_.voxel_size));
     if (!options_.load.views.empty()) list.emplace_back("views", options_.load.views);
+    if (!options_.load.hold_out.empty()) list.emplace_back("hold_out", options_.load.hold_out);
     list.emplace_back("mesh_error", number(options_.mesh_error.value) +
                                         (options_.mesh_error.world_units ? "u" : ""));
     list.emplace_back("unseen", to_string(options_.unseen));

@@ -94,6 +94,27 @@ TEST_F(LoadScene, BadSelectionsAreNamed) {
   EXPECT_THAT(error_for("1"), HasSubstr("at least 2"));
 }
 
+TEST_F(LoadScene, ViewsAreHeldOut) {
+  const auto rest = [&](const std::string& views, const std::string& hold_out) {
+    LoadSceneOptions options;
+    options.views = views;
+    options.hold_out = hold_out;
+    std::vector<std::string> result;
+    for (const SourceView& view : load_scene(folder_, options).views) result.push_back(view.name);
+    return result;
+  };
+  EXPECT_THAT(rest("", "1"), ElementsAre("a.png", "c.png"));
+  EXPECT_THAT(rest("", "c*"), ElementsAre("a.png", "b.png"));
+  EXPECT_THAT(rest("0-1", "2"), ElementsAre("a.png", "b.png"));  // an index into all views
+  LoadSceneOptions options;
+  options.hold_out = "3";
+  EXPECT_THAT(error_with(options), HasSubstr("--hold-out: '3' is out of range"));
+  options.hold_out = "0-1";
+  EXPECT_THAT(error_with(options), HasSubstr("1 views are left by --hold-out, but at least 2"));
+  options.hold_out = "*";
+  EXPECT_THAT(error_with(options), HasSubstr("0 views are left by --hold-out"));
+}
+
 // Leaving a view out is the mend that the error for a missing image proposes.
 TEST_F(LoadScene, UnselectedImagesMayBeMissing) {
   fs::remove(folder_ / "images" / "b.png");
