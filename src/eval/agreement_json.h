@@ -1,0 +1,14 @@
+// Agreement with photographs, for programs.
+#pragma once
+
+#include <string>
+
+#include "eval/photo_agreement.h"
+
+namespace photohull::eval {
+
+/// JSON, indented by two: `around`, a JSON object (that of to_json(Evaluation), say) or nothing,
+/// with the key "photos" added (docs/evaluate.md).
+std::string to_json(const PhotoAgreement& agreement, const std::string& around = {});
+
+}  // namespace photohull::eval
