@@ -4,6 +4,9 @@
 #include <memory>
 #include <optional>
 
+#include "chart/png.h"
+#include "chart/reliability_chart.h"
+#include "chart/svg_renderer.h"
 #include "commands.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -11,6 +14,7 @@
 #include "eval/error_mesh.h"
 #include "eval/evaluate.h"
 #include "eval/evaluation_json.h"
+#include "eval/reliability.h"
 #include "io/image_file.h"
 #include "terminal_progress.h"
 #include "volume/read_mesh.h"
@@ -21,8 +25,9 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Arguments {
-  std::string mesh, truth, error_mesh, error_image;
+  std::string mesh, truth, error_mesh, error_image, reliability_plot;
   double error_range = 0.005;
+  std::optional<double> reliability;  ///< world units
   eval::EvaluateOptions options;
   bool json = false;
 };
@@ -32,6 +37,28 @@ void print_scores(const std::vector<eval::Score>& all, const std::vector<eval::S
     std::printf("%9.4g %%  %-10.4g %9.2f %9.2f %9.2f %9.2f %9.2f\n", 100 * seen[i].threshold,
                 seen[i].distance, 100 * seen[i].precision, 100 * seen[i].recall, 100 * seen[i].f,
                 100 * all[i].precision, 100 * all[i].f);
+}
+
+std::string shown(const std::optional<double>& value) {
+  if (!value) return "-";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4f", *value);
+  return text;
+}
+
+void print_reliability(const eval::Reliability& r) {
+  std::printf(
+      "\nconfidence  as the chance to lie within %.5g: %zu vertices, %.2f %% within, and %zu that "
+      "no "
+      "camera saw\n",
+      r.distance, r.seen, 100 * r.within, r.unseen);
+  std::printf("%-12s %9s %12s %9s\n", "bin", "vertices", "confidence", "within");
+  for (const eval::ReliabilityBin& b : r.bins)
+    if (b.count > 0)
+      std::printf("%.1f to %-5.1f %9zu %12.4f %9.4f\n", b.low, b.high, b.count, b.confidence,
+                  b.within);
+  std::printf("calibration error %.4f, Brier score %.4f, AUC %s, Spearman %s\n",
+              r.calibration_error, r.brier, shown(r.auc).c_str(), shown(r.spearman).c_str());
 }
 
 void print_text(const eval::Evaluation& e) {
@@ -76,6 +103,7 @@ void print_text(const eval::Evaluation& e) {
                 e.volume.iou, e.volume.first, e.volume.second, e.volume.intersection);
   else
     std::printf("volume      IoU not known: %s\n", e.volume.reason.c_str());
+  if (e.reliability) print_reliability(*e.reliability);
   for (const std::string& text : e.warnings) std::printf("warning: %s\n", text.c_str());
 }
 
@@ -84,8 +112,9 @@ struct Outputs {
   explicit Outputs(const Arguments& a) {
     if (!a.error_mesh.empty()) mesh.emplace(a.error_mesh);
     if (!a.error_image.empty()) image.emplace(a.error_image);
+    if (!a.reliability_plot.empty()) plot.emplace(a.reliability_plot);
   }
-  std::optional<AtomicFile> mesh, image;
+  std::optional<AtomicFile> mesh, image, plot;
 };
 
 void write_image(AtomicFile& file, const Arguments& a, const TriMesh& result,
@@ -99,8 +128,38 @@ void write_image(AtomicFile& file, const Arguments& a, const TriMesh& result,
   io::write_png(file, image.width, image.height, 3, image.rgb);
 }
 
-void run(const Arguments& a) {
+bool ends_with(const std::string& path, const char* extension) {
+  return fs::path(path).extension() == extension;
+}
+
+void write_plot(AtomicFile& file, const Arguments& a, const eval::Reliability& r) {
+  chart::ReliabilityCurve curve{fs::path(a.mesh).filename().string(), {}};
+  for (const eval::ReliabilityBin& b : r.bins)
+    curve.bins.push_back({b.low, b.high, b.count, b.confidence, b.within});
+  char title[80];
+  std::snprintf(title, sizeof title, "Within %.4g of the truth: calibration error %.3f", r.distance,
+                r.calibration_error);
+  const chart::Chart chart = chart::reliability_chart(title, {curve});
+  const std::string svg = chart::SvgRenderer().render(chart.option, chart.width, chart.height);
+  const std::string bytes = ends_with(a.reliability_plot, ".svg")
+                                ? svg
+                                : chart::to_png(svg, 2 * chart.width, 2 * chart.height);
+  file.write(bytes.data(), bytes.size());
+}
+
+void check(const Arguments& a) {
   a.options.validate();
+  if (a.reliability && !(*a.reliability > 0 && std::isfinite(*a.reliability)))
+    throw UsageError(concat("--reliability (world units) must be above 0, not ", *a.reliability));
+  if (a.reliability_plot.empty()) return;
+  if (!a.reliability) throw UsageError("--reliability-plot needs --reliability DISTANCE");
+  if (!ends_with(a.reliability_plot, ".svg") && !ends_with(a.reliability_plot, ".png"))
+    throw UsageError(concat("--reliability-plot ", a.reliability_plot,
+                            ": expected a name that ends in .svg or .png"));
+}
+
+void run(const Arguments& a) {
+  check(a);
   if (!(a.error_range > 0 && a.error_range <= 1))
     throw UsageError(concat("--error-range must be above 0 and at most 1, not ", a.error_range));
   Outputs outputs(a);
@@ -111,6 +170,11 @@ void run(const Arguments& a) {
     throw Error(concat(a.mesh, " has no faces; --error-image needs some"));
   eval::Evaluation e = eval::evaluate(result, truth, a.options, &progress);
   e.result_name = a.mesh;
+  if (a.reliability) {
+    progress.stage("reliability", 1);
+    e.reliability = eval::measure_reliability(result, truth, *a.reliability, progress);
+    if (outputs.plot) write_plot(*outputs.plot, a, *e.reliability);
+  }
   if (outputs.mesh) {
     progress.stage("error mesh", 1);
     eval::write_error_mesh(*outputs.mesh, result, truth.surface(), a.error_range * truth.diagonal(),
@@ -120,7 +184,7 @@ void run(const Arguments& a) {
     progress.stage("error picture", 1);
     write_image(*outputs.image, a, result, truth, e, progress);
   }
-  for (std::optional<AtomicFile>* file : {&outputs.mesh, &outputs.image})
+  for (std::optional<AtomicFile>* file : {&outputs.mesh, &outputs.image, &outputs.plot})
     if (*file) (*file)->commit();
   progress.finish();
   if (a.json)
@@ -156,12 +220,17 @@ void add_evaluate(CLI::App& app) {
   c->add_option("--error-range", a->error_range,
                 "distance of the strongest colours, a fraction of the diagonal")
       ->capture_default_str();
+  c->add_option("--reliability", a->reliability,
+                "does confidence mean the chance to lie within this distance (world units)?");
+  c->add_option("--reliability-plot", a->reliability_plot, "draw that as an SVG or PNG");
   c->add_flag("--json", a->json, "print JSON (docs/evaluate.md)");
   c->footer(
       "Examples:\n"
       "  photohull evaluate out/bunny/mesh.ply --truth scenes/bunny\n"
       "  photohull evaluate scan.obj --truth cad.stl --absolute 0.1,0.5 --json\n"
-      "  photohull evaluate mesh.ply --truth scenes/bunny --error-image errors.png");
+      "  photohull evaluate mesh.ply --truth scenes/bunny --error-image errors.png\n"
+      "  photohull evaluate out/mesh.ply --truth scenes/bunny --reliability 0.004 "
+      "--reliability-plot r.svg");
   c->callback([a] { run(*a); });
 }
 

@@ -10,6 +10,7 @@
 #include "core/progress.h"
 #include "eval/distance_stats.h"
 #include "eval/overlap.h"
+#include "eval/reliability.h"
 #include "eval/truth.h"
 
 namespace photohull::eval {
@@ -70,6 +71,7 @@ struct Evaluation {
   double hausdorff95 = 0;   ///< greater of the two 95 % quantiles
   double chamfer = 0;       ///< mean of the two mean distances
   Overlap volume;
+  std::optional<Reliability> reliability;  ///< for callers who measure it
   std::vector<std::string> warnings;
 };
 

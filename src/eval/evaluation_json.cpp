@@ -55,6 +55,30 @@ ordered_json volume(const Overlap& v) {
   return j;
 }
 
+ordered_json optional(const std::optional<double>& value) {
+  return value ? ordered_json(*value) : ordered_json(nullptr);
+}
+
+ordered_json reliability(const Reliability& r) {
+  ordered_json bins = ordered_json::array();
+  for (const ReliabilityBin& b : r.bins)
+    bins.push_back({{"low", b.low},
+                    {"high", b.high},
+                    {"count", b.count},
+                    {"confidence", b.confidence},
+                    {"within", b.within}});
+  return {{"distance", r.distance},
+          {"vertices", r.seen},
+          {"unseen", r.unseen},
+          {"confidence", r.confidence},
+          {"within", r.within},
+          {"calibration_error", r.calibration_error},
+          {"brier", r.brier},
+          {"auc", optional(r.auc)},
+          {"spearman", optional(r.spearman)},
+          {"bins", bins}};
+}
+
 }  // namespace
 
 std::string to_json(const Evaluation& e) {
@@ -86,6 +110,7 @@ std::string to_json(const Evaluation& e) {
   j["chamfer_mean"] = e.chamfer;
   put_part(e.seen, e.truth_diagonal, j["seen"]);
   j["volume"] = volume(e.volume);
+  if (e.reliability) j["reliability"] = reliability(*e.reliability);
   j["warnings"] = e.warnings;
   return j.dump(2, ' ', false, ordered_json::error_handler_t::replace);
 }

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "child_process.h"
@@ -80,6 +81,45 @@ TEST_F(Evaluate, WrongUsageAndBadFiles) {
   write_text(folder_ / "points.obj", "v 0 0 0\nv 1 1 1\n");
   fail(1, evaluate({"--error-image", path("e.png")}, "points.obj"), "points.obj");
   fail(1, run_photohull({"evaluate", path("result.obj"), "--truth", path("")}), "no gt.ply");
+  EXPECT_EQ(folder_.file_count(), 3u);
+}
+
+/// Two points on the truth and one 0.5 beside it, with a confidence each, and one that nobody saw.
+constexpr const char* kJudged =
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+    "property float z\nproperty float confidence\nend_header\n"
+    "0 0 0 0.9\n1 0 0 0.7\n1.5 0.5 0.5 0.2\n0.5 0 0 0\n";
+
+TEST_F(Evaluate, Reliability) {
+  write_text(folder_ / "judged.ply", kJudged);
+  const Finished text =
+      evaluate({"--reliability", "0.1", "--reliability-plot", path("r.png")}, "judged.ply");
+  ASSERT_EQ(text.code, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("3 vertices, 66.67 % within, and 1 that no camera saw"));
+  EXPECT_THAT(text.out, HasSubstr("AUC 1.0000"));
+  EXPECT_EQ(read_text(folder_ / "r.png").substr(1, 3), "PNG");
+  const Finished run = evaluate(
+      {"--json", "--reliability", "0.1", "--reliability-plot", path("r.svg")}, "judged.ply");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const json j = json::parse(run.out)["reliability"];
+  EXPECT_EQ(j["bins"].size(), 10u);
+  EXPECT_EQ(j["bins"][8]["count"], 1);
+  EXPECT_NEAR(j["calibration_error"], (0.1 + 0.3 + 0.2) / 3, 1e-6);
+  EXPECT_NEAR(j["brier"], (0.01 + 0.09 + 0.04) / 3, 1e-6);
+  EXPECT_NEAR(j["spearman"], -std::sqrt(0.75), 1e-6);
+  EXPECT_THAT(read_text(folder_ / "r.svg"), HasSubstr("<svg"));
+  EXPECT_FALSE(json::parse(evaluate({"--json"}, "judged.ply").out).contains("reliability"));
+}
+
+TEST_F(Evaluate, ReliabilityRefusesWhatItCannotJudge) {
+  write_text(folder_ / "judged.ply", kJudged);
+  fail(1, evaluate({"--reliability", "0.1"}), "no confidence");
+  fail(2, evaluate({"--reliability", "0"}, "judged.ply"), "--reliability");
+  fail(2, evaluate({"--reliability-plot", path("r.svg")}, "judged.ply"), "--reliability DISTANCE");
+  fail(2, evaluate({"--reliability", "1", "--reliability-plot", path("r.jpg")}, "judged.ply"),
+       ".svg or .png");
+  fail(1, evaluate({"--reliability", "1", "--reliability-plot", path("none/r.svg")}, "judged.ply"),
+       "none");
   EXPECT_EQ(folder_.file_count(), 3u);
 }
 
