@@ -10,11 +10,13 @@
 #include "commands.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "eval/agreement_json.h"
 #include "eval/error_image.h"
 #include "eval/error_mesh.h"
 #include "eval/evaluate.h"
 #include "eval/evaluation_json.h"
 #include "eval/reliability.h"
+#include "evaluate_photos.h"
 #include "io/image_file.h"
 #include "terminal_progress.h"
 #include "volume/read_mesh.h"
@@ -25,7 +27,9 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Arguments {
-  std::string mesh, truth, error_mesh, error_image, reliability_plot;
+  std::string mesh, error_mesh, error_image, reliability_plot;
+  std::optional<std::string> truth;
+  PhotoArguments photos;
   double error_range = 0.005;
   std::optional<double> reliability;  ///< world units
   eval::EvaluateOptions options;
@@ -113,8 +117,9 @@ struct Outputs {
     if (!a.error_mesh.empty()) mesh.emplace(a.error_mesh);
     if (!a.error_image.empty()) image.emplace(a.error_image);
     if (!a.reliability_plot.empty()) plot.emplace(a.reliability_plot);
+    if (!a.photos.picture.empty()) photos.emplace(a.photos.picture);
   }
-  std::optional<AtomicFile> mesh, image, plot;
+  std::optional<AtomicFile> mesh, image, plot, photos;
 };
 
 void write_image(AtomicFile& file, const Arguments& a, const TriMesh& result,
@@ -148,6 +153,11 @@ void write_plot(AtomicFile& file, const Arguments& a, const eval::Reliability& r
 }
 
 void check(const Arguments& a) {
+  if (!a.truth && !a.photos.given())
+    throw UsageError(
+        "nothing to judge by: give --truth, or --photos with --views (held-out photographs), or "
+        "both");
+  a.photos.check();
   a.options.validate();
   if (a.reliability && !(*a.reliability > 0 && std::isfinite(*a.reliability)))
     throw UsageError(concat("--reliability (world units) must be above 0, not ", *a.reliability));
@@ -158,14 +168,9 @@ void check(const Arguments& a) {
                             ": expected a name that ends in .svg or .png"));
 }
 
-void run(const Arguments& a) {
-  check(a);
-  if (!(a.error_range > 0 && a.error_range <= 1))
-    throw UsageError(concat("--error-range must be above 0 and at most 1, not ", a.error_range));
-  Outputs outputs(a);
-  TerminalProgress progress(12);
-  const eval::Truth truth = eval::read_truth(a.truth);
-  const TriMesh result = read_mesh(a.mesh, Faces::kOptional);
+eval::Evaluation evaluate_by_truth(const Arguments& a, const TriMesh& result, Outputs& outputs,
+                                   Progress& progress) {
+  const eval::Truth truth = eval::read_truth(*a.truth);
   if (result.triangles.empty() && outputs.image)
     throw Error(concat(a.mesh, " has no faces; --error-image needs some"));
   eval::Evaluation e = eval::evaluate(result, truth, a.options, &progress);
@@ -184,25 +189,47 @@ void run(const Arguments& a) {
     progress.stage("error picture", 1);
     write_image(*outputs.image, a, result, truth, e, progress);
   }
-  for (std::optional<AtomicFile>* file : {&outputs.mesh, &outputs.image, &outputs.plot})
+  return e;
+}
+
+void run(const Arguments& a) {
+  check(a);
+  if (!(a.error_range > 0 && a.error_range <= 1))
+    throw UsageError(concat("--error-range must be above 0 and at most 1, not ", a.error_range));
+  Outputs outputs(a);
+  TerminalProgress progress((a.truth ? 12 : 0) + (a.photos.given() ? kPhotoWeight : 0));
+  const TriMesh result = read_mesh(a.mesh, Faces::kOptional);
+  std::optional<eval::Evaluation> evaluation;
+  std::optional<eval::PhotoAgreement> photos;
+  if (a.photos.given())
+    photos = judge_photos(a.photos, result, a.mesh, outputs.photos ? &*outputs.photos : nullptr,
+                          progress);
+  if (a.truth) evaluation = evaluate_by_truth(a, result, outputs, progress);
+  for (std::optional<AtomicFile>* file :
+       {&outputs.mesh, &outputs.image, &outputs.plot, &outputs.photos})
     if (*file) (*file)->commit();
   progress.finish();
-  if (a.json)
-    std::printf("%s\n", eval::to_json(e).c_str());
-  else
-    print_text(e);
+  if (a.json) {
+    const std::string first = evaluation ? eval::to_json(*evaluation) : std::string();
+    std::printf("%s\n", photos ? eval::to_json(*photos, first).c_str() : first.c_str());
+    return;
+  }
+  if (evaluation) print_text(*evaluation);
+  if (evaluation && photos) std::printf("\n");
+  if (photos) print_agreement(*photos);
 }
 
 }  // namespace
 
 void add_evaluate(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* c = app.add_subcommand("evaluate", "measure a mesh against the exact surface");
+  CLI::App* c =
+      app.add_subcommand("evaluate", "measure a mesh by the exact surface or by photographs");
   c->add_option("mesh", a->mesh, "the result: PLY, OBJ, OFF, STL or glTF; points without faces too")
       ->required();
-  c->add_option("--truth", a->truth,
-                "a scene folder with gt.ply and gt_visible.ply, or a mesh all of which counts")
-      ->required();
+  CLI::Option* truth =
+      c->add_option("--truth", a->truth,
+                    "a scene folder with gt.ply and gt_visible.ply, or a mesh all of which counts");
   c->add_option("--thresholds", a->options.thresholds,
                 "distances to count within, fractions of the truth's diagonal")
       ->delimiter(',')
@@ -223,6 +250,10 @@ void add_evaluate(CLI::App& app) {
   c->add_option("--reliability", a->reliability,
                 "does confidence mean the chance to lie within this distance (world units)?");
   c->add_option("--reliability-plot", a->reliability_plot, "draw that as an SVG or PNG");
+  for (const char* name : {"--thresholds", "--absolute", "--samples", "--seed", "--min-views",
+                           "--error-mesh", "--error-image", "--error-range", "--reliability"})
+    c->get_option(name)->needs(truth);
+  a->photos.add_to(*c);
   c->add_flag("--json", a->json, "print JSON (docs/evaluate.md)");
   c->footer(
       "Examples:\n"
@@ -230,7 +261,9 @@ void add_evaluate(CLI::App& app) {
       "  photohull evaluate scan.obj --truth cad.stl --absolute 0.1,0.5 --json\n"
       "  photohull evaluate mesh.ply --truth scenes/bunny --error-image errors.png\n"
       "  photohull evaluate out/mesh.ply --truth scenes/bunny --reliability 0.004 "
-      "--reliability-plot r.svg");
+      "--reliability-plot r.svg\n"
+      "  photohull evaluate out/temple/mesh.ply --photos scenes/temple --views 0,8,16 --picture "
+      "worst.png");
   c->callback([a] { run(*a); });
 }
 

@@ -32,22 +32,28 @@ SceneFormat parse_format(const std::string& text) {
 
 }  // namespace
 
+std::vector<CLI::Option*> SceneArguments::add_reading_options(CLI::App& command) {
+  return {
+      command.add_option(
+          "--format", format,
+          "middlebury, colmap-text, colmap-binary or transforms (default: detected)"),
+      command
+          .add_option("--masks", masks,
+                      "auto (files, alpha, else a background model), none, or a folder of masks")
+          ->capture_default_str(),
+      command.add_option("--pixel-center", pixel_center,
+                         "coordinate of the top-left pixel's centre in the scene file, 0 or 0.5 "
+                         "(default: the format's)")};
+}
+
 void SceneArguments::add_to(CLI::App& command) {
   command.add_option("SCENE", scene, "folder or file of the scene")->required();
-  command.add_option("--format", format,
-                     "middlebury, colmap-text, colmap-binary or transforms (default: detected)");
   command.add_option("--box", box, "region of interest \"x0 y0 z0 x1 y1 z1\" in world units");
-  command
-      .add_option("--masks", masks,
-                  "auto (files, alpha, else a background model), none, or a folder of masks")
-      ->capture_default_str();
   command.add_option("--views", views, "views to use, e.g. \"0-10,15,img_*.png\" (default: all)");
   command.add_option("--hold-out", hold_out,
                      "views to leave out of these, a list of the same kind; 'photohull evaluate "
                      "--photos' judges by them");
-  command.add_option("--pixel-center", pixel_center,
-                     "coordinate of the top-left pixel's centre in the scene file, 0 or 0.5 "
-                     "(default: the format's)");
+  add_reading_options(command);
 }
 
 io::LoadSceneOptions SceneArguments::options() const {

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "io/load_scene.h"
 
@@ -15,6 +16,8 @@ struct SceneArguments {
   std::optional<double> pixel_center;
 
   void add_to(CLI::App& command);
+  /// Only those that say how the scene's files are read: format, masks, pixel centre.
+  std::vector<CLI::Option*> add_reading_options(CLI::App& command);
   /// Throws UsageError for values that are not understood.
   io::LoadSceneOptions options() const;
 };

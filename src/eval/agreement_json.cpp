@@ -37,6 +37,7 @@ ordered_json score(const PhotoScore& s) {
 
 std::string to_json(const PhotoAgreement& a, const std::string& around) {
   ordered_json j = around.empty() ? ordered_json::object() : ordered_json::parse(around);
+  if (around.empty()) j["recon"] = a.result_name;
   ordered_json& p = j["photos"];
   p["scene"] = a.scene;
   p["mask_source"] = a.mask_source;

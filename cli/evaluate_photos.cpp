@@ -1,0 +1,155 @@
+#include "evaluate_photos.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+
+#include "calib/prepare_views.h"
+#include "core/error.h"
+#include "eval/agreement_picture.h"
+#include "io/image_file.h"
+#include "io/load_scene.h"
+#include "io/select_views.h"
+
+namespace photohull::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> names_of(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const SourceView& view : scene.views) names.push_back(view.name);
+  return names;
+}
+
+struct Lists {
+  std::vector<std::size_t> held_out, lenders;
+};
+
+Lists lists_of(const PhotoArguments& a, const std::vector<std::string>& names) {
+  Lists lists;
+  lists.held_out = io::select_views(*a.views, names);
+  const std::vector<std::size_t> all = io::select_views(a.lenders.value_or(""), names, "--lenders");
+  for (const std::size_t i : all) {
+    const bool held_out = std::binary_search(lists.held_out.begin(), lists.held_out.end(), i);
+    if (!held_out)
+      lists.lenders.push_back(i);
+    else if (a.lenders)
+      throw UsageError(concat("--lenders: view ", i, " (", names[i],
+                              ") is held out by --views and cannot lend colour"));
+  }
+  if (lists.lenders.empty())
+    throw UsageError(concat("--views: all ", names.size(),
+                            " views are held out, none is left to lend colour; hold out fewer"));
+  return lists;
+}
+
+void write_picture(AtomicFile& file, const std::string& mesh_name, const View& view,
+                   const eval::PhotoMaps& maps, const eval::PhotoScore& score) {
+  char figures[64];
+  std::snprintf(figures, sizeof figures, "ZNCC %.3f", score.zncc().value_or(0));
+  const std::string title =
+      concat(fs::path(mesh_name).filename().string(), " in ", view.name, ": ", figures);
+  const eval::ErrorImage image = eval::draw_agreement(view, maps, title);
+  io::write_png(file, image.width, image.height, 3, image.rgb);
+}
+
+std::string shown(const std::optional<double>& value, double scale, const char* format) {
+  if (!value) return "-";
+  char text[32];
+  std::snprintf(text, sizeof text, format, scale * *value);
+  return text;
+}
+
+void print_row(const char* name, const eval::PhotoScore& s) {
+  const auto percent = [](const std::optional<double>& share) { return shown(share, 100, "%.2f"); };
+  std::printf("%-24s %8s %10s %8s %9s %10s %8s %8s\n", name, shown(s.zncc(), 1, "%.4f").c_str(),
+              shown(s.zncc_predicted(), 1, "%.4f").c_str(), shown(s.psnr(), 1, "%.2f").c_str(),
+              percent(s.coverage()).c_str(), percent(s.predicted_share()).c_str(),
+              percent(s.excess()).c_str(), percent(s.silhouette_iou()).c_str());
+}
+
+}  // namespace
+
+void PhotoArguments::add_to(CLI::App& command) {
+  CLI::Option* scene_option = command.add_option(
+      "--photos", photos, "a scene: judge by its photographs that --views lists");
+  const auto with_photos = [&](CLI::Option* option) { option->needs(scene_option); };
+  with_photos(command.add_option(
+      "--views", views,
+      "photographs that were not used to make the mesh, e.g. \"0,8,16\" (reconstruct --hold-out)"));
+  with_photos(command.add_option("--lenders", lenders,
+                                 "photographs that lend colour (default: all others)"));
+  with_photos(command
+                  .add_option("--least-angle", options.predict.least_angle,
+                              "degrees between a ray that is predicted and one that lends colour")
+                  ->capture_default_str());
+  with_photos(
+      command.add_option("--window", options.window, "edge of the windows compared, pixels")
+          ->capture_default_str());
+  with_photos(command.add_option(
+      "--picture", picture,
+      "write a PNG of the worst view: photograph, prediction, difference, agreement"));
+  for (CLI::Option* option : scene.add_reading_options(command)) with_photos(option);
+}
+
+void PhotoArguments::check() const {
+  if (!given()) return;
+  if (photos->empty()) throw UsageError("--photos is empty: give the folder or file of the scene");
+  if (!views || views->empty())
+    throw UsageError("--photos needs --views: the views that were held out, e.g. 0,8,16");
+  if (lenders && lenders->empty()) throw UsageError("--lenders is empty: write e.g. 1-7,9-15");
+  options.validate();
+}
+
+eval::PhotoAgreement judge_photos(const PhotoArguments& a, const TriMesh& mesh,
+                                  const std::string& mesh_name, AtomicFile* picture,
+                                  Progress& progress) {
+  if (mesh.triangles.empty()) throw Error(concat(mesh_name, " has no faces; --photos needs some"));
+  progress.stage("photographs", 0.2 * kPhotoWeight);
+  SceneArguments reading = a.scene;
+  reading.scene = *a.photos;
+  const io::LoadSceneOptions load = reading.options();
+  const Scene scene = io::load_scene(reading.scene, load);
+  const Lists lists = lists_of(a, names_of(scene));
+  const ViewLoader loader{[](const fs::path& path) { return io::read_image(path); },
+                          [](const fs::path& path) { return io::read_mask(path); }};
+  PrepareOptions prepare;
+  if (load.masks == io::MaskSource::kNone) prepare.masks = MaskPolicy::kNone;
+  const PreparedViews prepared = prepare_views(scene, loader, prepare, progress);
+
+  progress.stage("predictions", 0.8 * kPhotoWeight);
+  eval::PhotoMaps worst;
+  eval::PhotoAgreement result =
+      eval::judge_by_photographs(mesh, prepared.views, lists.held_out, lists.lenders, a.options,
+                                 &progress, picture ? &worst : nullptr);
+  result.result_name = mesh_name;
+  result.scene = *a.photos;
+  result.mask_source = prepared.mask_source;
+  result.warnings.insert(result.warnings.begin(), prepared.warnings.begin(),
+                         prepared.warnings.end());
+  result.warnings.insert(result.warnings.begin(), scene.warnings.begin(), scene.warnings.end());
+  if (!picture) return result;
+  if (!result.worst)
+    throw Error("--picture: no held-out photograph holds texture, so none is the worst");
+  write_picture(*picture, mesh_name, prepared.views[worst.view], worst,
+                result.views[*result.worst]);
+  return result;
+}
+
+void print_agreement(const eval::PhotoAgreement& a) {
+  std::printf("photographs %s: %zu held out, %zu lend colour, masks from %s\n", a.scene.c_str(),
+              a.views.size(), a.lenders, a.mask_source.c_str());
+  std::printf("judged      %.2f %% of the foreground, by windows of %d x %d pixels\n\n",
+              a.all.foreground ? 100 * double(a.all.judged) / double(a.all.foreground) : 0.0,
+              a.options.window, a.options.window);
+  std::printf("%-24s %8s %10s %8s %9s %10s %8s %8s\n", "", "ZNCC", "predicted", "PSNR", "covered",
+              "predicted", "excess", "IoU");
+  std::printf("%-24s %8s %10s %8s %9s %10s %8s %8s\n", "view", "", "only", "dB", "%", "%", "%",
+              "%");
+  for (const eval::PhotoScore& score : a.views) print_row(score.view.c_str(), score);
+  print_row("all", a.all);
+  for (const std::string& text : a.warnings) std::printf("warning: %s\n", text.c_str());
+}
+
+}  // namespace photohull::cli
