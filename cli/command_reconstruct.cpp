@@ -19,7 +19,7 @@ struct Arguments {
   std::optional<double> voxel_size;
   std::vector<std::string> tune;
   int threads = 0;
-  bool json = false;
+  bool evidence = false, json = false;
 };
 
 template <typename Enum>
@@ -50,6 +50,7 @@ pipeline::ReconstructOptions to_options(const Arguments& a) {
   o.unseen = parse("--unseen", a.unseen, {pipeline::Unseen::kOpen, pipeline::Unseen::kClosed});
   o.device = a.device;
   o.threads = a.threads;
+  o.evidence = a.evidence;
   o.tune = a.tune;
   o.validate();
   return o;
@@ -107,6 +108,8 @@ void add_reconstruct(CLI::App& app) {
   c->add_option("--threads", a->threads, "threads to use (0: one a core)")->capture_default_str();
   c->add_option("--tune", a->tune,
                 "NAME=VALUE: a parameter of the method changed, for experiments (repeatable)");
+  c->add_flag("--evidence", a->evidence,
+              "write evidence.ply too: the uniform mesh with what confidence is computed from");
   c->add_flag("--json", a->json, "print report.json on standard output instead of a summary");
   c->footer(
       "Writes volume.vdb, mesh.ply, preview.png and report.json into the output folder.\n\n"

@@ -1,9 +1,9 @@
 #version 450 core
 #extension GL_GOOGLE_include_directive : require
-// Colour and confidence of mesh vertices from the photographs that see them best; the formulas are
-// in render/bake_colour.h. One thread a vertex; a
-// work group looks at the views of its list only, which costs software rasterizers half as much as
-// looking at all. Reference: render::reference::bake_vertex.
+// Colour of mesh vertices from the photographs that see them best, and how well these agree; the
+// formulas are in render/bake_colour.h and render/confidence.h. One thread a vertex; a work group
+// looks at the views of its list only, which costs software rasterizers half as much as looking at
+// all. Reference: render::reference::bake_vertex.
 #include "include/projection.glsl"
 #include "include/depth_map.glsl"
 #include "shared/bake.h"
@@ -11,7 +11,7 @@
 layout(local_size_x = 64) in;  // kBakeGroup
 layout(std140, binding = 0) uniform Parameters { BakeParameters parameters; };
 layout(std430, binding = 1) readonly buffer Vertices { BakeVertex vertices[]; };
-layout(std430, binding = 2) writeonly buffer Baked { vec4 baked[]; };  // rgb: linear; a: confidence
+layout(std430, binding = 2) writeonly buffer Baked { BakeResult baked[]; };
 layout(std430, binding = 3) readonly buffer ViewLists { uint view_lists[]; };  // render::list_views
 layout(binding = 0) uniform sampler2DArray images;
 
@@ -59,18 +59,21 @@ void choose_views(vec3 position, vec3 normal) {
   }
 }
 
-// Colours of the chosen views in linear light; views that know nothing there lose their weight.
-void fetch(vec3 position, out vec3 colours[kMaxBakeViews]) {
+// Colours of the chosen views in linear light, and their fine detail in square roots; views that
+// know nothing there lose their weight.
+void fetch(vec3 position, out vec3 colours[kMaxBakeViews], out vec3 details[kMaxBakeViews]) {
   for (int k = 0; k < kMaxBakeViews; ++k) {
     GpuView view = views[best_view[k]];
     vec3 p = project(view, position);
     vec2 pixel = p.xy / p.z;
     float level = floor(max(log2(view.centre.w / p.z), 0.0) + 0.5);
-    vec4 texel =
-        textureLod(images, vec3(texture_coordinate(view, pixel), float(best_view[k])), level);
+    vec3 coordinate = vec3(texture_coordinate(view, pixel), float(best_view[k]));
+    vec4 texel = textureLod(images, coordinate, level);
+    vec3 around = textureLod(images, coordinate, level + float(kBakeDetailLevels)).rgb;
     bool known = p.z > 0.0 && on_image(view, pixel) && texel.a >= kBakeMinAlpha;
     best_weight[k] = known ? best_weight[k] : 0.0;
     colours[k] = known ? max(texel.rgb, 0.0) : vec3(0.0);
+    details[k] = known ? sqrt(colours[k]) - sqrt(max(around, 0.0)) : vec3(0.0);
   }
 }
 
@@ -96,12 +99,12 @@ vec3 robust_mean(vec3 colours[kMaxBakeViews], vec3 encoded[kMaxBakeViews], float
   return sum.rgb / sum.a;
 }
 
-float agreement(vec3 colour, vec3 encoded[kMaxBakeViews], float total) {
-  float half_at = kBakeAgreementNoise * parameters.noise.x;
+// Weighted mean squared distance from a point.
+float spread_about(vec3 centre, vec3 values[kMaxBakeViews], float total) {
   float sum = 0.0;
   for (int i = 0; i < kMaxBakeViews; ++i) {
-    vec3 d = (encoded[i] - sqrt(colour)) / half_at;
-    sum += best_weight[i] / (1.0 + dot(d, d) / 3.0);
+    vec3 d = values[i] - centre;
+    sum += best_weight[i] * dot(d, d);
   }
   return sum / total;
 }
@@ -111,21 +114,25 @@ void main() {
   if (i >= uint(parameters.counts.x)) return;
   vec3 position = vertices[i].position.xyz;
   choose_views(position, vertices[i].normal.xyz);
-  vec3 colours[kMaxBakeViews];
-  fetch(position, colours);
-  float total = 0.0;
+  vec3 colours[kMaxBakeViews], details[kMaxBakeViews];
+  fetch(position, colours, details);
+  float total = 0.0, used = 0.0;
   vec3 encoded[kMaxBakeViews];
+  vec3 detail = vec3(0.0);
   for (int k = 0; k < kMaxBakeViews; ++k) {
     total += best_weight[k];
+    used += best_weight[k] > 0.0 ? 1.0 : 0.0;
     encoded[k] = sqrt(colours[k]);
+    detail += best_weight[k] * details[k];
   }
   if (!(total > 0.0)) {
-    baked[i] = vec4(0.0);
+    baked[i] = BakeResult(vec4(0.0), vec4(0.0));
     return;
   }
   vec3 colour = robust_mean(colours, encoded, total);
   float scatter = direction_count - dot(direction_sum, direction_sum) / direction_count;
-  float spread = 1.0 - exp(-kBakeScatterGain * max(scatter, 0.0));
-  float support = kBakeLoneConfidence + (1.0 - kBakeLoneConfidence) * spread;
-  baked[i] = vec4(colour, support * agreement(colour, encoded, total));
+  baked[i] = BakeResult(
+      vec4(colour, used),
+      vec4(max(scatter, 0.0), spread_about(sqrt(colour), encoded, total),
+           spread_about(detail / total, details, total), spread_about(vec3(0.0), details, total)));
 }

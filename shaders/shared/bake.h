@@ -19,9 +19,7 @@ constexpr float kBakeShift = 1.5f;          // voxels along the normal, to where
 constexpr float kBakeDepthBias = 2.5f;      // voxels
 constexpr float kBakeTexel = 2.0f;          // voxels that a depth map's texel is wide
 constexpr float kBakeMinAlpha = 0.5f;       // below: the image knows nothing there
-constexpr float kBakeAgreementNoise = 4.0f;  // noise deviations at which a view half agrees
-constexpr float kBakeScatterGain = 2.0f;    // per unit of scatter of the viewing directions
-constexpr float kBakeLoneConfidence = 0.05f;  // of a vertex that one view sees
+constexpr int kBakeDetailLevels = 2;        // mip levels from a colour to its surroundings
 
 struct BakeParameters {
   ivec4 counts;  // x: vertices, y: views
@@ -33,9 +31,15 @@ struct BakeVertex {
   vec4 normal;    // xyz: unit and outward, or zero where unknown
 };
 
+struct BakeResult {
+  vec4 colour;    // rgb: linear, w: views whose colours are mixed; 0: nobody sees the vertex
+  vec4 evidence;  // scatter, disagreement, fine disagreement, fine energy of render::SurfaceEvidence
+};
+
 #ifdef __cplusplus
 static_assert(sizeof(BakeParameters) == 32);
 static_assert(sizeof(BakeVertex) == 32);
+static_assert(sizeof(BakeResult) == 32);
 }  // namespace photohull::shaders
 #endif
 

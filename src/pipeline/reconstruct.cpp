@@ -104,7 +104,9 @@ class Job {
     const auto start = std::chrono::steady_clock::now();
     clock_.run("scene", Weights::kScene, [&] { load(); });
     // What can fail at once does so before the photographs are decoded.
-    ResultFiles files(options_.output, {"volume.vdb", "mesh.ply", "preview.png", "report.json"});
+    std::vector<std::string> names = {"volume.vdb", "mesh.ply", "preview.png", "report.json"};
+    if (options_.evidence) names.emplace_back("evidence.ply");
+    ResultFiles files(options_.output, std::move(names));
     report_.files = files.names();
     clock_.run("device", Weights::kDevice, [&] { open_device(); });
     clock_.run("views", Weights::kViews, [&] { prepare(); });
@@ -125,7 +127,7 @@ class Job {
     clock_.run("clean", Weights::kClean, [&] { remove_small_components(volume, kDebrisFraction); });
     TriMesh mesh = clock_.run("mesh", Weights::kMesh, [&] { return extract_mesh(volume); });
     VolumeAttributes attributes = clock_.run("colour", Weights::kColour, [&] {
-      colour(mesh);
+      colour(mesh, files);
       return attributes_from_mesh(volume, mesh);
     });
     images_.reset();
@@ -306,17 +308,33 @@ class Job {
     return volume;
   }
 
-  void colour(TriMesh& mesh) {
+  void colour(TriMesh& mesh, ResultFiles& files) {
     if (mesh.triangles.empty())
       throw Error(
           "the volume holds no surface: every part is thinner than a voxel; raise --resolution");
-    photohull::bake_colour(*context_, grid_, *images_, cameras_, report_.noise_sigma, mesh,
-                           progress_);
+    const bool silhouettes = options_.effective_method() == Method::kHull;
+    std::vector<render::PooledEvidence> evidence;
+    photohull::bake_colour(
+        *context_, grid_, *images_, cameras_, report_.noise_sigma,
+        silhouettes ? render::Shaping::kSilhouettes : render::Shaping::kPhotographs, mesh,
+        progress_, nullptr, options_.evidence ? &evidence : nullptr);
+    if (options_.evidence) write_evidence(mesh, evidence, files);
     const auto unseen = std::count(mesh.confidence.begin(), mesh.confidence.end(), 0.0f);
     report_.unseen_share = double(unseen) / double(mesh.confidence.size());
     if (report_.unseen_share > 0.5)
       warn(concat(std::lround(100 * report_.unseen_share),
                   " % of the surface is seen by no camera: it is the hull's guess"));
+  }
+
+  void write_evidence(const TriMesh& mesh, const std::vector<render::PooledEvidence>& evidence,
+                      ResultFiles& files) {
+    VertexScalars scalars;
+    for (const render::PooledEvidence& e : evidence) {
+      scalars["scatter"].push_back(e.scatter);
+      scalars["disagreement"].push_back(e.disagreement);
+      scalars["fine_share"].push_back(e.fine_share);
+    }
+    write_ply(files.open("evidence.ply"), mesh, scalars);
   }
 
   /// After colouring, which tells what is seen, and before simplification, which keeps the border.

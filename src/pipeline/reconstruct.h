@@ -41,6 +41,7 @@ struct ReconstructOptions {
   std::optional<Method> method;  ///< default: hull for draft, refine otherwise
   MeshError mesh_error;
   Unseen unseen = Unseen::kClosed;
+  bool evidence = false;          ///< write evidence.ply too: what confidence is computed from
   std::string device = "auto";    ///< auto, software or an index
   int threads = 0;                ///< 0: one a core
   std::vector<std::string> tune;  ///< NAME=VALUE, see pipeline/tuning.h
@@ -56,9 +57,9 @@ double footprint_factor(Quality quality);
 /// Sum of the weights of the stages that this job will announce to its Progress.
 double total_weight(const ReconstructOptions& options);
 
-/// Runs the job and puts volume.vdb, mesh.ply, preview.png and report.json into the output folder,
-/// all together at the end. Throws Error, UsageError or Cancelled; earlier results then stay as
-/// they were and no half-written file is left.
+/// Runs the job and puts volume.vdb, mesh.ply, preview.png and report.json (and evidence.ply
+/// on demand) into the output folder, all together at the end. Throws Error, UsageError or
+/// Cancelled; earlier results then stay as they were and no half-written file is left.
 Report reconstruct(const ReconstructOptions& options, Progress& progress);
 
 }  // namespace photohull::pipeline

@@ -53,8 +53,9 @@ void splat(gpu::Context& context, const gpu::Program& program, const std::vector
 }  // namespace
 
 void bake_colour(gpu::Context& context, const GridSpec& grid, const projtex::ImageSet& images,
-                 std::span<const Camera> cameras, double noise_sigma, TriMesh& mesh,
-                 Progress& progress, BakeReport* report) {
+                 std::span<const Camera> cameras, double noise_sigma, render::Shaping shaping,
+                 TriMesh& mesh, Progress& progress, BakeReport* report,
+                 std::vector<render::PooledEvidence>* evidence) {
   PHOTOHULL_CHECK_OP(int(cameras.size()), ==, images.layers());
   PHOTOHULL_CHECK_OP(mesh.normals.size(), ==, mesh.positions.size());
   PHOTOHULL_CHECK_OP(noise_sigma, >, 0.0);
@@ -79,32 +80,39 @@ void bake_colour(gpu::Context& context, const GridSpec& grid, const projtex::Ima
   const std::size_t total = mesh.positions.size();
   mesh.colours.assign(total, glm::vec3(0));
   mesh.confidence.assign(total, 0);
-  BakeReport counts;
+  std::vector<render::SurfaceEvidence> said(total);
   images.texture().bind(0);
   for (const Batch& batch : batches) {
     progress.check_cancelled();
     const Buffer lists = Buffer::of(
         render::list_views(std::span(vertices).subspan(batch.first, batch.count), gpu_views));
-    const Buffer baked(batch.count * sizeof(glm::vec4));
+    const Buffer baked(batch.count * sizeof(shaders::BakeResult));
     batch.parameters.bind_uniform(0);
     batch.vertices.bind_storage(1);
     baked.bind_storage(2);
     lists.bind_storage(3);
     bake.dispatch(context, "render_bake_vertices",
                   gpu::group_count(batch.count, shaders::kBakeGroup));
-    const auto results = baked.download<glm::vec4>(batch.count);
+    const auto results = baked.download<shaders::BakeResult>(batch.count);
     for (std::size_t i = 0; i < batch.count; ++i) {
-      mesh.colours[batch.first + i] = glm::vec3(results[i]);
-      mesh.confidence[batch.first + i] = results[i].w;
-      counts.seen += results[i].w > 0;
-      counts.mean_confidence += results[i].w;
+      const glm::vec4& e = results[i].evidence;
+      mesh.colours[batch.first + i] = glm::vec3(results[i].colour);
+      said[batch.first + i] = {results[i].colour.w, e.x, e.y, e.z, e.w};
     }
     progress.update(double(batch.first + batch.count) / double(total));
+  }
+  std::vector<render::PooledEvidence> pooled = render::pool_evidence(mesh, said);
+  BakeReport counts;
+  for (std::size_t i = 0; i < total; ++i) {
+    mesh.confidence[i] = float(render::confidence_of(pooled[i], shaping));
+    counts.seen += pooled[i].seen;
+    counts.mean_confidence += mesh.confidence[i];
   }
   render::fill_unseen(mesh);
   counts.vertices = std::int64_t(total);
   if (counts.seen > 0) counts.mean_confidence /= double(counts.seen);
   if (report) *report = counts;
+  if (evidence) *evidence = std::move(pooled);
 }
 
 }  // namespace photohull

@@ -11,6 +11,7 @@
 #include "gpu/context.h"
 #include "projtex/gpu_views.h"
 #include "projtex/image_set.h"
+#include "render/confidence.h"
 #include "shared/sweep.h"
 
 namespace photohull {
@@ -33,10 +34,9 @@ struct BakeReport {
 /// weighted sum of distances) and s two noise deviations plus the medoid's mean distance: a
 /// highlight that one view sees has next to no say.
 ///
-///   confidence = support * agreement
-///   support    = 0.05 + 0.95 (1 - exp(-2 S)),  S = sum |u_i - mean u|^2 over all views that see
-///                the vertex, u_i their unit directions: grows with number and angular spread
-///   agreement  = sum w_i / (1 + d_i^2 / (3 (4 noise)^2)) / sum w_i, d_i from the final colour
+/// Confidence is the chance that the vertex lies within a voxel of the true surface, from how well
+/// those colours agree around it (render/confidence.h); `shaping` says what shaped the mesh. The
+/// means in SurfaceEvidence have the weights w.
 ///
 /// A vertex that nobody sees has confidence 0 and takes the colours of its nearest seen neighbours
 /// along the mesh; pieces of mesh that nobody sees at all take the mean colour of the rest.
@@ -44,10 +44,12 @@ struct BakeReport {
 /// `noise_sigma` is the images' noise as a standard deviation on square roots of full scale, > 0.
 /// `cameras` and `images` are in the same order; mesh.normals must be present, a zero normal makes
 /// its vertex unseen. `grid` gives the size of a voxel, about the spacing of the vertices; coarser
-/// meshes are sampled in between. Throws Error when the device cannot hold the data, Cancelled.
+/// meshes are sampled in between. `evidence` takes what confidence came from. Throws Error when the
+/// device cannot hold the data, Cancelled.
 void bake_colour(gpu::Context& context, const GridSpec& grid, const projtex::ImageSet& images,
-                 std::span<const Camera> cameras, double noise_sigma, TriMesh& mesh,
-                 Progress& progress, BakeReport* report = nullptr);
+                 std::span<const Camera> cameras, double noise_sigma, render::Shaping shaping,
+                 TriMesh& mesh, Progress& progress, BakeReport* report = nullptr,
+                 std::vector<render::PooledEvidence>* evidence = nullptr);
 
 namespace render {
 
@@ -66,8 +68,8 @@ struct BakeView {
 };
 
 struct BakedVertex {
-  glm::dvec3 colour{0.0};  ///< linear
-  double confidence = 0;   ///< 0: seen by no view, and the colour is black
+  glm::dvec3 colour{0.0};    ///< linear
+  SurfaceEvidence evidence;  ///< of 0 views: the colour is black
 };
 
 /// Draws a point that faces the camera into a map, as the kernel does.

@@ -15,6 +15,7 @@ struct Sight {
   glm::dvec3 direction{0};  ///< unit, towards the camera
   glm::dvec3 colour{0};     ///< linear
   glm::dvec3 root{0};       ///< square roots of colour
+  glm::dvec3 detail{0};     ///< root less that of the surroundings
 };
 
 /// Projects and tests for the image; depth is 0 when the point is not on it.
@@ -67,6 +68,9 @@ void keep_best(std::vector<Sight>& sights, const glm::dvec3& position) {
     const glm::dvec4 texel = sample(*s.view->image, glm::dvec2(p), level);
     s.colour = glm::max(glm::dvec3(texel), 0.0);
     s.root = glm::sqrt(s.colour);
+    const glm::dvec4 around =
+        sample(*s.view->image, glm::dvec2(p), level + shaders::kBakeDetailLevels);
+    s.detail = s.root - glm::sqrt(glm::max(glm::dvec3(around), 0.0));
     return texel.a < shaders::kBakeMinAlpha;
   });
 }
@@ -112,20 +116,29 @@ BakedVertex bake_vertex(std::span<const BakeView> views, double noise_sigma,
                         const glm::dvec3& position, const glm::dvec3& normal) {
   std::vector<Sight> sights = find_sights(views, position, normal);
   if (sights.empty()) return {};
-  const double spread = 1 - std::exp(-shaders::kBakeScatterGain * scatter_of(sights));
+  const double scatter = scatter_of(sights);
   keep_best(sights, position);
   if (sights.empty()) return {};
   BakedVertex out;
   out.colour = robust_mean(sights, noise_sigma);
-  double agreement = 0, weight = 0;
-  for (const Sight& s : sights) {
-    const double deviations = glm::distance(s.root, glm::sqrt(out.colour)) /
-                              (double(shaders::kBakeAgreementNoise) * noise_sigma);
-    agreement += s.weight / (1 + deviations * deviations / 3);
-    weight += s.weight;
-  }
-  const double lone = shaders::kBakeLoneConfidence;
-  out.confidence = (lone + (1 - lone) * spread) * agreement / weight;
+  const auto mean = [&](auto value) {
+    double sum = 0, weight = 0;
+    for (const Sight& s : sights) {
+      sum += s.weight * value(s);
+      weight += s.weight;
+    }
+    return sum / weight;
+  };
+  glm::dvec3 detail;
+  for (int c = 0; c < 3; ++c) detail[c] = mean([&](const Sight& s) { return s.detail[c]; });
+  const auto squared = [](const glm::dvec3& v) { return glm::dot(v, v); };
+  SurfaceEvidence& e = out.evidence;
+  e.views = float(sights.size());
+  e.scatter = float(scatter);
+  e.disagreement =
+      float(mean([&](const Sight& s) { return squared(s.root - glm::sqrt(out.colour)); }));
+  e.fine_disagreement = float(mean([&](const Sight& s) { return squared(s.detail - detail); }));
+  e.fine_energy = float(mean([&](const Sight& s) { return squared(s.detail); }));
   return out;
 }
 

@@ -118,6 +118,33 @@ TEST_F(Reconstruct, RejectsBadMeshErrors) {
   fail(2, reconstruct({"--unseen", "maybe"}), {"--unseen maybe", "open, closed"});
 }
 
+TEST_F(Reconstruct, ConfidenceIsTheChanceThatItsEvidenceGives) {
+  succeed(reconstruct({"--method", "refine", "--evidence"}));
+  EXPECT_THAT(listing(out()), Contains("evidence.ply"));
+  VertexScalars scalars;
+  const TriMesh judged = read_ply(path("out/evidence.ply"), scalars);
+  EXPECT_EQ(judged.confidence, mesh().confidence);
+  ASSERT_EQ(scalars.size(), 3u);
+  std::size_t seen = 0, near = 0;
+  double sum = 0;
+  const double voxel = report()["grid"]["voxel_size"];
+  for (std::size_t i = 0; i < judged.positions.size(); ++i) {
+    const float scatter = float(scalars["scatter"][i]), c = judged.confidence[i];
+    const double share = scalars["fine_share"][i], deviation = scalars["disagreement"][i];
+    if (c == 0) continue;
+    ++seen;
+    EXPECT_GE(scatter, 0);
+    EXPECT_GT(deviation, 0);
+    EXPECT_GT(share, 0);
+    sum += c;
+    near += std::abs(glm::distance(judged.world(i), kCentre) - kRadius) < voxel;
+  }
+  ASSERT_GT(seen, judged.positions.size() / 2);
+  // Honest: as many lie within a voxel as confidence says, roughly.
+  EXPECT_NEAR(sum / double(seen), double(near) / double(seen), 0.2);
+  EXPECT_GT(sum / double(seen), 0.7);
+}
+
 TEST_F(Reconstruct, VolumeIsReadableByOpenVdbsOwnTool) {
   succeed(reconstruct({"--method", "hull"}));
   const Finished print = run_program({VDB_PRINT, "-l", path("out/volume.vdb")});

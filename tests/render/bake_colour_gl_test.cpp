@@ -27,11 +27,12 @@ View plain_view(const Camera& camera, const glm::dvec3& colour) {
   return view;
 }
 
-void bake(const std::vector<View>& views, TriMesh& mesh, BakeReport* report = nullptr) {
+void bake(const std::vector<View>& views, TriMesh& mesh, BakeReport* report = nullptr,
+          std::vector<render::PooledEvidence>* evidence = nullptr) {
   Progress silent;
   gpu::Context& context = test::gl_context();  // before the images need it
-  bake_colour(context, kGrid, projtex::ImageSet(views), cameras_of(views), kNoise, mesh, silent,
-              report);
+  bake_colour(context, kGrid, projtex::ImageSet(views), cameras_of(views), kNoise,
+              render::Shaping::kPhotographs, mesh, silent, report, evidence);
 }
 
 /// The reference's depth maps of a mesh that consists of vertices only.
@@ -84,7 +85,8 @@ TEST_P(BakeAgainstReference, AgreesOnRandomPoints) {
   const std::vector<View> views = random_views(rng, GetParam());
   TriMesh mesh = random_points(rng, 3000);
   const auto vertices = render::to_voxels(kGrid, mesh);
-  bake(views, mesh);
+  std::vector<render::PooledEvidence> baked;  // of single points: nothing to pool
+  bake(views, mesh, nullptr, &baked);
   const std::vector<BakeView> expected = reference_views(views, vertices);
   int seen = 0, wrong = 0;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
@@ -93,10 +95,16 @@ TEST_P(BakeAgainstReference, AgreesOnRandomPoints) {
     if (i % 10 == 0) {
       EXPECT_EQ(mesh.confidence[i], 0) << "a vertex without a normal";
     }
-    seen += e.confidence > 0;
-    bool close = std::abs(e.confidence - mesh.confidence[i]) < 0.02;
-    if (e.confidence > 0)
-      close = close && glm::distance(e.colour, glm::dvec3(mesh.colours[i])) < 0.02;
+    TriMesh point;
+    point.positions.resize(1);
+    const auto pooled = render::pool_evidence(point, {&e.evidence, 1})[0];
+    seen += pooled.seen;
+    bool close = pooled.seen == baked[i].seen && pooled.seen == (mesh.confidence[i] > 0);
+    if (pooled.seen)
+      close = close && glm::distance(e.colour, glm::dvec3(mesh.colours[i])) < 0.02 &&
+              std::abs(pooled.scatter - baked[i].scatter) < 1e-3 &&
+              std::abs(pooled.disagreement - baked[i].disagreement) < 0.01 &&
+              std::abs(pooled.fine_share - baked[i].fine_share) < 0.02;
     wrong += !close;
   }
   // A point on the border of a texel, of an image or between two levels may fall either way.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "render/bake_colour.h"
+#include "shared/bake.h"
 #include "support/ray_cast.h"
 
 namespace photohull::render::reference {
@@ -37,31 +38,73 @@ class Rig {
   std::vector<BakeView> views_;
 };
 
-double confidence(std::vector<double> angles) {
+SurfaceEvidence evidence(std::vector<double> angles) {
   std::vector<glm::dvec3> same(angles.size(), glm::dvec3(0.3));
-  return Rig(std::move(angles), std::move(same)).bake().confidence;
+  return Rig(std::move(angles), std::move(same)).bake().evidence;
 }
 
-TEST(BakeReference, ConfidenceGrowsWithViewsAndTheirSpread) {
-  EXPECT_EQ(confidence({}), 0);
-  EXPECT_EQ(confidence({85}), 0) << "too flat to say anything";
-  EXPECT_NEAR(confidence({0}), 0.05, 1e-6);
-  EXPECT_LT(confidence({0}), confidence({-5, 5}));
-  EXPECT_LT(confidence({-5, 5}), confidence({-20, 20}));
-  EXPECT_LT(confidence({-20, 20}), confidence({-20, 0, 20}) + 1e-6);
-  EXPECT_LT(confidence({-20, 0, 20}), confidence({-20, -20, 0, 20, 20}));
-  EXPECT_LT(confidence({-60, -40, -20, 0, 20, 40, 60}), 1.0 + 1e-12);
+TEST(BakeReference, ScatterGrowsWithViewsAndTheirSpread) {
+  EXPECT_EQ(evidence({}).views, 0);
+  EXPECT_EQ(evidence({85}).views, 0) << "too flat to say anything";
+  EXPECT_EQ(evidence({0}).views, 1);
+  EXPECT_NEAR(evidence({0}).scatter, 0, 1e-6);
+  // Two unit vectors 60 degrees apart: their ends are 1 apart, 1 / 2 from the mean.
+  EXPECT_NEAR(evidence({-30, 30}).scatter, 0.5, 1e-5);
+  EXPECT_LT(evidence({-5, 5}).scatter, evidence({-20, 20}).scatter);
+  EXPECT_LT(evidence({-20, 0, 20}).scatter, evidence({-20, -20, 0, 20, 20}).scatter);
+  EXPECT_EQ(evidence({-60, -40, -20, 0, 20, 40, 60}).views, shaders::kMaxBakeViews);
 }
 
-TEST(BakeReference, DisagreementLowersConfidence) {
+TEST(BakeReference, DisagreementIsTheViewsVariance) {
   const std::vector<double> angles{-20, 0, 20};
   const glm::dvec3 grey(0.3);
-  const double agreed = Rig(angles, {grey, grey, grey}).bake().confidence;
-  const double slight = Rig(angles, {grey, grey, glm::dvec3(0.33)}).bake().confidence;
-  const double strong = Rig(angles, {grey, glm::dvec3(0.5), glm::dvec3(0.1)}).bake().confidence;
-  EXPECT_LT(slight, agreed);
-  EXPECT_LT(strong, slight);
-  EXPECT_GT(slight, 0.5 * agreed);
+  EXPECT_NEAR(Rig(angles, {grey, grey, grey}).bake().evidence.disagreement, 0, 1e-9);
+  const double slight = Rig(angles, {grey, grey, glm::dvec3(0.33)}).bake().evidence.disagreement;
+  const double strong =
+      Rig(angles, {grey, glm::dvec3(0.5), glm::dvec3(0.1)}).bake().evidence.disagreement;
+  EXPECT_GT(slight, 0);
+  EXPECT_LT(slight, strong);
+  // Two views of equal weight about their mean in linear light.
+  const auto two = Rig({-20, 20}, {glm::dvec3(0.25), glm::dvec3(0.36)}).bake();
+  const auto squared = [&](double root) { return 3 * std::pow(root - std::sqrt(two.colour.r), 2); };
+  EXPECT_NEAR(two.evidence.disagreement, 0.5 * (squared(0.5) + squared(0.6)), 1e-3);
+  EXPECT_NEAR(two.evidence.fine_energy, 0, 1e-9) << "plain images have no detail";
+}
+
+/// A white dot in the middle of an image of black.
+ColourImage dot_image(bool with_dot) {
+  ColourImage image;
+  image.width = image.height = 32;
+  image.bytes.assign(32 * 32 * 4, 0);
+  for (std::size_t p = 3; p < image.bytes.size(); p += 4) image.bytes[p] = 255;
+  if (with_dot)
+    for (int y = 15; y < 17; ++y)
+      for (int x = 15; x < 17; ++x)
+        for (int c = 0; c < 3; ++c) image.bytes[std::size_t(4 * (y * 32 + x) + c)] = 255;
+  return image;
+}
+
+TEST(BakeReference, FineDetailIsWhatStandsOut) {
+  const ColourImage dot = dot_image(true), none = dot_image(false);
+  const auto evidence_of = [&](const ColourImage& second) {
+    std::vector<BakeView> views;
+    for (const ColourImage* image : {&dot, &second}) {
+      const Camera camera =
+          test::look_at(kPoint - glm::dvec3(0, 0, 60), kPoint, 60, 32, 32, {0, 1, 0});
+      views.push_back({projtex::to_grid(camera, kGrid),
+                       {{32, 32, 0, 0}, {1, 0, 0, 0}},
+                       std::vector<double>(32 * 32, 1e30),
+                       image});
+    }
+    return bake_vertex(views, kNoise, kPoint, kNormal).evidence;
+  };
+  const SurfaceEvidence same = evidence_of(dot), other = evidence_of(none);
+  // White less the root of the mean of 16 pixels that four are white of, bilinear: in three
+  // channels.
+  EXPECT_GT(same.fine_energy, 0.3);
+  EXPECT_NEAR(same.fine_disagreement, 0, 1e-9);
+  EXPECT_NEAR(other.fine_energy, 0.5 * same.fine_energy, 1e-6);
+  EXPECT_NEAR(other.fine_disagreement, 0.25 * same.fine_energy, 1e-6);
 }
 
 TEST(BakeReference, OneHighlightHasNoSay) {
@@ -81,7 +124,7 @@ TEST(BakeReference, UnknownPixelsAreNotColours) {
       {{8, 8, 0, 0}, {1, 0, 0, 0}},
       std::vector<double>(64, 1e30),
       &image};
-  EXPECT_EQ(bake_vertex({&view, 1}, kNoise, kPoint, kNormal).confidence, 0);
+  EXPECT_EQ(bake_vertex({&view, 1}, kNoise, kPoint, kNormal).evidence.views, 0);
 }
 
 TEST(BakeReference, SamplesMeansOfPixels) {
