@@ -5,8 +5,9 @@
 
 makes the scenes of datasets/synthetic, reconstructs each by refinement and as a hull with
 --evidence, and measures every vertex against the exact surface. A vertex is right when it lies
-within a voxel of it. Every other scene by name is fitted to: the logistic function by refinement,
-then what hulls lack in odds. Each scene weighs the same. Prints the constants, and for each scene
+within a voxel of it. Every other scene by name, from the second on, is fitted to (of the two halves
+the one with more wrong vertices to learn from): the logistic function by refinement, then what
+hulls lack in odds. Each scene weighs the same. Prints the constants, and for each scene
 what the program's own confidence gives: calibration error, Brier score, AUC (docs/evaluate.md);
 --also adds scenes that are measured only. What is there in the work folder is not made again.
 Needs numpy.
@@ -65,7 +66,7 @@ class Bench:
 
     def measure(self, scene, method):
         """Evidence, confidence and error (voxels) of the seen vertices of a reconstruction."""
-        out = self.work / "runs" / f"{method}-{self.resolution}" / scene.name
+        out = self.work / "runs" / f"{method}-{self.resolution}" / f"{scene.parent.name}-{scene.name}"
         errors = out / "errors.ply"
         if not errors.exists():
             out.mkdir(parents=True, exist_ok=True)
@@ -193,7 +194,7 @@ def main():
             measured.setdefault(method, []).append(bench.measure(scene, method))
     count = len(scenes)
     refined, hulls = measured["refine"][:count], measured["hull"][:count]
-    halves = {"fitted": slice(0, None, 2), "held out": slice(1, None, 2)}
+    halves = {"fitted": slice(1, None, 2), "held out": slice(0, None, 2)}
 
     weights = fit(refined[halves["fitted"]])
     offset = fit_offset(hulls[halves["fitted"]], weights)
@@ -210,7 +211,7 @@ def main():
         table("hull, other scenes: the program's confidence", measured["hull"][count:])
     swapped = fit(refined[halves["held out"]])
     print("\nhalves swapped: " + " ".join(f"{w:.2f}" for w in swapped))
-    table("refine, first half by the constants of the second", refined[halves["fitted"]], swapped)
+    table("refine, the fitted half by these constants of the other", refined[halves["fitted"]], swapped)
     print()
     draw(bench, "held-out", refined[halves["held out"]])
     if arguments.also:

@@ -138,7 +138,7 @@ bool ends_with(const std::string& path, const char* extension) {
 }
 
 void write_plot(AtomicFile& file, const Arguments& a, const eval::Reliability& r) {
-  chart::ReliabilityCurve curve{fs::path(a.mesh).filename().string(), {}};
+  chart::ReliabilityCurve curve{fs::path(a.mesh).stem().string(), {}};
   for (const eval::ReliabilityBin& b : r.bins)
     curve.bins.push_back({b.low, b.high, b.count, b.confidence, b.within});
   char title[80];

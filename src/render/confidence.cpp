@@ -15,8 +15,8 @@ constexpr double kLeastFine = 1e-3;      // variance below which fine detail is 
 constexpr double kLeastDeviation = 0.01, kLeastScatter = 0.05;  // bend the logarithms
 
 // Fitted by `bench/fit_confidence.py` on half of the synthetic scenes (docs/evaluate.md).
-constexpr double kConstant = -3.80, kByDisagreement = -1.50, kByScatter = 0.12, kByShare = -2.49;
-constexpr double kSilhouettesOnly = -1.52;
+constexpr double kConstant = -6.55, kByDisagreement = -2.50, kByScatter = 0.61, kByShare = -1.74;
+constexpr double kSilhouettesOnly = -1.67;
 constexpr double kLeastConfidence = 1e-3;  // of what is seen
 
 /// Sums over a vertex's surroundings.
