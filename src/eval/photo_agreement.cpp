@@ -2,6 +2,8 @@
 // rephotography: novel view prediction error for 3D reconstruction, ACM TOG 2017.
 #include "eval/photo_agreement.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <mutex>
@@ -15,6 +17,7 @@ namespace {
 
 constexpr double kTexture = 3;  // standard deviations of noise
 constexpr int kForeground = 128;
+constexpr float kKnown = 0.999f;  // alpha
 
 std::optional<double> ratio(double part, double whole) {
   return whole > 0 ? std::optional<double>(part / whole) : std::nullopt;
@@ -40,18 +43,38 @@ void check_lists(std::size_t views, std::span<const std::size_t> held_out,
   for (const std::size_t i : lenders) PHOTOHULL_CHECK_OP(i, <, views);
 }
 
+/// Calls work(first, last, score) for the pixels of each row, in parallel, and adds the scores in
+/// the rows' order.
+template <typename Work>
+void add_rows(const ColourImage& image, PhotoScore& total, const Work& work) {
+  std::vector<PhotoScore> rows(static_cast<std::size_t>(image.height));
+  const auto width = std::size_t(image.width);
+  tbb::parallel_for(std::size_t(0), rows.size(),
+                    [&](std::size_t y) { work(y * width, (y + 1) * width, rows[y]); });
+  for (const PhotoScore& row : rows) total.add(row);
+}
+
+glm::vec4 pixel(const ColourImage& image, std::size_t i) {
+  const auto width = std::size_t(image.width);
+  return image.linear(int(i % width), int(i / width));
+}
+
+bool is_known(const ColourImage& image, std::size_t i) {
+  return !image.has_alpha || pixel(image, i).a >= kKnown;
+}
+
 /// Pixels that the mask covers by half or more, of those that were photographed.
 std::vector<std::uint8_t> foreground_of(const View& view, PhotoScore& score) {
   std::vector<std::uint8_t> out(std::size_t(view.image.width) * std::size_t(view.image.height), 0);
   score.masked = !view.mask.empty();
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const int width = view.image.width;
-    if (view.image.has_alpha && view.image.linear(int(i) % width, int(i) / width).a < 0.999f)
-      continue;
-    ++score.pixels;
-    out[i] = view.mask.empty() || view.mask.coverage[i] >= kForeground;
-    score.foreground += out[i];
-  }
+  add_rows(view.image, score, [&](std::size_t first, std::size_t last, PhotoScore& row) {
+    for (std::size_t i = first; i < last; ++i) {
+      if (!is_known(view.image, i)) continue;
+      ++row.pixels;
+      out[i] = view.mask.empty() || view.mask.coverage[i] >= kForeground;
+      row.foreground += out[i];
+    }
+  });
   return out;
 }
 
@@ -60,37 +83,35 @@ glm::vec3 encoded(const glm::vec3& linear) {
   return {one(linear.r), one(linear.g), one(linear.b)};
 }
 
-/// Coverage of the photograph by the prediction and the difference of their colours; in the order
-/// of pixels.
+/// Coverage of the photograph by the prediction and the difference of their colours.
 void count_pixels(const View& view, const PhotoMaps& maps, PhotoScore& score) {
-  const int width = view.image.width;
-  for (std::size_t i = 0; i < maps.foreground.size(); ++i) {
-    const PixelState state = maps.prediction.state[i];
-    if (state == PixelState::kMiss) continue;
-    const glm::vec4 photo = view.image.linear(int(i) % width, int(i) / width);
-    if (view.image.has_alpha && photo.a < 0.999f) continue;
-    ++score.projected;
-    if (!maps.foreground[i]) continue;
-    ++score.covered;
-    if (state != PixelState::kLit) continue;
-    ++score.predicted;
-    const glm::dvec3 d(encoded(maps.prediction.colour[i]) - encoded(glm::vec3(photo)));
-    score.squared_sum += glm::dot(d, d) / 3;
-    score.absolute_sum += (std::abs(d.x) + std::abs(d.y) + std::abs(d.z)) / 3;
-  }
+  add_rows(view.image, score, [&](std::size_t first, std::size_t last, PhotoScore& row) {
+    for (std::size_t i = first; i < last; ++i) {
+      const PixelState state = maps.prediction.state[i];
+      if (state == PixelState::kMiss || !is_known(view.image, i)) continue;
+      ++row.projected;
+      if (!maps.foreground[i]) continue;
+      ++row.covered;
+      if (state != PixelState::kLit) continue;
+      ++row.predicted;
+      const glm::dvec3 d(encoded(maps.prediction.colour[i]) -
+                         encoded(glm::vec3(pixel(view.image, i))));
+      row.squared_sum += glm::dot(d, d) / 3;
+      row.absolute_sum += (std::abs(d.x) + std::abs(d.y) + std::abs(d.z)) / 3;
+    }
+  });
 }
 
 PicturePair pair_of(const View& view, const PhotoMaps& maps) {
   PicturePair pair{view.image.width, view.image.height, {}, {}, maps.foreground, {}};
   const std::size_t size = maps.foreground.size();
   pair.photo.resize(size), pair.prediction.resize(size), pair.predicted.resize(size);
-  for (std::size_t i = 0; i < size; ++i) {
+  tbb::parallel_for(std::size_t(0), size, [&](std::size_t i) {
     pair.predicted[i] = maps.prediction.state[i] == PixelState::kLit;
-    if (!pair.counts[i]) continue;
-    const int x = int(i) % pair.width, y = int(i) / pair.width;
-    pair.photo[i] = glm::sqrt(glm::max(glm::vec3(view.image.linear(x, y)), glm::vec3(0)));
+    if (!pair.counts[i]) return;
+    pair.photo[i] = glm::sqrt(glm::max(glm::vec3(pixel(view.image, i)), glm::vec3(0)));
     pair.prediction[i] = glm::sqrt(maps.prediction.colour[i]);
-  }
+  });
   return pair;
 }
 
@@ -103,12 +124,14 @@ void add_scores(const PhotoMaps& maps, PhotoScore& score) {
   }
 }
 
-PhotoScore judge_view(const View& view, const PhotoOptions& options, PhotoMaps& maps) {
+PhotoScore judge_view(const View& view, const PhotoOptions& options,
+                      const std::function<void()>& row_done, PhotoMaps& maps) {
   PhotoScore score;
   score.view = view.name;
   maps.foreground = foreground_of(view, score);
   count_pixels(view, maps, score);
-  maps.scores = window_agreement(pair_of(view, maps), options.window, texture_floor(view.image));
+  maps.scores =
+      window_agreement(pair_of(view, maps), options.window, texture_floor(view.image), row_done);
   add_scores(maps, score);
   return score;
 }
@@ -188,7 +211,7 @@ PhotoAgreement judge_by_photographs(const TriMesh& mesh, std::span<const View> v
   result.lenders = lenders.size();
   result.all.masked = true;
   std::int64_t rows = 0, done = 0;
-  for (const std::size_t i : held_out) rows += views[i].image.height;
+  for (const std::size_t i : held_out) rows += 2 * views[i].image.height;
   std::mutex mutex;  // Progress need not be thread-safe
   const auto row_done = [&] {
     progress.check_cancelled();
@@ -200,7 +223,7 @@ PhotoAgreement judge_by_photographs(const TriMesh& mesh, std::span<const View> v
     maps.view = i;
     maps.prediction =
         predict_photo(mesh, rays, views[i].camera, views, lenders, options.predict, row_done);
-    result.views.push_back(judge_view(views[i], options, maps));
+    result.views.push_back(judge_view(views[i], options, row_done, maps));
     const PhotoScore& score = result.views.back();
     result.all.add(score);
     result.all.masked = result.all.masked && score.masked;

@@ -52,7 +52,8 @@ float at_pixel(const PicturePair& pair, int x, int y, int radius, double floor) 
 
 }  // namespace
 
-std::vector<float> window_agreement(const PicturePair& pair, int window, double floor) {
+std::vector<float> window_agreement(const PicturePair& pair, int window, double floor,
+                                    const std::function<void()>& row_done) {
   const std::size_t size = std::size_t(pair.width) * std::size_t(pair.height);
   PHOTOHULL_CHECK(window % 2 == 1 && floor > 0);
   PHOTOHULL_CHECK(pair.photo.size() == size && pair.prediction.size() == size &&
@@ -62,6 +63,7 @@ std::vector<float> window_agreement(const PicturePair& pair, int window, double 
     for (int x = 0; x < pair.width; ++x)
       scores[std::size_t(y) * std::size_t(pair.width) + std::size_t(x)] =
           at_pixel(pair, x, y, window / 2, floor);
+    row_done();
   });
   return scores;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -26,7 +27,10 @@ struct PicturePair {
 /// more than half of those that count in its window, are not predicted. NaN, whatever the
 /// prediction, where the pixel does not count or its window tells nothing: where less than a
 /// quarter of it counts, or where the photograph's variance in it is below `floor`.
-/// Which pixels are judged thus depends on the photograph alone.
-std::vector<float> window_agreement(const PicturePair& pair, int window, double floor);
+/// Which pixels are judged thus depends on the photograph alone. `row_done` is called, from any
+/// thread, after each row and may throw.
+std::vector<float> window_agreement(
+    const PicturePair& pair, int window, double floor,
+    const std::function<void()>& row_done = [] {});
 
 }  // namespace photohull::eval

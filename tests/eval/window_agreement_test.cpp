@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "core/error.h"
+
 namespace photohull::eval {
 namespace {
 
@@ -88,6 +90,12 @@ TEST(WindowAgreement, WhatIsJudgedDependsOnThePhotographAlone) {
       ASSERT_NEAR(part[i], i % 40 < 20 ? 1 : 0, 1e-4) << i;
     }
   }
+}
+
+TEST(WindowAgreement, StopsWhenAskedTo) {
+  EXPECT_THROW(
+      window_agreement(random_pair(20, 20, 0.3f), kWindow, kFloor, [] { throw Cancelled(); }),
+      Cancelled);
 }
 
 TEST(WindowAgreement, NeedsEnoughOfTheWindow) {
