@@ -14,7 +14,7 @@ struct TriMesh {
   glm::dvec3 origin{0.0};            ///< keeps float precision far from the world's origin
   std::vector<glm::vec3> normals;    ///< unit, outward
   std::vector<glm::vec3> colours;    ///< linear RGB
-  std::vector<float> confidence;     ///< [0, 1]; 0 = no camera saw it
+  std::vector<float> confidence;     ///< chance to lie within a voxel of the truth; 0: unseen
   std::vector<std::array<std::uint32_t, 3>> triangles;
 
   glm::dvec3 world(std::size_t vertex) const { return origin + glm::dvec3(positions[vertex]); }
