@@ -1,7 +1,8 @@
 #version 450 core
 #extension GL_GOOGLE_include_directive : require
 // Chooses the views that each surfel is matched in: as reference the most frontal one that sees it,
-// then greedily frontal ones at a useful angle from it and from each other. One thread a surfel.
+// then greedily frontal ones at a useful angle from it and from each other. Also lists the most
+// frontal ones that the surface itself hides it from. One thread a surfel.
 // Reference: refine::reference::choose_views.
 #include "include/projection.glsl"
 #include "include/depth_map.glsl"
@@ -30,12 +31,30 @@ void insert(int view, float cosine) {
   }
 }
 
+// Likewise of those that do not see it.
+float hidden_cosine[kHiddenViews];
+int hidden_view[kHiddenViews];
+
+void insert_hidden(int view, float cosine) {
+  for (int k = 0; k < kHiddenViews; ++k) {
+    bool better = cosine > hidden_cosine[k];
+    float other_cosine = better ? hidden_cosine[k] : cosine;
+    int other_view = better ? hidden_view[k] : view;
+    hidden_cosine[k] = better ? cosine : hidden_cosine[k];
+    hidden_view[k] = better ? view : hidden_view[k];
+    cosine = other_cosine;
+    view = other_view;
+  }
+}
+
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= uint(parameters.counts.x)) return;
   vec3 position = surfels[i].position.xyz, normal = surfels[i].normal.xyz;
   for (int k = 0; k < kMatchCandidates; ++k) best_cosine[k] = 0.0;
   for (int k = 0; k < kMatchCandidates; ++k) best_view[k] = 0;
+  for (int k = 0; k < kHiddenViews; ++k) hidden_cosine[k] = 0.0;
+  for (int k = 0; k < kHiddenViews; ++k) hidden_view[k] = -1;
   vec3 receiver = position + parameters.visibility.x * normal;
   uint list = gl_WorkGroupID.x * uint(parameters.counts.y + 1);
   uint listed = view_lists[list];
@@ -49,7 +68,10 @@ void main() {
     vec3 p = project(view, receiver);
     vec2 pixel = p.xy / p.z;
     if (p.z <= 1.0 || !on_image(view, pixel)) continue;
-    if (!visible(uint(v), pixel, p.z, parameters.visibility.y)) continue;
+    if (!visible(uint(v), pixel, p.z, parameters.visibility.y)) {
+      if (cosine > parameters.visibility.z) insert_hidden(v, cosine);
+      continue;
+    }
     ++seen;
     if (!(cosine > parameters.visibility.z)) continue;
     insert(v, cosine);
@@ -88,4 +110,5 @@ void main() {
   }
   choices[i].first = ivec4(chosen[0], chosen[1], chosen[2], chosen[3]);
   choices[i].second = ivec4(chosen[4], chosen[5], seen, count);
+  choices[i].hidden = ivec4(hidden_view[0], hidden_view[1], hidden_view[2], hidden_view[3]);
 }

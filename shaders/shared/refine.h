@@ -15,6 +15,7 @@ constexpr int kMatchViews = 6;        // the reference view and those compared w
 constexpr int kMatchCandidates = 16;  // views, the most frontal ones, that the choice is made among
 constexpr int kMatchRadius = 2;  // taps: every other place of 5 x 5 in the tangent plane
 constexpr int kMatchTaps = 13;
+constexpr int kHiddenViews = 4;  // views that face a surfel and whose sight something blocks
 constexpr float kNoScore = -2.0f;  // too few views to compare
 
 struct MatchParameters {
@@ -31,6 +32,7 @@ struct MatchParameters {
 struct MatchChoice {
   ivec4 first;   // x: reference view; -1 where there is none
   ivec4 second;  // x, y: the last two; z: views that see it; w: number of views chosen
+  ivec4 hidden;  // the most frontal views that something hides it from, -1 where there are fewer
 };
 
 // Fitting planes to the images after matching.
@@ -58,7 +60,7 @@ static_assert(sizeof(FitParameters) == 48);
 static_assert(sizeof(FitShape) == 16);
 static_assert(sizeof(FitResult) == 32);
 static_assert(sizeof(MatchParameters) == 80);
-static_assert(sizeof(MatchChoice) == 32);
+static_assert(sizeof(MatchChoice) == 48);
 }  // namespace photohull::shaders
 #endif
 

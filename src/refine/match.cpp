@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/error.h"
 #include "gpu/buffer.h"
 #include "gpu/program.h"
 #include "render/surface_points.h"
@@ -150,6 +151,41 @@ Matches match_patches(gpu::Context& context, const GridSpec& grid, const TriMesh
   out.range = range;
   Matcher(context, grid, mesh, images, cameras)
       .match(parameters_of(cameras.size(), noise_sigma, range, options), bends, out, choices);
+  return out;
+}
+
+std::vector<float> correlate_pairs(gpu::Context& context, const GridSpec& grid,
+                                   std::span<const shaders::BakeVertex> surfels,
+                                   std::span<const shaders::MatchChoice> pairs,
+                                   const projtex::ImageSet& images, std::span<const Camera> cameras,
+                                   double noise_sigma, const MatchOptions& options) {
+  PHOTOHULL_CHECK_OP(surfels.size(), ==, pairs.size());
+  std::vector<float> out(surfels.size());
+  if (surfels.empty()) return out;
+  const glm::ivec2 size(images.texture().width(), images.texture().height());
+  std::vector<shaders::GpuView> gpu_views;
+  for (const Camera& camera : cameras)
+    gpu_views.push_back(projtex::to_gpu_view(projtex::to_grid(camera, grid), size));
+  const Buffer views = Buffer::of(gpu_views);
+  const auto program = gpu::Program::compute("refine_match_patches.comp.glsl");
+  shaders::MatchParameters parameters = parameters_of(cameras.size(), noise_sigma, {}, options);
+  for (std::size_t first = 0; first < surfels.size(); first += kBatch) {
+    const std::size_t count = std::min(kBatch, surfels.size() - first);
+    parameters.counts.x = int(count);
+    const Buffer uniforms(sizeof parameters, &parameters);
+    const Buffer part = Buffer::of(surfels.subspan(first, count));
+    const Buffer choices = Buffer::of(pairs.subspan(first, count));
+    const Buffer scores(count * sizeof(float)), textures(count * sizeof(float));
+    uniforms.bind_uniform(0);
+    views.bind_storage(0);
+    part.bind_storage(1);
+    choices.bind_storage(2);
+    scores.bind_storage(3);
+    textures.bind_storage(5);
+    images.texture().bind(0);
+    program.dispatch(context, "refine_correlate_pairs", gpu::group_count(count, 64));
+    scores.read(0, count * sizeof(float), out.data() + first);
+  }
   return out;
 }
 

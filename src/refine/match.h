@@ -9,6 +9,7 @@
 #include "core/mesh.h"
 #include "gpu/context.h"
 #include "projtex/image_set.h"
+#include "shared/bake.h"
 #include "shared/refine.h"
 
 namespace photohull::refine {
@@ -56,5 +57,12 @@ Matches match_patches(gpu::Context& context, const GridSpec& grid, const TriMesh
                       std::span<const Camera> cameras, double noise_sigma, const OffsetRange& range,
                       const MatchOptions& options,
                       std::vector<shaders::MatchChoice>* choices = nullptr);
+
+/// Score of each surfel (voxels; position.w is 1) in the two views of its choice, on planes.
+std::vector<float> correlate_pairs(gpu::Context& context, const GridSpec& grid,
+                                   std::span<const shaders::BakeVertex> surfels,
+                                   std::span<const shaders::MatchChoice> pairs,
+                                   const projtex::ImageSet& images, std::span<const Camera> cameras,
+                                   double noise_sigma, const MatchOptions& options);
 
 }  // namespace photohull::refine

@@ -25,13 +25,16 @@ struct Candidate {
   dvec3 direction;  // unit, to the camera
 };
 
-bool sees(const MatchView& view, const dvec3& receiver, double depth_bias) {
+bool in_frame(const MatchView& view, const dvec3& receiver) {
   const dvec3 p = view.camera.projection * glm::dvec4(receiver, 1);
   if (p.z <= 1) return false;
   const dvec2 pixel = dvec2(p) / p.z;
   return pixel.x >= -0.5 && pixel.y >= -0.5 && pixel.x <= view.camera.width - 0.5 &&
-         pixel.y <= view.camera.height - 0.5 &&
-         visibility::reference::visible(view.camera, view.depth_info, receiver, depth_bias,
+         pixel.y <= view.camera.height - 0.5;
+}
+
+bool unblocked(const MatchView& view, const dvec3& receiver, double depth_bias) {
+  return visibility::reference::visible(view.camera, view.depth_info, receiver, depth_bias,
                                         view.depths);
 }
 
@@ -125,18 +128,23 @@ dvec3 sample(const MatchView& view, const dvec2& pixel, int level) {
 Choice choose_views(std::span<const MatchView> views, const dvec3& position, const dvec3& normal,
                     const MatchOptions& options, std::span<const int> ties) {
   Choice out;
-  std::vector<Candidate> candidates;
+  std::vector<Candidate> candidates, hidden;
   for (std::size_t v = 0; v < views.size(); ++v) {
     const dvec3 offset = views[v].camera.centre - position;
     const double cosine = glm::dot(offset, normal) / glm::length(offset);
     if (!(cosine > options.seen_cosine)) continue;
-    if (!sees(views[v], position + options.shift * normal, options.depth_bias)) continue;
-    ++out.seen;
+    const dvec3 receiver = position + options.shift * normal;
+    if (!in_frame(views[v], receiver)) continue;
+    const bool sees = unblocked(views[v], receiver, options.depth_bias);
+    out.seen += sees;
     if (cosine > options.least_cosine)
-      candidates.push_back({int(v), cosine, glm::normalize(offset)});
+      (sees ? candidates : hidden).push_back({int(v), cosine, glm::normalize(offset)});
   }
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.cosine > b.cosine; });
+  for (std::vector<Candidate>* list : {&candidates, &hidden})
+    std::stable_sort(list->begin(), list->end(),
+                     [](const Candidate& a, const Candidate& b) { return a.cosine > b.cosine; });
+  for (std::size_t k = 0; k < std::min<std::size_t>(hidden.size(), shaders::kHiddenViews); ++k)
+    out.hidden.push_back(hidden[k].view);
   if (candidates.size() > shaders::kMatchCandidates) candidates.resize(shaders::kMatchCandidates);
 
   std::vector<dvec3> directions;

@@ -28,8 +28,9 @@ glm::dvec2 derivative(const projtex::GridCamera& camera, const glm::dvec3& at,
 glm::dvec3 sample(const MatchView& view, const glm::dvec2& pixel, int level);
 
 struct Choice {
-  std::vector<int> views;  ///< the reference view first; at most kMatchViews
-  int seen = 0;            ///< views that see the surfel
+  std::vector<int> views;   ///< the reference view first; at most kMatchViews
+  int seen = 0;             ///< views that see the surfel
+  std::vector<int> hidden;  ///< the most frontal of those in whose frame something hides it
 };
 
 /// The views that a surfel (voxel coordinates; unit outward normal, or zero) is matched in

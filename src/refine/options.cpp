@@ -36,6 +36,12 @@ void check(const CloseOptions& o) {
   require(is_length(o.thickness), "close.thickness must lie in [0, 1000] voxels");
 }
 
+void check(const LookOptions& o) {
+  require(is_score(o.least_score), "look.least_score must lie in [-1, 1]");
+  require(is_length(o.margin), "look.margin must lie in [0, 1000] voxels");
+  require(o.least_lines >= 1, "look.least_lines must be at least 1");
+}
+
 void check(const RimOptions& o) {
   require(o.weight >= 0 && o.weight <= 1000, "rims.weight must lie in [0, 1000]");
   require(o.reach > 0 && is_length(o.reach), "rims.reach must lie in (0, 1000] voxels");
@@ -106,6 +112,7 @@ void RefineOptions::validate() const {
   check(vote);
   check(close);
   check(rims);
+  check(look);
   require(restore.least_views >= 1, "restore.least_views must be at least 1");
   check(match);
   require(photometric >= 0 && photometric <= 100, "photometric must be 0 to 100");

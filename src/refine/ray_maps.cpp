@@ -80,7 +80,7 @@ class RayMatcher {
         if (best < 0) break;
         chosen.push_back(best);
       }
-      shaders::MatchChoice c{{-1, -1, -1, -1}, {-1, -1, 0, int(chosen.size())}};
+      shaders::MatchChoice c{{-1, -1, -1, -1}, {-1, -1, 0, int(chosen.size())}, glm::ivec4(-1)};
       for (std::size_t k = 0; k < chosen.size(); ++k)
         (k < 4 ? c.first[int(k)] : c.second[int(k - 4)]) = chosen[k];
       partners_.push_back(c);

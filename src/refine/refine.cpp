@@ -161,10 +161,16 @@ class Refiner {
             ? std::vector<glm::vec3>()
             : curvatures(graph, positions, mesh.normals, options_.match.most_bend);
     const OffsetRange range{-options_.step * (offsets / 2), options_.step, offsets};
+    std::vector<shaders::MatchChoice> choices;
     Matches matches = match_patches(context_, volume.grid, mesh, bends, images_, cameras_,
-                                    options_.noise_sigma, range, options_.match);
+                                    options_.noise_sigma, range, options_.match, &choices);
     aggregate(graph, options_.aggregations, matches);
     std::vector<Peak> peaks = find_peaks(matches, options_.peak);
+    const KnownSurface known =
+        known_surface(positions, mesh.normals, peaks, choices, options_.look);
+    const std::vector<Sightline> sightlines =
+        find_sightlines(context_, volume.grid, known, images_, cameras_, options_.noise_sigma,
+                        options_.match, options_.look);
     const std::vector<float> trust =
         trust_thickness(volume, positions, mesh.normals, options_.peak.thick);
     for (std::size_t i = 0; i < peaks.size(); ++i) peaks[i].weight *= trust[i];
@@ -179,6 +185,8 @@ class Refiner {
         if (closing[i] != 0) moves[i] = closing[i];
     }
     move_surface(volume, mesh, moves);
+    counts.freed +=
+        std::int64_t(free_sightlines(sightlines, known.positions, cameras_, options_.look, volume));
 
     counts.surfels = std::int64_t(moves.size());
     counts.samples += matches.samples;

@@ -14,6 +14,7 @@
 #include "refine/close_unseen.h"
 #include "refine/displacement.h"
 #include "refine/fit_patches.h"
+#include "refine/look_through.h"
 #include "refine/match.h"
 #include "refine/restore.h"
 #include "refine/rims.h"
@@ -42,6 +43,7 @@ struct RefineOptions {
   RestoreOptions restore;
   RimOptions rims;
   MatchOptions match;
+  LookOptions look;
   int photometric = 1;  ///< iterations of fitting patches, at the end; fewer when they stop helping
   FitOptions fit;
   PeakOptions peak;
@@ -58,6 +60,7 @@ struct LevelReport {
   std::int64_t samples = 0;   ///< texture samples
   std::int64_t bricks = 0;    ///< stored at the end
   std::int64_t restored = 0;  ///< voxels of the hull that silhouettes brought back
+  std::int64_t freed = 0;     ///< voxels before surface that views see through them
   double mean_move = 0;       ///< of the last iteration, voxels
   double evidence = 0;        ///< share of its surfels that the photographs say a place for
 };

@@ -38,8 +38,11 @@ class ChooseViews : public ::testing::TestWithParam<int> {
     const auto at = render::to_voxels(test::kGrid, mesh)[i];
     const auto expected =
         reference::choose_views(expected_, dvec3(at.position), dvec3(at.normal), options_, chosen);
+    std::vector<int> hidden;
+    for (int k = 0; k < shaders::kHiddenViews && found.choices[i].hidden[k] >= 0; ++k)
+      hidden.push_back(found.choices[i].hidden[k]);
     return expected.views == chosen && expected.seen == found.choices[i].second.z &&
-           found.matches.seen[i] == (expected.seen > 0);
+           expected.hidden == hidden && found.matches.seen[i] == (expected.seen > 0);
   }
 
   void add_camera(const dvec3& voxel, const dvec3& target, double focal = 300) {
@@ -73,11 +76,12 @@ TEST_P(ChooseViews, AgreesOnRandomPoints) {
   const TriMesh mesh = test::random_points(rng_, 2000);
   const Found found = run(mesh);
   ASSERT_EQ(found.choices.size(), mesh.positions.size());
-  int wrong = 0, seen = 0, several = 0;
+  int wrong = 0, seen = 0, several = 0, hidden = 0;
   for (std::size_t i = 0; i < found.choices.size(); ++i) {
     wrong += !agrees(mesh, found, i);
     seen += found.matches.seen[i];
     several += found.choices[i].second.w > 2;
+    hidden += found.choices[i].hidden.x >= 0;
     if (i % 10 == 0) {
       EXPECT_FALSE(found.matches.seen[i]) << "without a normal";
     }
@@ -92,6 +96,7 @@ TEST_P(ChooseViews, AgreesOnRandomPoints) {
   // A point on the border of a texel or of an image may fall either way.
   EXPECT_LE(wrong, 20);
   EXPECT_GT(seen, 500);
+  EXPECT_GT(hidden, 50);
   if (GetParam() >= 20) {
     EXPECT_GT(several, 300);
   }
@@ -163,7 +168,10 @@ TEST_F(ChooseViewsOf, HiddenSurfelIsUnseen) {
     for (int y = 10; y < 38; ++y) test::add_vertex({x, y, 34}, {0, 0, 1}, mesh);
   const Found found = run(mesh);
   EXPECT_EQ(found.choices[0].second.z, 0);
-  EXPECT_TRUE(agrees(mesh, found, 0));
+  const std::vector<int> hidden{found.choices[0].hidden.x, found.choices[0].hidden.y,
+                                found.choices[0].hidden.z, found.choices[0].hidden.w};
+  EXPECT_EQ(std::set<int>(hidden.begin(), hidden.end()).size(), 4u);
+  for (const int view : hidden) EXPECT_TRUE(view >= 0 && view < 8);
 }
 
 TEST_F(ChooseViewsOf, TiesAreSettledOneWayOrTheOther) {

@@ -82,7 +82,7 @@ inline std::vector<int> views_of(const shaders::MatchChoice& choice) {
 }
 
 inline shaders::MatchChoice choice_of(const std::vector<int>& views) {
-  shaders::MatchChoice out{{-1, -1, -1, -1}, {-1, -1, 0, int(views.size())}};
+  shaders::MatchChoice out{{-1, -1, -1, -1}, {-1, -1, 0, int(views.size())}, glm::ivec4(-1)};
   for (int k = 0; k < int(views.size()); ++k)
     (k < 4 ? out.first[k] : out.second[k - 4]) = views[std::size_t(k)];
   return out;
