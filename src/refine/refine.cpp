@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "refine/surface.h"
+#include "refine/trust.h"
 #include "volume/cavities.h"
 #include "volume/combine.h"
 #include "volume/distance_from_mesh.h"
@@ -40,23 +41,6 @@ std::vector<glm::vec3> voxel_positions(const GridSpec& grid, const TriMesh& mesh
   for (const glm::vec3& p : mesh.positions)
     out.emplace_back(glm::dvec3(p) / grid.voxel_size + offset);
   return out;
-}
-
-/// How much matching and smoothing may move each vertex, in [0, 1]: patches reach beyond parts
-/// thinner than they are, and mix in what lies behind; smoothing makes such parts thinner still.
-std::vector<float> trust_thickness(const SparseVolume& volume,
-                                   const std::vector<glm::vec3>& positions,
-                                   const std::vector<glm::vec3>& normals, double thick) {
-  std::vector<float> trust(positions.size());
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    double depth = 1;
-    while (depth < thick &&
-           volume.at(glm::ivec3(glm::floor(positions[i] - float(depth) * normals[i] + 0.5f))) < 0)
-      depth += 1;
-    const double share = std::min(depth / thick, 1.0);
-    trust[i] = float(share * share);
-  }
-  return trust;
 }
 
 /// Angles to the reference view that the cameras' spacing asks for: where neighbours stand far
@@ -225,8 +209,9 @@ class Refiner {
       std::vector<Peak> peaks =
           peaks_of(results, tap_spacings(volume.grid, positions, cameras_, choices, options_.fit),
                    options_.fit);
-      const std::vector<float> trust =
+      std::vector<float> trust =
           trust_thickness(volume, positions, mesh.normals, options_.peak.thick);
+      trust_outlines(volume.grid, positions, choices, cameras_, silhouettes_, options_.fit, trust);
       // What patches cannot be trusted with stays where it is.
       for (std::size_t k = 0; k < peaks.size(); ++k) peaks[k].offset *= trust[k];
       if (any_silhouette(silhouettes_))
