@@ -24,6 +24,11 @@ constexpr float kSameWay = 0.3f;   // cosine between normals that are blended
 constexpr float kDoubt = 1;  // voxels of the old volume within which its sides are not trusted
 constexpr float kUnknown = std::numeric_limits<float>::infinity();
 
+/// Voxels in a row along z, which is how bricks store them, and what vector instructions take.
+constexpr int kRun = 4, kRuns = kBrickVoxels / kRun;
+using Floats [[gnu::vector_size(16)]] = float;
+constexpr Floats kSteps = {0, 1, 2, 3};
+
 struct Point {
   vec3 position, normal;  // voxel coordinates
 };
@@ -94,12 +99,14 @@ class Field {
       if (slot >= SparseVolume::kInside) return;
       Blend b;
       blend(
-          brick, [&](std::uint32_t i, float) { return displacement[i]; }, b);
+          brick, [&](std::uint32_t i, const Floats&) { return displacement[i]; }, b);
       float* values = volume.distance.data() + std::size_t(slot) * kBrickVoxels;
-      for (int v = 0; v < kBrickVoxels; ++v)
-        if (b.total[v] > 0)
-          values[v] = std::clamp(values[v] - b.sum[v] / b.total[v], -SparseVolume::kBand,
-                                 SparseVolume::kBand);
+      for (int v = 0; v < kBrickVoxels; ++v) {
+        const float sum = b.sum[v / kRun][v % kRun], total = b.total[v / kRun][v % kRun];
+        if (total > 0)
+          values[v] =
+              std::clamp(values[v] - sum / total, -SparseVolume::kBand, SparseVolume::kBand);
+      }
     });
   }
 
@@ -142,67 +149,79 @@ class Field {
       });
   }
 
-  /// Calls f(voxel offset, squared distance, signed distance to the tangent plane).
+  /// Calls f(run, squared distances, signed distances to the tangent plane) for the runs of voxels
+  /// that the point may reach.
   template <typename F>
-  void for_voxels(const Point& p, const ivec3& corner, F&& f) const {
+  void for_runs(const Point& p, const ivec3& corner, F&& f) const {
     const vec3 local = p.position - vec3(corner);
     const ivec3 low = glm::max(ivec3(glm::ceil(local - reach_)), 0);
     const ivec3 high = glm::min(ivec3(glm::floor(local + reach_)), kBrickEdge - 1);
     const float square = reach_ * reach_;
     for (int x = low.x; x <= high.x; ++x)
       for (int y = low.y; y <= high.y; ++y) {
-        const float dx = float(x) - local.x, dy = float(y) - local.y, dxy = dx * dx + dy * dy;
+        const float dx = float(x) - local.x, dy = float(y) - local.y, line = dx * dx + dy * dy;
+        if (line > square) continue;
         const float plane = dx * p.normal.x + dy * p.normal.y;
-        for (int z = low.z; z <= high.z; ++z) {
-          const float dz = float(z) - local.z, d2 = dxy + dz * dz;
-          if (d2 <= square) f((x << 6) | (y << 3) | z, d2, plane + dz * p.normal.z);
+        for (int run = low.z / kRun; run <= high.z / kRun; ++run) {
+          const Floats dz = kSteps + (float(kRun * run) - local.z);
+          f(((x << 6) | (y << 3)) / kRun + run, line + dz * dz, plane + dz * p.normal.z);
         }
       }
   }
 
   struct Blend {
-    std::array<float, kBrickVoxels> nearest, sum{}, total{};  // squared distance; weighted values
+    std::array<Floats, kRuns> nearest, sum{}, total{};  // squared distance; weighted values
   };
 
-  /// Blends value(point, signed distance to its plane) at the voxels of a brick: the nearest point
+  /// Blends value(point, signed distances to its plane) at the voxels of a brick: the nearest point
   /// decides, others that look the same way join in by how much farther they are.
   template <typename F>
   void blend(std::size_t brick, F&& value, Blend& out) const {
-    std::array<std::uint32_t, kBrickVoxels> id{};
-    out.nearest.fill(kUnknown);
+    std::array<Floats, kRuns> nx{}, ny{}, nz{};  // normals of the nearest points
+    out.nearest.fill(Floats{} + kUnknown);
     const ivec3 corner = out_.bricks[brick] * kBrickEdge;
+    const float square = reach_ * reach_;
     const auto points =
         std::span(listed_).subspan(first_[brick], first_[brick + 1] - first_[brick]);
-    for (const std::uint32_t i : points)
-      for_voxels(points_[i], corner, [&](int v, float d2, float) {
-        if (d2 < out.nearest[v]) out.nearest[v] = d2, id[v] = i;
+    for (const std::uint32_t i : points) {
+      const vec3 n = points_[i].normal;
+      for_runs(points_[i], corner, [&](int run, const Floats& d2, const Floats&) {
+        const auto closer = (d2 <= square) & (d2 < out.nearest[run]);
+        out.nearest[run] = closer ? d2 : out.nearest[run];
+        nx[run] = closer ? Floats{} + n.x : nx[run];
+        ny[run] = closer ? Floats{} + n.y : ny[run];
+        nz[run] = closer ? Floats{} + n.z : nz[run];
       });
+    }
     constexpr float kScale = -1 / (kBlend * kBlend);
-    for (const std::uint32_t i : points)
-      for_voxels(points_[i], corner, [&](int v, float d2, float plane) {
-        const float excess = (d2 - out.nearest[v]) * kScale;
-        if (excess < -6 || glm::dot(points_[i].normal, points_[id[v]].normal) < kSameWay) return;
-        // exp(excess), cheaply.
-        float w = std::max(1 + excess / 8, 0.0f);
+    for (const std::uint32_t i : points) {
+      const vec3 n = points_[i].normal;
+      for_runs(points_[i], corner, [&](int run, const Floats& d2, const Floats& plane) {
+        const Floats same = n.x * nx[run] + n.y * ny[run] + n.z * nz[run];
+        // exp((d2 - nearest) scale), cheaply; 0 from -8 on.
+        Floats w = 1 + (d2 - out.nearest[run]) * (kScale / 8);
+        w = ((d2 <= square) & (same >= kSameWay) & (w > 0)) ? w : Floats{};
         w *= w, w *= w, w *= w;
-        out.sum[v] += w * value(i, plane);
-        out.total[v] += w;
+        out.sum[run] += w * value(i, plane);
+        out.total[run] += w;
       });
+    }
   }
 
   void evaluate(std::size_t brick, const SparseVolume& sides) {
     Blend b;
     blend(
-        brick, [](std::uint32_t, float plane) { return plane; }, b);
+        brick, [](std::uint32_t, const Floats& plane) { return plane; }, b);
     float* out = out_.distance.data() + brick * kBrickVoxels;
     const float ratio = float(out_.grid.voxel_size / sides.grid.voxel_size);
     const vec3 offset((out_.grid.origin - sides.grid.origin) / sides.grid.voxel_size);
     for (int v = 0; v < kBrickVoxels; ++v) {
       const ivec3 voxel = out_.bricks[brick] * kBrickEdge + ivec3(v >> 6, (v >> 3) & 7, v & 7);
       const float side = sides.at(ivec3(glm::floor(ratio * vec3(voxel) + offset + 0.5f)));
-      const float limit = std::min(std::sqrt(b.nearest[v]), SparseVolume::kBand);
-      const bool known = b.total[v] > 0;
-      const float plane = known ? std::clamp(b.sum[v] / b.total[v], -limit, limit) : 0;
+      const int run = v / kRun, k = v % kRun;
+      const float limit = std::min(std::sqrt(b.nearest[run][k]), SparseVolume::kBand);
+      const bool known = b.total[run][k] > 0;
+      const float plane = known ? std::clamp(b.sum[run][k] / b.total[run][k], -limit, limit) : 0;
       out[v] = known && (std::abs(side) < kDoubt || plane * side > 0) ? plane
                                                                       : std::copysign(limit, side);
     }
