@@ -187,7 +187,8 @@ std::vector<Sightline> find_sightlines(gpu::Context& context, const GridSpec& gr
     }
   }
   const std::vector<float> scores =
-      correlate_pairs(context, grid, surfels, pairs, images, cameras, noise_sigma, match);
+      match_patches(context, grid, surfels, {}, pairs, images, cameras, noise_sigma, {}, match)
+          .scores;
   std::vector<Sightline> out;
   for (std::size_t i = 0; i < scores.size(); ++i) {
     if (scores[i] < options.least_score) continue;

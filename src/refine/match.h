@@ -41,7 +41,6 @@ struct Matches {
   std::vector<float> scores;   ///< vertices x range.count; kNoScore where nothing is known
   std::vector<float> texture;  ///< per vertex, [0, 1]: share of a patch's variance that noise does
                                ///< not explain; 1 where nothing is known
-  std::vector<bool> seen;      ///< per vertex: by any camera, however flatly
   std::int64_t samples = 0;    ///< texture samples taken
 
   std::span<const float> of(std::size_t vertex) const {
@@ -49,20 +48,21 @@ struct Matches {
   }
 };
 
-/// Score in [-1, 1] of every vertex of `mesh` (with normals) moved by each offset. Visibility by
-/// depth maps of the mesh itself. Patches bend as `bends` (one per vertex, see curvatures()) says;
-/// empty: they are planes. `choices` receives the views that each vertex was matched in.
-Matches match_patches(gpu::Context& context, const GridSpec& grid, const TriMesh& mesh,
-                      std::span<const glm::vec3> bends, const projtex::ImageSet& images,
-                      std::span<const Camera> cameras, double noise_sigma, const OffsetRange& range,
-                      const MatchOptions& options,
-                      std::vector<shaders::MatchChoice>* choices = nullptr);
+/// The views that each vertex of `mesh` (with normals) is matched in. Visibility by depth maps of
+/// the mesh itself.
+std::vector<shaders::MatchChoice> choose_views(gpu::Context& context, const GridSpec& grid,
+                                               const TriMesh& mesh, const projtex::ImageSet& images,
+                                               std::span<const Camera> cameras,
+                                               const MatchOptions& options);
 
-/// Score of each surfel (voxels; position.w is 1) in the two views of its choice, on planes.
-std::vector<float> correlate_pairs(gpu::Context& context, const GridSpec& grid,
-                                   std::span<const shaders::BakeVertex> surfels,
-                                   std::span<const shaders::MatchChoice> pairs,
-                                   const projtex::ImageSet& images, std::span<const Camera> cameras,
-                                   double noise_sigma, const MatchOptions& options);
+/// Score in [-1, 1] of every surfel (voxels; positions and unit normals), moved by each offset, in
+/// the views chosen for it. Patches bend as `bends` (one per surfel, see curvatures()) says; empty:
+/// they are planes.
+Matches match_patches(gpu::Context& context, const GridSpec& grid,
+                      std::span<const shaders::BakeVertex> surfels,
+                      std::span<const glm::vec3> bends,
+                      std::span<const shaders::MatchChoice> choices,
+                      const projtex::ImageSet& images, std::span<const Camera> cameras,
+                      double noise_sigma, const OffsetRange& range, const MatchOptions& options);
 
 }  // namespace photohull::refine

@@ -7,8 +7,10 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "refine/settle.h"
 #include "refine/surface.h"
 #include "refine/trust.h"
+#include "render/surface_points.h"
 #include "volume/cavities.h"
 #include "volume/combine.h"
 #include "volume/distance_from_mesh.h"
@@ -62,6 +64,12 @@ MatchOptions fit_angles(std::span<const Camera> cameras, const glm::dvec3& middl
   return options;
 }
 
+std::vector<bool> seen_by_any(std::span<const shaders::MatchChoice> choices) {
+  std::vector<bool> seen;
+  for (const shaders::MatchChoice& choice : choices) seen.push_back(choice.second.z > 0);
+  return seen;
+}
+
 class Refiner {
  public:
   Refiner(gpu::Context& context, const HullAt& hull_at,
@@ -105,6 +113,11 @@ class Refiner {
         progress.update((double(level) + double(i + 1) / iterations) / double(grids.size()));
       }
       if (last) fit(volume, hull, counts, progress, report);
+      settled_ = next_settled_;
+      counts.split = settled_.count(Settled::kSplit);
+      counts.settled_pixels = settled_.count(Settled::kPixels);
+      counts.settled_plain = settled_.count(Settled::kPlain);
+      counts.settled_flat = settled_.count(Settled::kFlat);
       counts.bricks = std::int64_t(volume.bricks.size());
       counts.seconds =
           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -145,11 +158,19 @@ class Refiner {
             ? std::vector<glm::vec3>()
             : curvatures(graph, positions, mesh.normals, options_.match.most_bend);
     const OffsetRange range{-options_.step * (offsets / 2), options_.step, offsets};
-    std::vector<shaders::MatchChoice> choices;
-    Matches matches = match_patches(context_, volume.grid, mesh, bends, images_, cameras_,
-                                    options_.noise_sigma, range, options_.match, &choices);
+    std::vector<shaders::MatchChoice> choices =
+        choose_views(context_, volume.grid, mesh, images_, cameras_, options_.match);
+    const std::vector<bool> seen = seen_by_any(choices);
+    const std::vector<Settled> settled = settled_.at(volume.grid, positions);
+    for (std::size_t i = 0; i < choices.size(); ++i)
+      if (settled[i] != Settled::kSplit) choices[i].second.w = 0;
+    Matches matches =
+        match_patches(context_, volume.grid, render::to_voxels(volume.grid, mesh), bends, choices,
+                      images_, cameras_, options_.noise_sigma, range, options_.match);
     aggregate(graph, options_.aggregations, matches);
     std::vector<Peak> peaks = find_peaks(matches, options_.peak);
+    next_settled_ = SettledBricks(volume.grid, positions, bends, matches, peaks, choices, cameras_,
+                                  options_.settle);
     const KnownSurface known =
         known_surface(positions, mesh.normals, peaks, choices, options_.look);
     const std::vector<Sightline> sightlines =
@@ -164,7 +185,7 @@ class Refiner {
     std::vector<float> moves =
         regularize(graph, peaks, positions, mesh.normals, trust, options_.regularize);
     if (options_.closing) {
-      const auto closing = close_unseen(volume.grid, mesh, graph, matches.seen, options_.close);
+      const auto closing = close_unseen(volume.grid, mesh, graph, seen, options_.close);
       for (std::size_t i = 0; i < moves.size(); ++i)
         if (closing[i] != 0) moves[i] = closing[i];
     }
@@ -192,10 +213,15 @@ class Refiner {
       const auto start = std::chrono::steady_clock::now();
       const TriMesh mesh = extract_mesh(volume);
       const VertexGraph graph = make_graph(mesh);
-      std::vector<shaders::MatchChoice> choices;
+      const std::vector<glm::vec3> positions = voxel_positions(volume.grid, mesh);
+      std::vector<shaders::MatchChoice> choices =
+          choose_views(context_, volume.grid, mesh, images_, cameras_, options_.match);
+      const std::vector<Settled> settled = settled_.at(volume.grid, positions);
+      for (std::size_t k = 0; k < choices.size(); ++k)
+        if (settled[k] != Settled::kSplit && settled[k] != Settled::kFlat) choices[k].second.w = 0;
       const Matches matches =
-          match_patches(context_, volume.grid, mesh, {}, images_, cameras_, options_.noise_sigma,
-                        OffsetRange{}, options_.match, &choices);
+          match_patches(context_, volume.grid, render::to_voxels(volume.grid, mesh), {}, choices,
+                        images_, cameras_, options_.noise_sigma, {}, options_.match);
       const auto results = fit_patches(context_, volume.grid, mesh, graph, images_, cameras_,
                                        choices, options_.noise_sigma, options_.fit);
       counts.samples += matches.samples + samples_of(choices, options_.fit);
@@ -205,7 +231,6 @@ class Refiner {
       if (!better) volume = std::move(before);
       if (!better || i == options_.photometric) break;
       best = held.before;
-      const std::vector<glm::vec3> positions = voxel_positions(volume.grid, mesh);
       std::vector<Peak> peaks =
           peaks_of(results, tap_spacings(volume.grid, positions, cameras_, choices, options_.fit),
                    options_.fit);
@@ -237,6 +262,7 @@ class Refiner {
     }
   }
 
+  SettledBricks settled_, next_settled_;  // by the level before, and by this one
   gpu::Context& context_;
   const HullAt& hull_at_;
   std::span<const carving::Silhouette> silhouettes_;

@@ -18,6 +18,7 @@
 #include "refine/match.h"
 #include "refine/restore.h"
 #include "refine/rims.h"
+#include "refine/settle.h"
 #include "refine/vote.h"
 
 namespace photohull::refine {
@@ -44,6 +45,7 @@ struct RefineOptions {
   RimOptions rims;
   MatchOptions match;
   LookOptions look;
+  SettleOptions settle;
   int photometric = 1;  ///< iterations of fitting patches, at the end; fewer when they stop helping
   FitOptions fit;
   PeakOptions peak;
@@ -61,8 +63,11 @@ struct LevelReport {
   std::int64_t bricks = 0;    ///< stored at the end
   std::int64_t restored = 0;  ///< voxels of the hull that silhouettes brought back
   std::int64_t freed = 0;     ///< voxels before surface that views see through them
-  double mean_move = 0;       ///< of the last iteration, voxels
-  double evidence = 0;        ///< share of its surfels that the photographs say a place for
+  /// Bricks of the level's surface that the next level matches, and that it does not: below the
+  /// images' sampling, without texture, flat and certain.
+  std::int64_t split = 0, settled_pixels = 0, settled_plain = 0, settled_flat = 0;
+  double mean_move = 0;  ///< of the last iteration, voxels
+  double evidence = 0;   ///< share of its surfels that the photographs say a place for
 };
 
 /// One pass of the photometric refinement.

@@ -1,0 +1,65 @@
+#include "refine/settle.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "projtex/gpu_views.h"
+
+namespace photohull::refine {
+namespace {
+
+constexpr std::uint8_t kNone = 255;  // no surface in the brick
+
+double size_of(const glm::vec3& bend) {
+  return std::sqrt(bend.x * bend.x + 2 * bend.y * bend.y + bend.z * bend.z);
+}
+
+}  // namespace
+
+SettledBricks::SettledBricks(const GridSpec& grid, std::span<const glm::vec3> positions,
+                             std::span<const glm::vec3> bends, const Matches& matches,
+                             std::span<const Peak> peaks,
+                             std::span<const shaders::MatchChoice> choices,
+                             std::span<const Camera> cameras, const SettleOptions& options)
+    : grid_(grid), kinds_(grid.brick_count(), kNone) {
+  std::vector<projtex::GridCamera> on_grid;
+  for (const Camera& camera : cameras) on_grid.push_back(projtex::to_grid(camera, grid));
+  const auto kind_of = [&](std::size_t i) {
+    if (choices[i].second.w < 2) return Settled::kUnseen;
+    const projtex::GridCamera& camera = on_grid[std::size_t(choices[i].first.x)];
+    const double distance = glm::distance(camera.centre, glm::dvec3(positions[i]));
+    if (0.5 * camera.focal / distance < options.least_pixels) return Settled::kPixels;
+    if (matches.texture[i] < options.least_texture) return Settled::kPlain;
+    const bool flat = !bends.empty() && size_of(bends[i]) < options.flat;
+    return flat && peaks[i].weight > 0.5f ? Settled::kFlat : Settled::kSplit;
+  };
+  const glm::ivec3 last = grid.voxels() - 1;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const glm::ivec3 voxel =
+        glm::clamp(glm::ivec3(glm::floor(positions[i] + 0.5f)), glm::ivec3(0), last);
+    std::uint8_t& brick = kinds_[grid.brick_index(voxel / kBrickEdge)];
+    brick = std::min(brick, std::uint8_t(kind_of(i)));
+  }
+}
+
+std::vector<Settled> SettledBricks::at(const GridSpec& grid,
+                                       std::span<const glm::vec3> positions) const {
+  std::vector<Settled> out(positions.size(), Settled::kSplit);
+  if (kinds_.empty()) return out;
+  const glm::dvec3 offset = (grid.origin - grid_.origin) / grid_.voxel_size;
+  const double scale = grid.voxel_size / grid_.voxel_size;
+  const glm::ivec3 last = grid_.voxels() - 1;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const glm::dvec3 at = scale * glm::dvec3(positions[i]) + offset;
+    const glm::ivec3 voxel = glm::clamp(glm::ivec3(glm::floor(at + 0.5)), glm::ivec3(0), last);
+    const std::uint8_t kind = kinds_[grid_.brick_index(voxel / kBrickEdge)];
+    if (kind != kNone) out[i] = Settled(kind);
+  }
+  return out;
+}
+
+std::int64_t SettledBricks::count(Settled kind) const {
+  return std::count(kinds_.begin(), kinds_.end(), std::uint8_t(kind));
+}
+
+}  // namespace photohull::refine

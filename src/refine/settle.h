@@ -1,0 +1,52 @@
+// Where the next, finer level has nothing to match: "model no more than a scene needs"
+// [Montenegro03, chapter 5].
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/grid.h"
+#include "refine/displacement.h"
+#include "refine/match.h"
+
+namespace photohull::refine {
+
+struct SettleOptions {
+  double least_pixels = 0.5;  ///< a finer voxel's edge in the surfels' reference views
+  double least_texture = 0.2;
+  double flat = 0.05;  ///< 1 / voxel: curvature below which a plane says what finer voxels would
+};
+
+/// What a brick's surface has left to tell.
+enum class Settled : std::uint8_t {
+  kSplit,   ///< finer voxels will be matched
+  kPixels,  ///< finer voxels would be below the images' sampling
+  kPlain,   ///< no texture beyond noise
+  kFlat,    ///< plane, and found with certainty
+  kUnseen,  ///< too few cameras to match
+};
+
+/// The bricks of one level's surface.
+class SettledBricks {
+ public:
+  SettledBricks() = default;
+  /// A brick is split when any of its surfels asks for it. `positions` in voxels; `bends` as
+  /// curvatures() gives them, or empty.
+  SettledBricks(const GridSpec& grid, std::span<const glm::vec3> positions,
+                std::span<const glm::vec3> bends, const Matches& matches,
+                std::span<const Peak> peaks, std::span<const shaders::MatchChoice> choices,
+                std::span<const Camera> cameras, const SettleOptions& options);
+
+  /// Of the brick at each point (voxels of `grid`); kSplit where the level had no surface.
+  std::vector<Settled> at(const GridSpec& grid, std::span<const glm::vec3> positions) const;
+
+  std::int64_t count(Settled kind) const;
+
+ private:
+  GridSpec grid_;
+  std::vector<std::uint8_t> kinds_;  // per brick of the grid: a Settled, or kNone
+};
+
+}  // namespace photohull::refine
