@@ -257,8 +257,9 @@ class Job {
           {fit.seconds, fit.held_before, fit.held_after, fit.mean_move, fit.kept});
     for (const refine::LevelReport& level : counts.levels) {
       report_.refine_levels.push_back({level.voxel_size, level.seconds, level.surfels,
-                                       level.samples, level.bricks, level.restored, level.mean_move,
-                                       level.evidence});
+                                       level.samples, level.bricks, level.restored, level.freed,
+                                       level.split, level.settled_pixels, level.settled_plain,
+                                       level.settled_flat, level.mean_move, level.evidence});
       refine_samples_ += level.samples;
     }
     if (volume.inside_voxels() == 0)

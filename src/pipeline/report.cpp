@@ -50,6 +50,12 @@ std::string Report::to_json() const {
                            {"samples", level.samples},
                            {"bricks", level.bricks},
                            {"restored_voxels", level.restored},
+                           {"freed_voxels", level.freed},
+                           {"bricks_split", level.split},
+                           {"bricks_settled",
+                            {{"pixels", level.settled_pixels},
+                             {"plain", level.settled_plain},
+                             {"flat", level.settled_flat}}},
                            {"mean_move_voxels", level.mean_move}});
   j["refine_fits"] = ordered_json::array();
   for (const RefineFitReport& fit : refine_fits)

@@ -28,8 +28,11 @@ struct RefineLevelReport {
   std::int64_t samples = 0;   ///< texture samples
   std::int64_t bricks = 0;    ///< of 8^3 voxels, stored at its end
   std::int64_t restored = 0;  ///< voxels of the hull that silhouettes brought back
-  double mean_move = 0;       ///< voxels, in its last iteration
-  double evidence = 0;        ///< share of its surfels that the photographs say a place for
+  std::int64_t freed = 0;     ///< voxels before surface that views see through them
+  /// Bricks of its surface that the next level matches, and those that it does not match again.
+  std::int64_t split = 0, settled_pixels = 0, settled_plain = 0, settled_flat = 0;
+  double mean_move = 0;  ///< voxels, in its last iteration
+  double evidence = 0;   ///< share of its surfels that the photographs say a place for
 };
 
 /// One pass of the photometric refinement.

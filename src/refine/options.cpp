@@ -42,6 +42,12 @@ void check(const LookOptions& o) {
   require(o.least_lines >= 1, "look.least_lines must be at least 1");
 }
 
+void check(const SettleOptions& o) {
+  require(is_length(o.least_pixels), "settle.least_pixels must lie in [0, 1000] pixels");
+  require(o.least_texture >= 0 && o.least_texture <= 1, "settle.least_texture must lie in [0, 1]");
+  require(is_length(o.flat), "settle.flat must lie in [0, 1000] 1 / voxel");
+}
+
 void check(const RimOptions& o) {
   require(o.weight >= 0 && o.weight <= 1000, "rims.weight must lie in [0, 1000]");
   require(o.reach > 0 && is_length(o.reach), "rims.reach must lie in (0, 1000] voxels");
@@ -113,6 +119,7 @@ void RefineOptions::validate() const {
   check(close);
   check(rims);
   check(look);
+  check(settle);
   require(restore.least_views >= 1, "restore.least_views must be at least 1");
   check(match);
   require(photometric >= 0 && photometric <= 100, "photometric must be 0 to 100");

@@ -35,6 +35,19 @@ class RefineSurface : public testing::Test {
   RefineReport report_;
 };
 
+TEST_F(RefineSurface, WhatIsSettledIsNotMatchedAgain) {
+  run(8);
+  const auto samples = [&] { return report_.levels[1].samples; };
+  const std::int64_t all = samples();
+  options_.settle.least_pixels = 1000;
+  const SparseVolume volume = run(8);
+  EXPECT_EQ(report_.levels[0].split, 0);
+  EXPECT_GT(report_.levels[0].settled_pixels, 30);
+  // Only bricks that the first level's surface did not pass are matched.
+  EXPECT_LT(samples(), 0.2 * double(all));
+  EXPECT_LT(test::mean_error(volume), 0.4) << "the coarse level's surface";
+}
+
 TEST_F(RefineSurface, FindsTheBowl) {
   const SparseVolume volume = run(8);
   const SparseVolume hull = scene_.hull(scene_.grid(8));
@@ -55,6 +68,9 @@ TEST_F(RefineSurface, FindsTheBowl) {
     EXPECT_GT(level.samples, level.surfels);
     EXPECT_GT(level.mean_move, 0);
     EXPECT_LT(level.mean_move, 1);
+    EXPECT_GT(level.split, 30);
+    EXPECT_LE(level.split + level.settled_pixels + level.settled_plain + level.settled_flat,
+              level.bricks);
   }
 }
 

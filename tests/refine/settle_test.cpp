@@ -1,0 +1,92 @@
+#include "refine/settle.h"
+
+#include <gtest/gtest.h>
+
+#include "support/cameras.h"
+
+namespace photohull::refine {
+namespace {
+
+using glm::dvec3;
+using glm::vec3;
+
+/// One surfel in a grid of 4 x 4 x 4 unit bricks, 100 voxels before a camera whose
+/// pixels are voxels there.
+class Settle : public testing::Test {
+ protected:
+  Settle() {
+    cameras_.push_back(test::look_at(dvec3(12, 12, 112), dvec3(12), 100, 64, 64, {0, 1, 0}));
+    add(vec3(12), {});
+  }
+
+  void add(const vec3& position, const vec3& bend, float texture = 0.9f, float weight = 0.9f,
+           int views = 3) {
+    positions_.push_back(position);
+    bends_.push_back(bend);
+    matches_.texture.push_back(texture);
+    peaks_.push_back({0, weight, 0.9f});
+    choices_.push_back({{0, 0, 0, -1}, {-1, -1, 3, views}, glm::ivec4(-1)});
+  }
+
+  SettledBricks settle() const {
+    return {grid_, positions_, bends_, matches_, peaks_, choices_, cameras_, options_};
+  }
+
+  /// Of a brick with the first surfel as it is now.
+  Settled kind() const { return settle().at(grid_, positions_)[0]; }
+
+  GridSpec grid_{dvec3(0), 1, {4, 4, 4}};
+  std::vector<Camera> cameras_;
+  std::vector<vec3> positions_, bends_;
+  Matches matches_;
+  std::vector<Peak> peaks_;
+  std::vector<shaders::MatchChoice> choices_;
+  SettleOptions options_;
+};
+
+TEST_F(Settle, SaysWhy) {
+  EXPECT_EQ(kind(), Settled::kFlat);
+  bends_[0] = {0.2f, 0, 0};
+  EXPECT_EQ(kind(), Settled::kSplit) << "curved";
+  bends_[0] = {0, 0.09f, 0};
+  EXPECT_EQ(kind(), Settled::kSplit) << "a saddle: its size counts the mixed derivative twice";
+  bends_[0] = {};
+  peaks_[0].weight = 0.2f;
+  EXPECT_EQ(kind(), Settled::kSplit) << "not certain";
+  matches_.texture[0] = 0.1f;
+  EXPECT_EQ(kind(), Settled::kPlain);
+  options_.least_pixels = 0.6;
+  EXPECT_EQ(kind(), Settled::kPixels) << "half a pixel";
+  choices_[0].second.w = 1;
+  EXPECT_EQ(kind(), Settled::kUnseen);
+}
+
+TEST_F(Settle, WithoutCurvatureNothingIsFlat) {
+  bends_.clear();
+  EXPECT_EQ(kind(), Settled::kSplit);
+}
+
+TEST_F(Settle, OneSurfelSplitsABrick) {
+  add({14, 14, 14}, {1, 0, 0});
+  add({20, 14, 14}, {});
+  const SettledBricks bricks = settle();
+  EXPECT_EQ(bricks.at(grid_, positions_),
+            (std::vector{Settled::kSplit, Settled::kSplit, Settled::kFlat}));
+  EXPECT_EQ(bricks.count(Settled::kSplit), 1);
+  EXPECT_EQ(bricks.count(Settled::kFlat), 1);
+  EXPECT_EQ(bricks.count(Settled::kPlain), 0);
+}
+
+TEST_F(Settle, AnswersOnTheFinerGrid) {
+  // Voxel v of the coarse grid holds voxels 2 v and 2 v + 1 of the fine one.
+  const GridSpec fine{dvec3(-0.25), 0.5, {8, 8, 8}};
+  const SettledBricks bricks = settle();
+  const std::vector<vec3> positions{{31.4f, 31.4f, 31.4f}, {31.4f, 31.4f, 33}, {1000, 0, 0}};
+  EXPECT_EQ(bricks.at(fine, positions),
+            (std::vector{Settled::kFlat, Settled::kSplit, Settled::kSplit}));
+  EXPECT_EQ(SettledBricks().at(fine, positions),
+            (std::vector{Settled::kSplit, Settled::kSplit, Settled::kSplit}));
+}
+
+}  // namespace
+}  // namespace photohull::refine
