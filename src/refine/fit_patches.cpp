@@ -11,6 +11,7 @@
 #include "gpu/buffer.h"
 #include "gpu/program.h"
 #include "projtex/gpu_views.h"
+#include "refine/pick.h"
 #include "render/surface_points.h"
 #include "shared/bake.h"
 
@@ -134,24 +135,29 @@ std::vector<shaders::FitResult> fit_patches(gpu::Context& context, const GridSpe
   const auto program = gpu::Program::compute("refine_fit_patches.comp.glsl");
   shaders::FitParameters parameters = parameters_of(noise_sigma, options);
   std::vector<shaders::FitResult> out(surfels.size());
-  for (std::size_t first = 0; first < surfels.size(); first += kBatch) {
-    const std::size_t count = std::min(kBatch, surfels.size() - first);
-    parameters.counts.x = int(count);
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = {glm::vec4(mesh.normals[i], 0),
+              glm::vec4(0, shaders::kNoScore, shaders::kNoScore, shaders::kNoScore)};
+  const std::vector<std::uint32_t> fitted = comparable(choices);
+  for (std::size_t first = 0; first < fitted.size(); first += kBatch) {
+    const auto part = std::span<const std::uint32_t>(fitted).subspan(
+        first, std::min(kBatch, fitted.size() - first));
+    parameters.counts.x = int(part.size());
     const Buffer uniforms(sizeof parameters, &parameters);
-    const Buffer part = Buffer::of(std::span(surfels).subspan(first, count));
-    const Buffer chosen = Buffer::of(choices.subspan(first, count));
-    const Buffer shape =
-        Buffer::of(std::span<const shaders::FitShape>(shapes).subspan(first, count));
-    const Buffer results(count * sizeof(shaders::FitResult));
+    const Buffer points = Buffer::of(pick(std::span<const shaders::BakeVertex>(surfels), part));
+    const Buffer chosen = Buffer::of(pick(choices, part));
+    const Buffer shape = Buffer::of(pick(std::span<const shaders::FitShape>(shapes), part));
+    const Buffer results(part.size() * sizeof(shaders::FitResult));
     uniforms.bind_uniform(0);
     views.bind_storage(0);
-    part.bind_storage(1);
+    points.bind_storage(1);
     chosen.bind_storage(2);
     results.bind_storage(3);
     shape.bind_storage(4);
     images.texture().bind(0);
-    program.dispatch(context, "refine_fit_patches", gpu::group_count(count, 64));
-    results.read(0, count * sizeof(shaders::FitResult), out.data() + first);
+    program.dispatch(context, "refine_fit_patches", gpu::group_count(part.size(), 64));
+    const auto result = results.download<shaders::FitResult>(part.size());
+    for (std::size_t k = 0; k < part.size(); ++k) out[part[k]] = result[k];
   }
   return out;
 }

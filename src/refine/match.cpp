@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "gpu/buffer.h"
 #include "gpu/program.h"
+#include "refine/pick.h"
 #include "render/surface_points.h"
 #include "render/view_lists.h"
 #include "shared/bake.h"
@@ -60,15 +61,6 @@ void draw(gpu::Context& context, std::span<const shaders::BakeVertex> points, st
   }
 }
 
-/// The elements of `all` at `indices`.
-template <typename T>
-std::vector<T> pick(std::span<const T> all, std::span<const std::uint32_t> indices) {
-  std::vector<T> out;
-  out.reserve(indices.size());
-  for (const std::uint32_t i : indices) out.push_back(all[i]);
-  return out;
-}
-
 }  // namespace
 
 std::vector<shaders::MatchChoice> choose_views(gpu::Context& context, const GridSpec& grid,
@@ -119,9 +111,7 @@ Matches match_patches(gpu::Context& context, const GridSpec& grid,
   out.range = range;
   out.scores.assign(surfels.size() * offsets, shaders::kNoScore);
   out.texture.assign(surfels.size(), 1);
-  std::vector<std::uint32_t> matched;
-  for (std::uint32_t i = 0; i < surfels.size(); ++i)
-    if (choices[i].second.w >= 2) matched.push_back(i);
+  const std::vector<std::uint32_t> matched = comparable(choices);
 
   const Buffer views = Buffer::of(views_on(grid, images, cameras));
   const auto program = gpu::Program::compute("refine_match_patches.comp.glsl",
