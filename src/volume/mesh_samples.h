@@ -37,4 +37,11 @@ void for_points(const std::array<glm::dvec3, 3>& corners, double spacing, Use&& 
   }
 }
 
+/// Calls `use(point)` for points between two, at most `spacing` apart.
+template <typename Use>
+void for_edge_points(const glm::dvec3& from, const glm::dvec3& to, double spacing, Use&& use) {
+  const int parts = std::clamp(int(std::ceil(glm::distance(from, to) / spacing)), 1, 4096);
+  for (int part = 0; part < parts; ++part) use(glm::mix(from, to, (part + 0.5) / parts));
+}
+
 }  // namespace photohull

@@ -8,6 +8,8 @@
 #include <optional>
 
 #include "raycast/closest_point.h"
+#include "volume/flip_edges.h"
+#include "volume/mesh_edges.h"
 #include "volume/mesh_samples.h"
 #include "volume/simplify_mesh.h"
 
@@ -17,15 +19,15 @@ namespace {
 /// A quadric's error is a mean over planes: most points stay within twice of it. What does not
 /// keeps its triangles and costs a round; when many do, the collapses aim lower.
 constexpr double kQuadricShare = 0.7;
+constexpr double kSliver = 0.01;  // height of triangles to mend, in their longest side
 constexpr int kMostRounds = 24, kRoundsAtFullAim = 4;
 constexpr double kLowerAim = 0.85;
-constexpr double kFoldCosine = -0.5;   // between the normals of neighbours
-constexpr double kLeastHeight = 1e-3;  // of a triangle, in its longest side: none is degenerate
 
 using Flags = std::vector<std::uint8_t>;
 
 /// Collapses edges of the triangles that are not kept; vertices that those share with others, or
-/// that lie on a border, stay.
+/// that lie on a border, stay. Between such vertices in a row collapses leave triangles without
+/// area, above all where the mesh is flat: flips mend them.
 Triangles collapse(const TriMesh& block, const Flags& kept, double error) {
   std::vector<unsigned> indices;
   for (std::size_t t = 0; t < block.triangles.size(); ++t)
@@ -39,34 +41,15 @@ Triangles collapse(const TriMesh& block, const Flags& kept, double error) {
   left.resize(meshopt_simplify(left.data(), indices.data(), indices.size(), positions, count,
                                sizeof(glm::vec3), 0, float(error / scale),
                                meshopt_SimplifyLockBorder, nullptr));
-  Triangles triangles;
+  TriMesh result{block.positions, block.origin, {}, {}, {}, {}};
   for (std::size_t i = 0; i < left.size(); i += 3)
-    triangles.push_back({left[i], left[i + 1], left[i + 2]});
-  return triangles;
+    result.triangles.push_back({left[i], left[i + 1], left[i + 2]});
+  flip_slivers(kSliver, result);
+  return std::move(result.triangles);
 }
 
 bool contains(const Triangles& sorted, const std::array<std::uint32_t, 3>& triangle) {
   return std::binary_search(sorted.begin(), sorted.end(), triangle);
-}
-
-double longest_side(const std::array<glm::dvec3, 3>& p) {
-  return std::max(
-      {glm::distance(p[0], p[1]), glm::distance(p[1], p[2]), glm::distance(p[2], p[0])});
-}
-
-/// A directed edge of a triangle.
-struct Side {
-  std::uint32_t from, to, triangle;
-  auto operator<=>(const Side&) const = default;
-};
-
-std::vector<Side> sorted_sides(const Triangles& triangles) {
-  std::vector<Side> sides;
-  sides.reserve(3 * triangles.size());
-  for (std::uint32_t t = 0; t < triangles.size(); ++t)
-    for (int i = 0; i < 3; ++i) sides.push_back({triangles[t][i], triangles[t][(i + 1) % 3], t});
-  std::sort(sides.begin(), sides.end());
-  return sides;
 }
 
 /// What distances told so far; a triangle that comes again needs no new ones.
@@ -105,20 +88,12 @@ class Inspection {
     any_ = true;
   }
 
-  std::array<glm::dvec3, 3> corners(const TriMesh& mesh, std::size_t t) const {
-    const auto& [a, b, c] = mesh.triangles[t];
-    return {mesh.world(a), mesh.world(b), mesh.world(c)};
-  }
-
   void check_shapes() {
     normals_.reserve(result_.triangles.size());
     for (std::size_t t = 0; t < result_.triangles.size(); ++t) {
-      const auto [a, b, c] = corners(result_, t);
-      const glm::dvec3 area = glm::cross(b - a, c - a);
-      const double length = glm::length(area);
-      normals_.push_back(length > 0 ? area / length : glm::dvec3(0));
-      const double longest = longest_side({a, b, c});
-      if (t < loose_ && length < kLeastHeight * longest * longest) mark(result_.triangles[t]);
+      const Corners points = corners(result_, t);
+      normals_.push_back(unit_normal(points));
+      if (t < loose_ && relative_height(points) < kLeastHeight) mark(result_.triangles[t]);
     }
   }
 
@@ -133,8 +108,8 @@ class Inspection {
         mark(result_.triangles[sides[i - 1].triangle]);
       }
       if (side.from > side.to) continue;
-      const auto other = std::lower_bound(sides.begin(), sides.end(), Side{side.to, side.from, 0});
-      if (other == sides.end() || other->from != side.to || other->to != side.from) continue;
+      const Side* other = opposite(sides, side);
+      if (!other) continue;
       if (side.triangle >= loose_ && other->triangle >= loose_) continue;
       if (glm::dot(normals_[side.triangle], normals_[other->triangle]) > kFoldCosine) continue;
       mark(result_.triangles[side.triangle]);

@@ -1,15 +1,13 @@
 // Private to module volume: simplification of a part of a mesh.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "core/mesh.h"
+#include "volume/mesh_edges.h"
 
 namespace photohull {
-
-using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 
 struct BlockLimits {
   double error = 0;    ///< largest distance in either direction, world units

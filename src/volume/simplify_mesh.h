@@ -25,11 +25,13 @@ double mean_edge(const TriMesh& mesh);
 /// of the one is farther from the other, as measured at points about a mean edge of `mesh` apart.
 /// Where flat, few triangles are left.
 ///
-/// The vertices of the result are some of the mesh's, with all their attributes, in their order.
-/// A mesh that is closed and manifold stays so; the border of an open one keeps all its vertices.
-/// No new triangle is folded onto its neighbour or degenerate. The edges collapse by quadrics
-/// [GarlandHeckbert97] in meshoptimizer; what fails a check keeps the triangles of `mesh` in its
-/// surroundings. The same mesh gives the same result with any number of threads.
+/// The vertices of the result are some of the mesh's, in their order, with all their attributes,
+/// and moved by `error` at most to where the mean square distance between the surfaces is small.
+/// A mesh that is closed and manifold stays so; the border of an open one keeps all its vertices in
+/// their places. No new triangle is folded onto its neighbour or degenerate. Edges collapse by
+/// quadrics [GarlandHeckbert97] in meshoptimizer; then edges are flipped and vertices moved by
+/// least squares [Hoppe93]. What fails a check keeps the triangles of `mesh`, or the places of its
+/// vertices, in its surroundings. The same mesh gives the same result with any number of threads.
 ///
 /// `error` must be finite and not negative, else UsageError; 0 gives the mesh as it is, and so does
 /// a mesh without triangles.
