@@ -16,7 +16,7 @@ namespace photohull::refine {
 struct SettleOptions {
   double least_pixels = 0.5;  ///< a finer voxel's edge in the surfels' reference views
   double least_texture = 0.2;
-  double flat = 0.1;  ///< 1 / voxel: curvature below which a plane says what finer voxels would
+  double flat = 0.02;  ///< 1 / voxel: curvature below which a plane says what finer voxels would
 };
 
 /// What a brick's surface has left to tell.
