@@ -96,6 +96,7 @@ void tune(const std::vector<std::string>& assignments, refine::RefineOptions& o)
                        {"settle.least_texture", &o.settle.least_texture},
                        {"settle.flat", &o.settle.flat},
                        {"look.least_score", &o.look.least_score},
+                       {"look.least_weight", &o.look.least_weight},
                        {"look.margin", &o.look.margin},
                        {"look.least_lines", &o.look.least_lines},
                        {"peak.thick", &o.peak.thick},

@@ -163,6 +163,7 @@ KnownSurface known_surface(std::span<const glm::vec3> positions, std::span<const
     if (peaks[i].weight <= 0 || peaks[i].score < options.least_score) continue;
     out.positions.push_back(positions[i] + peaks[i].offset * normals[i]);
     out.normals.push_back(normals[i]);
+    out.weights.push_back(peaks[i].weight);
     out.choices.push_back(choices[i]);
   }
   return out;
@@ -177,7 +178,7 @@ std::vector<Sightline> find_sightlines(gpu::Context& context, const GridSpec& gr
   std::vector<shaders::MatchChoice> pairs;
   for (std::size_t i = 0; i < known.positions.size(); ++i) {
     const shaders::MatchChoice& choice = known.choices[i];
-    if (choice.second.w < kLeastViews) continue;
+    if (choice.second.w < kLeastViews || known.weights[i] < options.least_weight) continue;
     for (int k = 0; k < shaders::kHiddenViews && choice.hidden[k] >= 0; ++k) {
       const int view = choice.hidden[k];
       const int witness =

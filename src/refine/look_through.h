@@ -14,15 +14,17 @@
 namespace photohull::refine {
 
 struct LookOptions {
-  double least_score = 0.9;  ///< of a surfel taken for surface, and of a view taken to show it
-  double margin = 2;         ///< voxels above such surface that stay
-  int least_lines = 2;       ///< lines of sight that free a voxel
+  double least_score = 0.9;   ///< of a surfel taken for surface, and of a view taken to show it
+  double least_weight = 0.5;  ///< of the surfel's peak: smooth shading agrees anywhere
+  double margin = 2;          ///< voxels above such surface that stay
+  int least_lines = 2;        ///< lines of sight that free a voxel
 };
 
 /// The surface as matching found it: surfels at their peaks (voxels), with unit normals and the
 /// views that they were matched in; only those whose score is at least LookOptions::least_score.
 struct KnownSurface {
   std::vector<glm::vec3> positions, normals;
+  std::vector<float> weights;  ///< of their peaks
   std::vector<shaders::MatchChoice> choices;
 };
 

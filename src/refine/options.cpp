@@ -38,6 +38,7 @@ void check(const CloseOptions& o) {
 
 void check(const LookOptions& o) {
   require(is_score(o.least_score), "look.least_score must lie in [-1, 1]");
+  require(o.least_weight >= 0 && o.least_weight <= 1, "look.least_weight must lie in [0, 1]");
   require(is_length(o.margin), "look.margin must lie in [0, 1000] voxels");
   require(o.least_lines >= 1, "look.least_lines must be at least 1");
 }

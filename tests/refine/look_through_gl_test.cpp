@@ -68,6 +68,7 @@ class LookThrough : public ::testing::Test {
       for (int y = 18; y <= 30; ++y) {
         known.positions.emplace_back(x, y, kWall);
         known.normals.emplace_back(0, 0, 1);
+        known.weights.push_back(1);
         shaders::MatchChoice choice = test::choice_of({0, 1, 5, 6});
         for (int k = 0; k < int(hidden.size()); ++k) choice.hidden[k] = hidden[std::size_t(k)];
         known.choices.push_back(choice);
@@ -146,6 +147,9 @@ TEST_F(LookThrough, TooFewViewsVouchForNothing) {
   }
   EXPECT_TRUE(look(known).empty());
   EXPECT_TRUE(look(wall({})).empty());
+  known = wall({2, 3, 4});
+  std::fill(known.weights.begin(), known.weights.end(), 0.4f);
+  EXPECT_TRUE(look(known).empty()) << "peaks that are not distinct";
   EXPECT_TRUE(look({}).empty());
 }
 
@@ -190,6 +194,7 @@ TEST_F(LookThrough, KnownSurfaceLiesAtGoodPeaks) {
   EXPECT_EQ(known.positions[0], vec3(1, 2, 3.5));
   EXPECT_EQ(known.positions[1], vec3(1, 2, 2));
   EXPECT_EQ(known.choices[1].first.x, 3);
+  EXPECT_FLOAT_EQ(known.weights[1], 0.1f);
 }
 
 }  // namespace
