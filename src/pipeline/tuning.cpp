@@ -76,6 +76,7 @@ void tune(const std::vector<std::string>& assignments, refine::RefineOptions& o)
                        {"close.thickness", &o.close.thickness},
                        {"restore.least_views", &o.restore.least_views},
                        {"restore.least_inside", &o.restore.least_inside},
+                       {"restore.most_before", &o.restore.most_before},
                        {"rims.reach", &o.rims.reach},
                        {"rims.weight", &o.rims.weight},
                        {"match.least_spacing", &o.match.least_spacing},

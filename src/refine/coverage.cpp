@@ -6,6 +6,11 @@
 #include "gpu/buffer.h"
 
 namespace photohull::refine {
+namespace {
+
+constexpr double kBefore = 3;  // voxels between a point and what it would hide
+
+}  // namespace
 
 Coverage::Coverage(gpu::Context& context, const GridSpec& grid, std::span<const glm::ivec3> voxels,
                    std::span<const Camera> cameras,
@@ -25,25 +30,24 @@ Coverage::Coverage(gpu::Context& context, const GridSpec& grid, std::span<const 
   for (std::size_t v = 0; v < cameras_.size(); ++v) depths_.push_back(maps.download(v));
 }
 
-bool Coverage::lacks(const glm::dvec3& point, int least_views, double inside) const {
-  int count = 0;
-  for (std::size_t v = 0; v < cameras_.size() && count < least_views; ++v)
-    count += lacks_in(v, point, inside);
-  return count >= least_views;
-}
-
-bool Coverage::lacks_in(std::size_t view, const glm::dvec3& point, double inside) const {
-  const SilhouetteDistance* s = silhouettes_[view].distance;
-  const glm::dvec3 q = cameras_[view].projection * glm::dvec4(point, 1);
-  if (!s || q.z <= 1) return false;
-  const double x = q.x / q.z, y = q.y / q.z;
-  const int px = int(std::floor(x + 0.5)), py = int(std::floor(y + 0.5));
-  if (px < 0 || py < 0 || px >= s->width || py >= s->height) return false;
-  if (s->pixels[std::size_t(py) * s->width + px] > -inside) return false;
-  const auto& info = infos_[view];
-  const int tx = std::clamp(int((x + 0.5) * info.scale.x), 0, info.size.x - 1);
-  const int ty = std::clamp(int((y + 0.5) * info.scale.x), 0, info.size.y - 1);
-  return std::isinf(depths_[view][std::size_t(ty) * info.size.x + tx]);
+Coverage::Votes Coverage::votes(const glm::dvec3& point, double inside) const {
+  Votes votes;
+  for (std::size_t v = 0; v < cameras_.size(); ++v) {
+    const SilhouetteDistance* s = silhouettes_[v].distance;
+    const glm::dvec3 q = cameras_[v].projection * glm::dvec4(point, 1);
+    if (!s || q.z <= 1) continue;
+    const double x = q.x / q.z, y = q.y / q.z;
+    const int px = int(std::floor(x + 0.5)), py = int(std::floor(y + 0.5));
+    if (px < 0 || py < 0 || px >= s->width || py >= s->height) continue;
+    const auto& info = infos_[v];
+    const int tx = std::clamp(int((x + 0.5) * info.scale.x), 0, info.size.x - 1);
+    const int ty = std::clamp(int((y + 0.5) * info.scale.x), 0, info.size.y - 1);
+    const float depth = depths_[v][std::size_t(ty) * info.size.x + tx];
+    const bool covered = !std::isinf(depth);
+    votes.lack += !covered && s->pixels[std::size_t(py) * s->width + px] <= -inside;
+    votes.before += covered && q.z + kBefore < depth;
+  }
+  return votes;
 }
 
 }  // namespace photohull::refine

@@ -19,12 +19,14 @@ class Coverage {
   Coverage(gpu::Context& context, const GridSpec& grid, std::span<const glm::ivec3> voxels,
            std::span<const Camera> cameras, std::span<const carving::Silhouette> silhouettes);
 
-  /// Do at least `least_views` views show foreground, `inside` pixels within the silhouette, at a
-  /// point (voxel coordinates), and none of the voxels?
-  bool lacks(const glm::dvec3& point, int least_views, double inside) const;
+  struct Votes {
+    int lack = 0;    ///< views that show foreground, and none of the voxels
+    int before = 0;  ///< views in which the point would hide voxels that lie behind it
+  };
 
- private:
-  bool lacks_in(std::size_t view, const glm::dvec3& point, double inside) const;
+  /// What the views say of a point (voxel coordinates); foreground counts from `inside` pixels
+  /// within the silhouette on.
+  Votes votes(const glm::dvec3& point, double inside) const;
 
   std::span<const carving::Silhouette> silhouettes_;
   std::vector<projtex::GridCamera> cameras_;

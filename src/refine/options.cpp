@@ -122,6 +122,7 @@ void RefineOptions::validate() const {
   check(look);
   check(settle);
   require(restore.least_views >= 1, "restore.least_views must be at least 1");
+  require(restore.most_before >= 0, "restore.most_before must not be negative");
   check(match);
   require(photometric >= 0 && photometric <= 100, "photometric must be 0 to 100");
   check(fit);

@@ -39,8 +39,7 @@ class Restorer {
     tbb::parallel_for(std::size_t(0), bricks.size(), [&](std::size_t b) {
       for (int i = 0; i < kBrickVoxels; ++i) {
         const ivec3 voxel = bricks[b] * kBrickEdge + ivec3(i >> 6, (i >> 3) & 7, i & 7);
-        if (hull_.at(voxel) < 0 && volume_.at(voxel) > 0.5f &&
-            coverage_.lacks(glm::dvec3(voxel), options_.least_views, options_.least_inside))
+        if (hull_.at(voxel) < 0 && volume_.at(voxel) > 0.5f && is_missed(voxel))
           found[b].push_back(voxel);
       }
     });
@@ -55,6 +54,11 @@ class Restorer {
   }
 
  private:
+  bool is_missed(const ivec3& voxel) const {
+    const Coverage::Votes votes = coverage_.votes(glm::dvec3(voxel), options_.least_inside);
+    return votes.lack >= options_.least_views && votes.before <= options_.most_before * votes.lack;
+  }
+
   /// Voxels at the surface of a volume.
   static std::vector<ivec3> skin(const SparseVolume& volume) {
     std::vector<ivec3> voxels;

@@ -98,6 +98,24 @@ TEST_F(Restore, ARodHiddenBehindTheBallStaysAway) {
   EXPECT_EQ(volume.inside_voxels(), ball().inside_voxels());
 }
 
+TEST_F(Restore, WhatWouldHideMoreThanItExplainsStaysAway) {
+  // Two cameras see the rod beside the ball, nine see its end before the ball.
+  std::vector<Camera> cameras;
+  for (const double z : {-100.0, 100.0})
+    cameras.push_back(test::look_at(kCentre + dvec3(0, 0, z), kCentre, 250, 96, 96, {0, 1, 0}));
+  for (int i = 0; i < 9; ++i)
+    cameras.push_back(
+        test::look_at(kCentre + dvec3(100, i % 3 - 1, i / 3 - 1), kCentre, 250, 96, 96));
+  photograph(cameras);
+  options_.most_before = 4;
+  SparseVolume volume = ball();
+  restore(volume, both());
+  EXPECT_GT(volume.at({28, 15, 15}), 0) << "9 to 2";
+  options_.most_before = 5;
+  EXPECT_GT(restore(volume, both()), 0u);
+  EXPECT_LT(volume.at({28, 15, 15}), 0);
+}
+
 TEST_F(Restore, TooFewViewsProveNothing) {
   std::vector<Camera> cameras = around();
   cameras.resize(std::size_t(options_.least_views) - 1);
