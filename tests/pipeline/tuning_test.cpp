@@ -39,7 +39,7 @@ std::string refusal(const std::string& text) {
 TEST(Tune, NamesWhatIsWrong) {
   for (const char* text : {"keep_score=0.5", "=2", "", "Levels=2", "levels =2", "match=1"})
     EXPECT_NE(refusal(text).find("this method has no '"), std::string::npos) << text;
-  EXPECT_NE(refusal("level=2").find("levels, match.best_pairs"), std::string::npos);
+  EXPECT_NE(refusal("level=2").find("levels, look.least_lines"), std::string::npos);
   for (const char* text :
        {"levels", "levels=", "levels=two", "levels=2x", "step=nan", "step=inf", "step=1e300"})
     EXPECT_NE(refusal(text).find(std::string(text) + ": expected NAME=NUMBER"), std::string::npos)
