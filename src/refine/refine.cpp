@@ -163,14 +163,14 @@ class Refiner {
     const std::vector<bool> seen = seen_by_any(choices);
     const std::vector<Settled> settled = settled_.at(volume.grid, positions);
     for (std::size_t i = 0; i < choices.size(); ++i)
-      if (settled[i] != Settled::kSplit) choices[i].second.w = 0;
+      if (is_settled(settled[i])) choices[i].second.w = 0;
     Matches matches =
         match_patches(context_, volume.grid, render::to_voxels(volume.grid, mesh), bends, choices,
                       images_, cameras_, options_.noise_sigma, range, options_.match);
     aggregate(graph, options_.aggregations, matches);
     std::vector<Peak> peaks = find_peaks(matches, options_.peak);
     next_settled_ = SettledBricks(volume.grid, positions, bends, matches, peaks, choices, cameras_,
-                                  options_.settle);
+                                  settled, options_.settle);
     const KnownSurface known =
         known_surface(positions, mesh.normals, peaks, choices, options_.look);
     const std::vector<Sightline> sightlines =
@@ -218,7 +218,7 @@ class Refiner {
           choose_views(context_, volume.grid, mesh, images_, cameras_, options_.match);
       const std::vector<Settled> settled = settled_.at(volume.grid, positions);
       for (std::size_t k = 0; k < choices.size(); ++k)
-        if (settled[k] != Settled::kSplit && settled[k] != Settled::kFlat) choices[k].second.w = 0;
+        if (is_settled(settled[k]) && settled[k] != Settled::kFlat) choices[k].second.w = 0;
       const Matches matches =
           match_patches(context_, volume.grid, render::to_voxels(volume.grid, mesh), {}, choices,
                         images_, cameras_, options_.noise_sigma, {}, options_.match);

@@ -20,11 +20,13 @@ SettledBricks::SettledBricks(const GridSpec& grid, std::span<const glm::vec3> po
                              std::span<const glm::vec3> bends, const Matches& matches,
                              std::span<const Peak> peaks,
                              std::span<const shaders::MatchChoice> choices,
-                             std::span<const Camera> cameras, const SettleOptions& options)
+                             std::span<const Camera> cameras, std::span<const Settled> before,
+                             const SettleOptions& options)
     : grid_(grid), kinds_(grid.brick_count(), kNone) {
   std::vector<projtex::GridCamera> on_grid;
   for (const Camera& camera : cameras) on_grid.push_back(projtex::to_grid(camera, grid));
   const auto kind_of = [&](std::size_t i) {
+    if (is_settled(before[i])) return before[i];
     if (choices[i].second.w < 2) return Settled::kUnseen;
     const projtex::GridCamera& camera = on_grid[std::size_t(choices[i].first.x)];
     const double distance = glm::distance(camera.centre, glm::dvec3(positions[i]));

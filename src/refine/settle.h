@@ -25,19 +25,24 @@ enum class Settled : std::uint8_t {
   kPixels,  ///< finer voxels would be below the images' sampling
   kPlain,   ///< no texture beyond noise
   kFlat,    ///< plane, and found with certainty
-  kUnseen,  ///< too few cameras to match
+  kUnseen,  ///< too few cameras to match; asked again, for others may come to see it
 };
+
+/// Is there anything left to match?
+inline bool is_settled(Settled kind) { return kind != Settled::kSplit && kind != Settled::kUnseen; }
 
 /// The bricks of one level's surface.
 class SettledBricks {
  public:
   SettledBricks() = default;
   /// A brick is split when any of its surfels asks for it. `positions` in voxels; `bends` as
-  /// curvatures() gives them, or empty.
+  /// curvatures() gives them, or empty; `before`, what the level before said of each surfel: what
+  /// was settled stays so.
   SettledBricks(const GridSpec& grid, std::span<const glm::vec3> positions,
                 std::span<const glm::vec3> bends, const Matches& matches,
                 std::span<const Peak> peaks, std::span<const shaders::MatchChoice> choices,
-                std::span<const Camera> cameras, const SettleOptions& options);
+                std::span<const Camera> cameras, std::span<const Settled> before,
+                const SettleOptions& options);
 
   /// Of the brick at each point (voxels of `grid`); kSplit where the level had no surface.
   std::vector<Settled> at(const GridSpec& grid, std::span<const glm::vec3> positions) const;

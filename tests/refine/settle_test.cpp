@@ -25,11 +25,12 @@ class Settle : public testing::Test {
     bends_.push_back(bend);
     matches_.texture.push_back(texture);
     peaks_.push_back({0, weight, 0.9f});
+    before_.push_back(Settled::kSplit);
     choices_.push_back({{0, 0, 0, -1}, {-1, -1, 3, views}, glm::ivec4(-1)});
   }
 
   SettledBricks settle() const {
-    return {grid_, positions_, bends_, matches_, peaks_, choices_, cameras_, options_};
+    return {grid_, positions_, bends_, matches_, peaks_, choices_, cameras_, before_, options_};
   }
 
   /// Of a brick with the first surfel as it is now.
@@ -41,6 +42,7 @@ class Settle : public testing::Test {
   Matches matches_;
   std::vector<Peak> peaks_;
   std::vector<shaders::MatchChoice> choices_;
+  std::vector<Settled> before_;
   SettleOptions options_;
 };
 
@@ -59,6 +61,18 @@ TEST_F(Settle, SaysWhy) {
   EXPECT_EQ(kind(), Settled::kPixels) << "half a pixel";
   choices_[0].second.w = 1;
   EXPECT_EQ(kind(), Settled::kUnseen);
+}
+
+TEST_F(Settle, WhatWasSettledStaysSoAndWhatWasUnseenIsAskedAgain) {
+  choices_[0].second.w = 0;  // settled surfels are not matched
+  before_[0] = Settled::kFlat;
+  EXPECT_EQ(kind(), Settled::kFlat);
+  before_[0] = Settled::kUnseen;
+  EXPECT_EQ(kind(), Settled::kUnseen);
+  choices_[0].second.w = 3;
+  bends_[0] = {1, 0, 0};
+  EXPECT_EQ(kind(), Settled::kSplit) << "somebody sees it now";
+  EXPECT_FALSE(is_settled(Settled::kUnseen));
 }
 
 TEST_F(Settle, WithoutCurvatureNothingIsFlat) {
