@@ -9,6 +9,11 @@ vec3 project(GpuView view, vec3 voxel) {
   return vec3(dot(view.row_s, p), dot(view.row_t, p), dot(view.row_q, p));
 }
 
+// How they change along a step.
+vec3 project_step(GpuView view, vec3 by) {
+  return vec3(dot(view.row_s.xyz, by), dot(view.row_t.xyz, by), dot(view.row_q.xyz, by));
+}
+
 // Is the pixel position on the image? Pixel centres are integers.
 bool on_image(GpuView view, vec2 pixel) {
   return all(greaterThanEqual(pixel, vec2(-0.5))) &&

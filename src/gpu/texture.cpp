@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <string_view>
 
 #include "core/error.h"
 #include "gpu/gl.h"
@@ -29,6 +30,8 @@ FormatInfo info_of(TextureFormat format) {
       return {GL_R16F, GL_RED, GL_FLOAT};
     case TextureFormat::kR32f:
       return {GL_R32F, GL_RED, GL_FLOAT};
+    case TextureFormat::kRgba32ui:
+      return {GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT};
   }
   check_failed(__FILE__, __LINE__, "texture format");
 }
@@ -48,8 +51,13 @@ TextureArray::TextureArray(TextureFormat format, int width, int height, int laye
   }
   glTextureParameteri(id_, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   glTextureParameteri(id_, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  glTextureParameteri(id_, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  set_filter(false);
+  // Integers cannot be filtered.
+  const bool integers = format == TextureFormat::kRgba32ui;
+  glTextureParameteri(id_, GL_TEXTURE_MAG_FILTER, integers ? GL_NEAREST : GL_LINEAR);
+  if (integers)
+    glTextureParameteri(id_, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  else
+    set_filter(false);
 }
 
 TextureArray::~TextureArray() {
@@ -81,6 +89,25 @@ void TextureArray::generate_mipmaps() { glGenerateTextureMipmap(id_); }
 void TextureArray::set_filter(bool trilinear) {
   const GLenum mip = trilinear ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR_MIPMAP_NEAREST;
   glTextureParameteri(id_, GL_TEXTURE_MIN_FILTER, GLint(levels_ > 1 ? mip : GL_LINEAR));
+}
+
+void TextureArray::set_empty_border() {
+  glTextureParameteri(id_, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
+  glTextureParameteri(id_, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
+}
+
+void TextureArray::set_anisotropy(float most) {
+  GLint count = 0;
+  glGetIntegerv(GL_NUM_EXTENSIONS, &count);
+  bool offered = false;
+  for (GLint i = 0; i < count; ++i)
+    offered = offered || std::string_view(
+                             reinterpret_cast<const char*>(glGetStringi(GL_EXTENSIONS, GLuint(i))))
+                             .ends_with("_texture_filter_anisotropic");
+  if (!offered) throw Error("this device has no anisotropic texture filter of its own");
+  GLfloat limit = 1;
+  glGetFloatv(GL_MAX_TEXTURE_MAX_ANISOTROPY, &limit);
+  glTextureParameterf(id_, GL_TEXTURE_MAX_ANISOTROPY, std::min(most, limit));
 }
 
 void TextureArray::bind(unsigned unit) const { glBindTextureUnit(unit, id_); }

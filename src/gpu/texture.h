@@ -7,7 +7,7 @@
 namespace photohull::gpu {
 
 /// Internal formats that the program uses.
-enum class TextureFormat { kSrgb8Alpha8, kRgba8, kRgba16f, kRg8, kR8, kR16f, kR32f };
+enum class TextureFormat { kSrgb8Alpha8, kRgba8, kRgba16f, kRg8, kR8, kR16f, kR32f, kRgba32ui };
 
 /// A move-only 2D array texture with immutable storage.
 class TextureArray {
@@ -30,6 +30,11 @@ class TextureArray {
   void generate_mipmaps();
   /// Filtering of `bind`: trilinear between levels, or bilinear at the nearest level.
   void set_filter(bool trilinear);
+  /// Beyond the border there is nothing (zeros) instead of the border's pixels.
+  void set_empty_border();
+  /// Lets samplers take up to so many taps along a footprint's long axis. Throws Error when the
+  /// device has no anisotropic filter.
+  void set_anisotropy(float most);
   void bind(unsigned unit) const;
   void bind_image(unsigned unit, int level, bool write) const;
 

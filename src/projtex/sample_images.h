@@ -1,0 +1,39 @@
+// Photographs on the device, made for one of the samplers.
+#pragma once
+
+#include <span>
+
+#include "core/image.h"
+#include "gpu/program.h"
+#include "gpu/texture.h"
+#include "projtex/sampler.h"
+
+namespace photohull::projtex {
+
+/// Images as linear light times coverage, and coverage (alpha times mask), half floats, with what
+/// the sampler needs beside them: mip levels (means in linear light), a ripmap or a summed-area
+/// table. Images sit at the origin of layers whose sides are multiples of kPadding; there is
+/// nothing elsewhere.
+class SampleImages {
+ public:
+  /// Throws Error when the device cannot hold the images, or lacks the filter. Not for
+  /// Sampler::kMipmap, which samples an ImageSet.
+  SampleImages(std::span<const View> views, Sampler sampler);
+
+  Sampler sampler() const { return sampler_; }
+  int layers() const { return images_.layers(); }
+  /// Pixels of a layer, for to_gpu_view.
+  glm::ivec2 size() const { return {images_.width(), images_.height()}; }
+
+  /// A compute program with this sampler, n x n times a square.
+  gpu::Program program(const char* path, int supersample) const;
+  /// Binds the textures where sample_image.glsl expects them.
+  void bind() const;
+
+ private:
+  Sampler sampler_;
+  gpu::TextureArray images_, extra_;
+  float sum_unit_ = 0;
+};
+
+}  // namespace photohull::projtex
