@@ -25,7 +25,8 @@ struct SweepParameters {
   ivec4 layer;       // x: layer; w: 1 for planes through the voxels' front faces, 0 through their centres
   vec4 thresholds;   // x: score that keeps; y: least gain of a better explanation; z: least views;
                      // w: bias of the depth test in voxels
-  vec4 noise;        // x: variance of image noise (square-root encoding); y: least texture variance
+  vec4 noise;        // x: variance of image noise (square-root encoding); y: least confidence of a
+                     // score; z: least texture variance
   ivec4 chunk;       // x: first selected brick of this dispatch, whose samples start at 0;
                      // y: longest path in layers; z, w: first and number of its columns
 };

@@ -10,21 +10,22 @@ constexpr double kOutlierShare = 0.5;
 constexpr double kOutlierSlack = 0.1;
 constexpr int kPeakLayers = 2;
 
-glm::dvec3 mean_of(const Patch& patch) {
+glm::dvec3 mean_of(PatchColours patch) {
   glm::dvec3 sum(0);
   for (const glm::dvec3& colour : patch) sum += colour;
-  return sum / double(kPatchTaps);
+  return sum / double(patch.size());
 }
 
 /// Over the taps and summed over the channels; of a patch with itself it is the variance.
-double covariance(const Patch& a, const Patch& b) {
+double covariance(PatchColours a, PatchColours b) {
   const glm::dvec3 mean_a = mean_of(a), mean_b = mean_of(b);
   double sum = 0;
-  for (int tap = 0; tap < kPatchTaps; ++tap) sum += glm::dot(a[tap] - mean_a, b[tap] - mean_b);
-  return sum / kPatchTaps;
+  for (std::size_t tap = 0; tap < a.size(); ++tap)
+    sum += glm::dot(a[tap] - mean_a, b[tap] - mean_b);
+  return sum / double(a.size());
 }
 
-double correlation(const Patch& a, const Patch& b, double noise_variance) {
+double correlation(PatchColours a, PatchColours b, double noise_variance) {
   const double floor = 3 * noise_variance;  // three channels
   return covariance(a, b) / std::sqrt((covariance(a, a) + floor) * (covariance(b, b) + floor));
 }
@@ -32,11 +33,16 @@ double correlation(const Patch& a, const Patch& b, double noise_variance) {
 }  // namespace
 
 Consistency photo_consistency(std::span<const Patch> patches, double noise_variance) {
+  const std::vector<PatchColours> colours(patches.begin(), patches.end());
+  return photo_consistency(colours, noise_variance);
+}
+
+Consistency photo_consistency(std::span<const PatchColours> patches, double noise_variance) {
   const std::size_t n = patches.size();
   Consistency out;
   out.seen = int(n);
   if (n == 0) return out;
-  for (const Patch& patch : patches) out.texture += covariance(patch, patch) / 3 / double(n);
+  for (const PatchColours& patch : patches) out.texture += covariance(patch, patch) / 3 / double(n);
 
   std::vector<double> agreement(n);
   for (std::size_t i = 0; i < n; ++i)

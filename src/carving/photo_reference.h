@@ -14,6 +14,8 @@ namespace photohull::carving::reference {
 /// Square-root encoded colours around a voxel on the reference plane, in one view.
 inline constexpr int kPatchTaps = (2 * shaders::kPatchRadius + 1) * (2 * shaders::kPatchRadius + 1);
 using Patch = std::array<glm::dvec3, kPatchTaps>;
+/// The same of any number of taps.
+using PatchColours = std::span<const glm::dvec3>;
 
 struct Consistency {
   double score = -1;   ///< mean correlation of all pairs of the views used; -1 below two views
@@ -23,11 +25,13 @@ struct Consistency {
   double outlier_margin = 1;  ///< least gap between a view's agreement and the one that drops views
 };
 
-/// Photo-consistency of a voxel from the views that see it (carving_score_columns.comp.glsl):
+/// Photo-consistency of a voxel from the views that see it (consistency_zncc.glsl):
 /// zero-mean normalised cross-correlation of patches over the three channels together, the variance
 /// of each patch raised by the image noise's. Views that agree with the others less than half as
 /// well as the best one does are dropped, once.
 Consistency photo_consistency(std::span<const Patch> patches, double noise_variance);
+/// On the taps that all the views show; as many in each.
+Consistency photo_consistency(std::span<const PatchColours> patches, double noise_variance);
 
 /// A sweep along an axis of a grid; layer 0 is where it begins.
 struct SweepFrame {

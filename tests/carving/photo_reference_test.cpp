@@ -60,7 +60,7 @@ TEST(PhotoConsistency, DropsTheOutlier) {
 
 TEST(PhotoConsistency, OfTooFewViewsIsTheLeast) {
   test::Rng rng(4);
-  EXPECT_EQ(photo_consistency({}, 1e-4).score, -1);
+  EXPECT_EQ(photo_consistency(std::span<const Patch>{}, 1e-4).score, -1);
   const std::vector<Patch> one{random_patch(rng)};
   EXPECT_EQ(photo_consistency(one, 1e-4).score, -1);
 }

@@ -25,13 +25,14 @@ Buffer list_of(std::size_t capacity, std::size_t entry_bytes) {
 
 SweepKernels::SweepKernels(gpu::Context& context, const BitVolume& bits,
                            const reference::SweepFrame& frame,
-                           const std::vector<projtex::GridCamera>& cameras)
+                           const std::vector<projtex::GridCamera>& cameras,
+                           const std::string& score_defines)
     : context_(context),
       frame_(frame),
       bricks_(bits.grid.bricks),
       view_count_(int(cameras.size())),
       select_(gpu::Program::compute("carving_select_columns.comp.glsl")),
-      score_(gpu::Program::compute("carving_score_columns.comp.glsl")),
+      score_(gpu::Program::compute("carving_score_columns.comp.glsl", score_defines)),
       update_(gpu::Program::compute("carving_update_columns.comp.glsl")),
       maps_(cameras, bits.grid),
       views_(Buffer::of(to_gpu(cameras))),

@@ -23,8 +23,10 @@ class SweepKernels {
  public:
   /// The sweep goes along `frame` through `bits`; every brick of a layer is an item, and each item
   /// has all `cameras` (at most kMaxLayerViews) as views.
+  /// `score_defines`: which statistic (statistic_defines).
   SweepKernels(gpu::Context& context, const BitVolume& bits, const reference::SweepFrame& frame,
-               const std::vector<projtex::GridCamera>& cameras);
+               const std::vector<projtex::GridCamera>& cameras,
+               const std::string& score_defines = {});
 
   /// Parameters that the tests set; layer, items and chunks are filled in by the steps.
   shaders::SweepParameters parameters{};

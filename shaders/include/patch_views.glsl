@@ -1,0 +1,66 @@
+// The patches around a voxel on the reference plane as the sweep's views show them: square roots of
+// linear light, which makes the noise even. Statistics of consistency read them here and give a
+// Consistency.
+layout(std430, binding = 6) readonly buffer Samples { vec4 samples[]; };
+
+const int kViews = kMaxLayerViews;
+const int kPatchEdge = 2 * kPatchRadius + 1;
+const int kPatchTaps = kPatchEdge * kPatchEdge;
+const int kLeastTaps = (kPatchTaps + 1) / 2;
+
+struct Consistency {
+  float score;       // at most 1; from thresholds.x on the views agree; -1 below two views
+  float confidence;  // evidence behind it; below noise.y there is too little to say anything
+  int used;          // views that the score is of
+};
+
+// `base`: where the voxel's patch begins in the first view's samples.
+vec4 patch_tap(uint base, int view, int k) {
+  return samples[base + uint(view * kApronArea + k / kPatchEdge * kApronEdge + k % kPatchEdge)];
+}
+
+bool has_tap(uint taps, int k) { return (taps >> uint(k) & 1u) != 0u; }
+
+// Taps, as bits, that all views show. Views that the patch leaves, that show background in its middle
+// or in more than half of it, do not count.
+uint common_taps(uint base, inout bool seen[kViews]) {
+  uint common_bits = (1u << uint(kPatchTaps)) - 1u;
+  for (int i = 0; i < kViews; ++i) {
+    uint shown = 0u;
+    bool whole = true;
+    for (int k = 0; k < kPatchTaps; ++k) {
+      float a = patch_tap(base, i, k).a;
+      whole = whole && a >= 0.0;
+      shown |= a > 0.0 ? 1u << uint(k) : 0u;
+    }
+    seen[i] = seen[i] && whole && has_tap(shown, kPatchTaps / 2) && bitCount(shown) >= kLeastTaps;
+    common_bits = seen[i] ? common_bits & shown : common_bits;
+  }
+  return common_bits;
+}
+
+int count_of(bool seen[kViews]) {
+  int n = 0;
+  for (int i = 0; i < kViews; ++i) n += seen[i] ? 1 : 0;
+  return n;
+}
+
+// Residuals that count as agreement: beyond noise, what resampling and a place not quite on the
+// surface make of texture.
+float allowed_variance(float noise_variance, float texture) { return 4.0 * noise_variance + 0.25 * texture; }
+
+// A residual variance as a score: 1 without any, 0.7 where it is as large as is allowed.
+float score_of_variance(float variance, float allowed) { return max(1.0 - 0.3 * variance / allowed, -1.0); }
+
+// Variance of a view's patch, a channel, about each channel's mean.
+float patch_texture(uint base, int view, uint taps) {
+  vec3 sum = vec3(0.0);
+  float squares = 0.0;
+  for (int k = 0; k < kPatchTaps; ++k) {
+    vec3 x = has_tap(taps, k) ? patch_tap(base, view, k).rgb - 0.5 : vec3(0.0);
+    sum += x;
+    squares += dot(x, x);
+  }
+  float count = float(bitCount(taps));
+  return max(squares - dot(sum, sum) / count, 0.0) / (3.0 * count);
+}
