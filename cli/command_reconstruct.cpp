@@ -14,8 +14,8 @@ namespace {
 struct Arguments {
   SceneArguments scene;
   std::string out, quality = "normal", device = "auto", mesh_error = "0", unseen = "closed";
-  std::optional<std::string> method;
-  std::optional<int> resolution;
+  std::optional<std::string> method, sampler, consistency;
+  std::optional<int> resolution, supersample;
   std::optional<double> voxel_size;
   std::vector<std::string> tune;
   int threads = 0;
@@ -44,6 +44,9 @@ pipeline::ReconstructOptions to_options(const Arguments& a) {
     o.method =
         parse("--method", *a.method,
               {Method::kHull, Method::kVoxelColoring, Method::kSpaceCarving, Method::kRefine});
+  if (a.sampler) o.sampler = projtex::parse_sampler("--sampler", *a.sampler);
+  if (a.consistency) o.consistency = carving::parse_statistic("--consistency", *a.consistency);
+  o.supersample = a.supersample;
   o.resolution = a.resolution;
   o.voxel_size = a.voxel_size;
   o.mesh_error = pipeline::parse_mesh_error(a.mesh_error);
@@ -96,6 +99,14 @@ void add_reconstruct(CLI::App& app) {
   c->add_option("--method", a->method,
                 "hull, voxel-coloring, space-carving or refine (default: hull for draft, else "
                 "refine)");
+  c->add_option("--sampler", a->sampler,
+                "sweeps: mipmap, centroid, nearest, bilinear, trilinear, trilinear-derivative, "
+                "ripmap, summed-area, anisotropic, hardware or ewa (default: mipmap)");
+  c->add_option("--supersample", a->supersample,
+                "sweeps: N x N samples a voxel, 1 to 8 (default: 1)");
+  c->add_option("--consistency", a->consistency,
+                "sweeps: zncc, gain-variance, adaptive-variance, robust-variance, histogram or "
+                "census (default: zncc)");
   c->add_option(
        "--mesh-error", a->mesh_error,
        "fewer triangles: how far mesh.ply may be from the uniform mesh, in voxels, or with "

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
+#include <utility>
 
 #include "carving/bit_volume.h"
 #include "carving/decisions.h"
@@ -26,6 +28,17 @@ constexpr double kLeastCosine = 0.35;  // between a camera's direction and the s
 constexpr std::size_t kChunk = 1024;   // bricks whose samples are held at once
 // Voxels carved in a round per voxel judged below which another round changes nothing measurable.
 constexpr double kNegligible = 0.03;
+// Of statistics whose confidence is 0 where there is too little evidence.
+constexpr float kLeastConfidence = 1e-6f;
+
+/// How photographs come onto the layers.
+struct Resampling {
+  const char* name;  ///< of the launches
+  Program program;
+  std::function<void()> bind;
+  glm::ivec2 size;  ///< pixels of the array texture
+  bool coverage;    ///< alpha tells how much of a sample is the object's
+};
 
 struct Direction {
   int axis, sign;
@@ -44,21 +57,20 @@ struct DeviceList {
 
 class Sweeper {
  public:
-  Sweeper(gpu::Context& context, const SparseVolume& hull, const projtex::ImageSet& images,
+  Sweeper(gpu::Context& context, const SparseVolume& hull, Resampling resampling,
           std::span<const Camera> cameras, const PhotoOptions& options)
       : context_(context),
-        images_(images),
+        resampling_(std::move(resampling)),
         options_(options),
         bits_(to_bits(hull)),
         select_(Program::compute("carving_select_columns.comp.glsl")),
-        project_(Program::compute("projtex_project_layer.comp.glsl",
-                                  concat("#define SUPERSAMPLE ", options.supersample, "\n"))),
-        score_(Program::compute("carving_score_columns.comp.glsl")),
+        score_(Program::compute("carving_score_columns.comp.glsl",
+                                statistic_defines(options.statistic, resampling_.coverage))),
         update_(Program::compute("carving_update_columns.comp.glsl")) {
     for (const Camera& camera : cameras) cameras_.push_back(projtex::to_grid(camera, hull.grid));
-    const glm::ivec2 size(images.texture().width(), images.texture().height());
     std::vector<shaders::GpuView> views;
-    for (const auto& camera : cameras_) views.push_back(projtex::to_gpu_view(camera, size));
+    for (const auto& camera : cameras_)
+      views.push_back(projtex::to_gpu_view(camera, resampling_.size));
     views_ = Buffer::of(views);
     maps_ = std::make_unique<visibility::DepthMaps>(cameras_, hull.grid);
     table_ = Buffer::of(bits_.table);
@@ -68,8 +80,11 @@ class Sweeper {
       active[i] = hull.table[i] < SparseVolume::kInside;
     active_ = Buffer::of(active);
     samples_ = Buffer(kChunk * shaders::kMaxLayerViews * shaders::kApronArea * 16);
+    const float least_texture = float(std::pow(options.min_texture * options.noise_sigma, 2));
+    // The confidence of a correlation is the texture.
+    const bool correlation = options.statistic == Statistic::kZncc;
     parameters_.noise = {float(options.noise_sigma * options.noise_sigma),
-                         float(std::pow(options.min_texture * options.noise_sigma, 2)), 0, 0};
+                         correlation ? least_texture : kLeastConfidence, least_texture, 0};
     parameters_.thresholds = {float(options.keep_score), float(options.better_by),
                               float(options.min_views), float(options.depth_bias)};
   }
@@ -220,8 +235,8 @@ class Sweeper {
       const std::size_t end = std::min(first + kChunk, count), first_column = column;
       while (column < columns_of_layer_.size() && columns_of_layer_[column] >> 6 < end) ++column;
       bind(first, first_column, selected, samples_, scores, decided, column - first_column);
-      images_.texture().bind(0);
-      project_.dispatch(context_, "projtex_project_layer", end - first);
+      resampling_.bind();
+      resampling_.program.dispatch(context_, resampling_.name, end - first);
       score_.dispatch(context_, "carving_score_columns",
                       gpu::group_count(column - first_column, 64));
       counts_.samples += std::int64_t(end - first) * shaders::kMaxLayerViews * shaders::kApronArea *
@@ -251,11 +266,11 @@ class Sweeper {
   }
 
   gpu::Context& context_;
-  const projtex::ImageSet& images_;
+  Resampling resampling_;
   PhotoOptions options_;
   BitVolume bits_;
   std::vector<projtex::GridCamera> cameras_;
-  Program select_, project_, score_, update_;
+  Program select_, score_, update_;
   std::unique_ptr<visibility::DepthMaps> maps_;
   Buffer views_, table_, occupancy_, active_, samples_, columns_, items_, packed_;
   Buffer uniforms_{sizeof(shaders::SweepParameters)};
@@ -278,29 +293,12 @@ std::vector<Direction> directions_of(const PhotoOptions& options, const Sweeper&
   return all;
 }
 
-}  // namespace
-
-void PhotoOptions::validate() const {
-  const auto require = [](bool ok, const char* what) {
-    if (!ok) throw UsageError(what);
-  };
-  require(keep_score > 0 && keep_score < 1, "keep_score must lie in (0, 1)");
-  require(better_by >= 0 && better_by <= 1, "better_by must lie in [0, 1]");
-  require(min_views >= 2, "min_views must be at least 2");
-  require(noise_sigma > 0 && std::isfinite(noise_sigma), "noise_sigma must be positive");
-  require(min_texture >= 0, "min_texture must not be negative");
-  require(supersample >= 1 && supersample <= 4, "supersample must be 1 to 4");
-  require(depth_bias >= 0, "depth_bias must not be negative");
-  require(max_path >= 1, "max_path must be at least 1");
-  require(max_rounds >= 1, "max_rounds must be at least 1");
-}
-
-SparseVolume carve_photo(gpu::Context& context, const SparseVolume& hull,
-                         const projtex::ImageSet& images, std::span<const Camera> cameras,
-                         const PhotoOptions& options, Progress& progress, PhotoReport* report) {
-  options.validate();
-  PHOTOHULL_CHECK_OP(int(cameras.size()), ==, images.layers());
-  Sweeper sweeper(context, hull, images, cameras, options);
+SparseVolume carve(gpu::Context& context, const SparseVolume& hull, Resampling resampling,
+                   std::span<const Camera> cameras, const PhotoOptions& options, Progress& progress,
+                   PhotoReport* report) {
+  const char* sampling = resampling.name;
+  const double sampled_before = context.statistics()[sampling].seconds;
+  Sweeper sweeper(context, hull, std::move(resampling), cameras, options);
   const std::vector<Direction> directions = directions_of(options, sweeper);
   const int rounds = options.method == PhotoMethod::kSpaceCarving ? options.max_rounds : 1;
   int round = 0, sweeps = 0;
@@ -319,9 +317,52 @@ SparseVolume carve_photo(gpu::Context& context, const SparseVolume& hull,
     *report = sweeper.counts();
     report->rounds = round;
     report->sweeps = sweeps;
-    report->sampling_seconds = context.statistics()["projtex_project_layer"].seconds;
+    report->sampling_seconds = context.statistics()[sampling].seconds - sampled_before;
   }
   return carved_distance(hull, sweeper.result());
+}
+
+}  // namespace
+
+void PhotoOptions::validate() const {
+  const auto require = [](bool ok, const char* what) {
+    if (!ok) throw UsageError(what);
+  };
+  require(keep_score > 0 && keep_score < 1, "keep_score must lie in (0, 1)");
+  require(better_by >= 0 && better_by <= 1, "better_by must lie in [0, 1]");
+  require(min_views >= 2, "min_views must be at least 2");
+  require(noise_sigma > 0 && std::isfinite(noise_sigma), "noise_sigma must be positive");
+  require(min_texture >= 0, "min_texture must not be negative");
+  require(supersample >= 1 && supersample <= projtex::kMaxSupersample,
+          "supersample must be 1 to 8");
+  require(depth_bias >= 0, "depth_bias must not be negative");
+  require(max_path >= 1, "max_path must be at least 1");
+  require(max_rounds >= 1, "max_rounds must be at least 1");
+}
+
+SparseVolume carve_photo(gpu::Context& context, const SparseVolume& hull,
+                         const projtex::ImageSet& images, std::span<const Camera> cameras,
+                         const PhotoOptions& options, Progress& progress, PhotoReport* report) {
+  options.validate();
+  PHOTOHULL_CHECK_OP(int(cameras.size()), ==, images.layers());
+  Resampling resampling{"projtex_project_layer",
+                        Program::compute("projtex_project_layer.comp.glsl",
+                                         concat("#define SUPERSAMPLE ", options.supersample, "\n")),
+                        [&images] { images.texture().bind(0); },
+                        {images.texture().width(), images.texture().height()},
+                        false};
+  return carve(context, hull, std::move(resampling), cameras, options, progress, report);
+}
+
+SparseVolume carve_photo(gpu::Context& context, const SparseVolume& hull,
+                         const projtex::SampleImages& images, std::span<const Camera> cameras,
+                         const PhotoOptions& options, Progress& progress, PhotoReport* report) {
+  options.validate();
+  PHOTOHULL_CHECK_OP(int(cameras.size()), ==, images.layers());
+  Resampling resampling{"projtex_sample_layer",
+                        images.program("projtex_sample_layer.comp.glsl", options.supersample),
+                        [&images] { images.bind(); }, images.size(), true};
+  return carve(context, hull, std::move(resampling), cameras, options, progress, report);
 }
 
 }  // namespace photohull::carving

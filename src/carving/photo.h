@@ -5,11 +5,13 @@
 #include <cstdint>
 #include <span>
 
+#include "carving/statistic.h"
 #include "core/grid.h"
 #include "core/progress.h"
 #include "gpu/context.h"
 #include "projtex/gpu_views.h"
 #include "projtex/image_set.h"
+#include "projtex/sample_images.h"
 
 namespace photohull::carving {
 
@@ -20,7 +22,9 @@ enum class PhotoMethod {
 
 struct PhotoOptions {
   PhotoMethod method = PhotoMethod::kSpaceCarving;
-  /// Correlation in (0, 1) from which a voxel counts as consistent.
+  /// What decides whether cameras agree on a voxel.
+  Statistic statistic = Statistic::kZncc;
+  /// Score in (0, 1) from which a voxel counts as consistent.
   double keep_score = 0.7;
   /// A voxel is carved only if one behind it correlates better by this much. In [0, 1].
   double better_by = 0.2;
@@ -30,7 +34,7 @@ struct PhotoOptions {
   double noise_sigma = 0.01;
   /// Texture below this many noise standard deviations tells nothing (>= 0).
   double min_texture = 1.5;
-  /// n x n samples a voxel on top of mip-mapping (1 to 4).
+  /// n x n samples a voxel on top of the sampler's own (1 to projtex::kMaxSupersample).
   int supersample = 1;
   /// Reference planes through the voxels' front faces instead of their centres.
   bool front_face = false;
@@ -59,6 +63,12 @@ struct PhotoReport {
 /// was not touched keeps the hull's distance. `cameras` and `images` are in the same order.
 SparseVolume carve_photo(gpu::Context& context, const SparseVolume& hull,
                          const projtex::ImageSet& images, std::span<const Camera> cameras,
+                         const PhotoOptions& options, Progress& progress,
+                         PhotoReport* report = nullptr);
+/// The same with the sampler that the images were made for. What they show as background does not
+/// count.
+SparseVolume carve_photo(gpu::Context& context, const SparseVolume& hull,
+                         const projtex::SampleImages& images, std::span<const Camera> cameras,
                          const PhotoOptions& options, Progress& progress,
                          PhotoReport* report = nullptr);
 

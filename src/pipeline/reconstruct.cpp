@@ -13,6 +13,7 @@
 #include "calib/silhouette.h"
 #include "carving/fit_grid.h"
 #include "carving/hull.h"
+#include "carving/thin_parts.h"
 #include "carving/photo.h"
 #include "core/error.h"
 #include "io/image_file.h"
@@ -21,6 +22,7 @@
 #include "pipeline/stage_clock.h"
 #include "pipeline/tuning.h"
 #include "projtex/image_set.h"
+#include "projtex/sample_images.h"
 #include "refine/refine.h"
 #include "render/bake_colour.h"
 #include "render/choose_views.h"
@@ -115,7 +117,7 @@ class Job {
       measure_silhouettes();
       return refining ? SparseVolume() : carve_hull();
     });
-    if (!refining)
+    if (!refining && !options_.sampler)
       for (View& view : views_) std::vector<std::uint8_t>().swap(view.mask.coverage);
     context_->release_deleted();
     images_ = clock_.run("images", Weights::kImages,
@@ -226,6 +228,10 @@ class Job {
     Progress silent;
     SparseVolume volume = carving::carve_silhouette(*context_, grid, box, cameras_, silhouettes,
                                                     hull_options, silent, &counts);
+    const auto t0 = std::chrono::steady_clock::now();
+    if (!getenv("PH_NOTHIN")) {
+    const auto nt = carving::keep_thin_parts(volume, box, cameras_, silhouettes, hull_options);
+    fprintf(stderr, "thin %zu of %zu voxels at %g: %.2f s\n", nt, volume.inside_voxels(), grid.voxel_size, std::chrono::duration<double>(std::chrono::steady_clock::now() - t0).count()); }
     if (volume.inside_voxels() == 0)
       throw Error(explain_empty_hull(*scene_.box, views_, grid.voxel_size));
     report_.nodes_tested += counts.nodes_tested;
@@ -288,10 +294,11 @@ class Job {
                        ? carving::PhotoMethod::kVoxelColoring
                        : carving::PhotoMethod::kSpaceCarving;
     photo.noise_sigma = report_.noise_sigma;
+    photo.supersample = options_.supersample.value_or(photo.supersample);
+    photo.statistic = options_.consistency.value_or(photo.statistic);
     tune(options_.tune, photo);
     carving::PhotoReport counts;
-    SparseVolume volume =
-        carving::carve_photo(*context_, hull, *images_, cameras_, photo, progress_, &counts);
+    SparseVolume volume = sweep(hull, photo, counts);
     report_.sweeps = counts.sweeps;
     report_.voxels_judged = counts.judged;
     report_.voxels_carved = counts.carved;
@@ -307,6 +314,17 @@ class Job {
       warn(
           "the photographs show too little texture to decide on any voxel: the result is the hull");
     return volume;
+  }
+
+  SparseVolume sweep(const SparseVolume& hull, const carving::PhotoOptions& photo,
+                     carving::PhotoReport& counts) {
+    const projtex::Sampler sampler = options_.sampler.value_or(projtex::kDefaultSampler);
+    report_.sampling = {projtex::to_string(sampler), photo.supersample,
+                        carving::to_string(photo.statistic)};
+    if (sampler == projtex::Sampler::kMipmap)
+      return carving::carve_photo(*context_, hull, *images_, cameras_, photo, progress_, &counts);
+    const projtex::SampleImages images(views_, sampler);
+    return carving::carve_photo(*context_, hull, images, cameras_, photo, progress_, &counts);
   }
 
   void colour(TriMesh& mesh, ResultFiles& files) {

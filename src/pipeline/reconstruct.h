@@ -6,9 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "carving/statistic.h"
 #include "core/progress.h"
 #include "io/load_scene.h"
 #include "pipeline/report.h"
+#include "projtex/sampler.h"
 
 namespace photohull::pipeline {
 
@@ -41,6 +43,11 @@ struct ReconstructOptions {
   std::optional<Method> method;  ///< default: hull for draft, refine otherwise
   MeshError mesh_error;
   Unseen unseen = Unseen::kClosed;
+  /// How the sweep resamples photographs and what decides there; voxel coloring and space carving
+  /// only.
+  std::optional<projtex::Sampler> sampler;
+  std::optional<int> supersample;  ///< n x n samples a voxel, 1 to projtex::kMaxSupersample
+  std::optional<carving::Statistic> consistency;
   bool evidence = false;          ///< write evidence.ply too: what confidence is computed from
   std::string device = "auto";    ///< auto, software or an index
   int threads = 0;                ///< 0: one a core

@@ -10,6 +10,22 @@
 namespace photohull::pipeline {
 namespace {
 
+/// Throws UsageError for options of the plane sweep where there is none.
+void check_sweep_options(const ReconstructOptions& o) {
+  if (o.supersample && (*o.supersample < 1 || *o.supersample > projtex::kMaxSupersample))
+    throw UsageError(
+        concat("--supersample ", *o.supersample, ": expected 1 to ", projtex::kMaxSupersample));
+  const Method method = o.effective_method();
+  if (method == Method::kVoxelColoring || method == Method::kSpaceCarving) return;
+  const char* given = o.sampler       ? "--sampler"
+                      : o.supersample ? "--supersample"
+                      : o.consistency ? "--consistency"
+                                      : nullptr;
+  if (given)
+    throw UsageError(concat(given, ": --method ", to_string(method),
+                            " has no plane sweep; give --method space-carving or voxel-coloring"));
+}
+
 /// Throws UsageError for parameters that the method does not have or take.
 void check_tuning(const std::vector<std::string>& assignments, Method method) {
   if (method == Method::kRefine) {
@@ -96,6 +112,7 @@ void ReconstructOptions::validate() const {
   if (!(std::isfinite(mesh_error.value) && mesh_error.value >= 0))
     throw UsageError(concat("--mesh-error ", mesh_error.value, ": must be finite, 0 or more"));
   if (threads < 0) throw UsageError(concat("--threads ", threads, ": 0 (one a core) or more"));
+  check_sweep_options(*this);
   check_tuning(tune, effective_method());
 }
 

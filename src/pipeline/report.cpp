@@ -41,6 +41,11 @@ std::string Report::to_json() const {
                 {"voxels_judged", voxels_judged},
                 {"voxels_carved", voxels_carved},
                 {"voxels_undecided", voxels_undecided}};
+  if (sampling) {
+    j["photo"]["sampler"] = sampling->sampler;
+    j["photo"]["supersample"] = sampling->supersample;
+    j["photo"]["consistency"] = sampling->consistency;
+  }
   j["refine"] = ordered_json::array();
   for (const RefineLevelReport& level : refine_levels)
     j["refine"].push_back({{"voxel_size", level.voxel_size},

@@ -49,6 +49,13 @@ struct MeshErrorReport {
   double mean = 0, p95 = 0, p999 = 0, max = 0;
 };
 
+/// How the plane sweep looked at the photographs.
+struct SamplingReport {
+  std::string sampler;
+  int supersample = 0;
+  std::string consistency;
+};
+
 struct Report {
   std::string version;
   std::string scene, format, device;
@@ -65,6 +72,7 @@ struct Report {
   std::int64_t voxels_judged = 0, voxels_carved = 0, voxels_kept = 0, voxels_undecided = 0;
   std::int64_t bricks_stored = 0;
   int sweeps = 0;
+  std::optional<SamplingReport> sampling;
   std::vector<RefineLevelReport> refine_levels;
   std::vector<RefineFitReport> refine_fits;
   std::int64_t vertices = 0, triangles = 0;

@@ -33,6 +33,9 @@ inline constexpr int kPadding = 1 << (kSampleLevels - 1);
 
 inline constexpr int kMaxSupersample = 8;
 
+/// What the sweep uses unless told otherwise; docs/sampling.md says why.
+inline constexpr Sampler kDefaultSampler = Sampler::kMipmap;
+
 /// Name on the command line: "mipmap", "centroid", ...
 const char* to_string(Sampler sampler);
 /// Throws UsageError naming the option and the legal values.

@@ -198,7 +198,7 @@ TEST(PhotoOptions, NamesTheFieldThatIsOutOfRange) {
   refuses([](PhotoOptions& o) { o.noise_sigma = 0; });
   refuses([](PhotoOptions& o) { o.noise_sigma = NAN; });
   refuses([](PhotoOptions& o) { o.min_texture = NAN; });
-  refuses([](PhotoOptions& o) { o.supersample = 5; });
+  refuses([](PhotoOptions& o) { o.supersample = 9; });
   refuses([](PhotoOptions& o) { o.depth_bias = -1; });
   refuses([](PhotoOptions& o) { o.max_rounds = 0; });
 }

@@ -187,6 +187,18 @@ TEST_F(Reconstruct, MasksMayBeFoundOrLeftOut) {
   EXPECT_EQ(open_edges(mesh()), 0u);
 }
 
+TEST_F(Reconstruct, SweepsSampleAndCompareAsTold) {
+  succeed(reconstruct({"--method", "voxel-coloring", "--sampler", "ewa", "--supersample", "2",
+                       "--consistency", "robust-variance"}));
+  EXPECT_EQ(report()["photo"]["sampler"], "ewa");
+  EXPECT_EQ(report()["photo"]["supersample"], 2);
+  EXPECT_EQ(report()["photo"]["consistency"], "robust-variance");
+  EXPECT_NEAR(signed_volume(mesh()), kSphereVolume, 0.1 * kSphereVolume);
+  succeed(reconstruct({"--method", "voxel-coloring"}));
+  EXPECT_EQ(report()["photo"]["sampler"], "mipmap");
+  EXPECT_EQ(report()["photo"]["consistency"], "zncc");
+}
+
 TEST_F(Reconstruct, WithoutMasksColoursCarve) {
   succeed(reconstruct({"--masks", "none", "--method", "space-carving"}));
   EXPECT_GT(report()["photo"]["voxels_carved"], 100);

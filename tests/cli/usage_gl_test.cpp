@@ -105,6 +105,18 @@ TEST_F(Usage, WordsThatAreNotChoices) {
   fail(2, {"reconstruct", "", "--out", out()}, {"SCENE"});
 }
 
+TEST_F(Usage, OptionsOfTheSweeps) {
+  refuse({"--method", "space-carving", "--sampler", "bicubic"},
+         {"--sampler bicubic", "trilinear", "ewa"});
+  refuse({"--method", "space-carving", "--consistency", "ssd"},
+         {"--consistency ssd", "zncc", "census"});
+  for (const char* bad : {"0", "9", "-1"})
+    refuse({"--method", "space-carving", "--supersample", bad},
+           {"--supersample " + std::string(bad), "1 to 8"});
+  refuse({"--sampler", "ewa"}, {"--sampler", "--method refine", "space-carving"});
+  refuse({"--method", "hull", "--consistency", "census"}, {"--consistency", "--method hull"});
+}
+
 TEST_F(Usage, Boxes) {
   for (const char* bad : {"0 0 0 1 1", "0 0 0 1 1 x", "nan 0 0 1 1 1", "", "0 0 0 1 1 1e999"})
     refuse({"--box", bad}, {"--box", "six numbers"});
