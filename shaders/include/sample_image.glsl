@@ -13,6 +13,8 @@
 #include "include/sample_nearest.glsl"
 #elif defined(SAMPLER_BILINEAR)
 #include "include/sample_bilinear.glsl"
+#elif defined(SAMPLER_MIPMAP)
+#include "include/sample_mipmap.glsl"
 #elif defined(SAMPLER_RIPMAP)
 #include "include/sample_ripmap.glsl"
 #elif defined(SAMPLER_SUMMED_AREA)

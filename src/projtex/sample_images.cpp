@@ -106,16 +106,15 @@ std::vector<glm::uvec4> sums_of(const Level& image, float unit) {
 }
 
 bool has_levels(Sampler sampler) {
-  return sampler == Sampler::kTrilinear || sampler == Sampler::kTrilinearDerivative ||
-         sampler == Sampler::kAnisotropic || sampler == Sampler::kHardware ||
-         sampler == Sampler::kEwa;
+  return sampler == Sampler::kMipmap || sampler == Sampler::kTrilinear ||
+         sampler == Sampler::kTrilinearDerivative || sampler == Sampler::kAnisotropic ||
+         sampler == Sampler::kHardware || sampler == Sampler::kEwa;
 }
 
 }  // namespace
 
 SampleImages::SampleImages(std::span<const View> views, Sampler sampler) : sampler_(sampler) {
   PHOTOHULL_CHECK(!views.empty());
-  PHOTOHULL_CHECK(sampler != Sampler::kMipmap);
   const glm::ivec2 size = padded_size(views);
   const int count = int(views.size()), levels = has_levels(sampler) ? kSampleLevels : 1;
   images_ = gpu::TextureArray(gpu::TextureFormat::kRgba16f, size.x, size.y, count, levels);

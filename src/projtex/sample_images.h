@@ -16,8 +16,7 @@ namespace photohull::projtex {
 /// nothing elsewhere.
 class SampleImages {
  public:
-  /// Throws Error when the device cannot hold the images, or lacks the filter. Not for
-  /// Sampler::kMipmap, which samples an ImageSet.
+  /// Throws Error when the device cannot hold the images, or lacks the filter.
   SampleImages(std::span<const View> views, Sampler sampler);
 
   Sampler sampler() const { return sampler_; }

@@ -42,7 +42,6 @@ Sampler parse_sampler(const std::string& option, const std::string& text) {
 }
 
 std::string sampler_defines(Sampler sampler, int supersample) {
-  PHOTOHULL_CHECK(sampler != Sampler::kMipmap);
   PHOTOHULL_CHECK(supersample >= 1 && supersample <= kMaxSupersample);
   std::string name = to_string(sampler);
   for (char& c : name) c = c == '-' ? '_' : char(c - 'a' + 'A');

@@ -7,7 +7,7 @@
 namespace photohull::projtex {
 
 enum class Sampler {
-  kMipmap,               ///< bilinear at the nearest mip level, one level a brick: the fast path
+  kMipmap,               ///< bilinear at the nearest mip level; on an ImageSet, one level a brick
   kCentroid,             ///< the voxel's centre to the nearest pixel: carving in image space
   kNearest,              ///< nearest pixel
   kBilinear,             ///< bilinear on the image itself
@@ -41,7 +41,7 @@ const char* to_string(Sampler sampler);
 /// Throws UsageError naming the option and the legal values.
 Sampler parse_sampler(const std::string& option, const std::string& text);
 
-/// Lines of "#define" that make the kernels use the sampler. Not for kMipmap.
+/// Lines of "#define" that make the kernels use the sampler.
 std::string sampler_defines(Sampler sampler, int supersample);
 
 }  // namespace photohull::projtex

@@ -265,7 +265,11 @@ dvec4 sample_footprint(Sampler sampler, std::span<const LinearImage> chain, cons
       return anisotropic(chain, f);
     case Sampler::kEwa:
       return ewa(chain, f);
-    case Sampler::kMipmap:
+    case Sampler::kMipmap: {
+      const double edge = std::max({glm::length(f.du), glm::length(f.dv), 1.0});
+      const int level = std::min(int(std::lround(std::log2(edge))), int(chain.size()) - 1);
+      return between(chain[std::size_t(level)], on_level(f.pixel, level));
+    }
     case Sampler::kHardware:
       break;
   }

@@ -38,8 +38,7 @@ struct FootprintAxes {
 FootprintAxes axes_of(const Footprint& footprint);
 
 /// What a sampler makes of one footprint on a covered chain: linear light times coverage, coverage.
-/// Not for Sampler::kMipmap, which project_layer_sample describes, nor for kHardware, whose filter
-/// is the device's own.
+/// Not for Sampler::kHardware, whose filter is the device's own.
 glm::dvec4 sample_footprint(Sampler sampler, std::span<const LinearImage> chain,
                             const Footprint& footprint);
 

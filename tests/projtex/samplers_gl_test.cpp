@@ -94,6 +94,9 @@ class SamplersTest : public ::testing::TestWithParam<Sampler> {
     };
     if (sampler == Sampler::kCentroid || sampler == Sampler::kNearest)
       return near_integer(f.pixel.x + 0.5, 1e-3) || near_integer(f.pixel.y + 0.5, 1e-3);
+    if (sampler == Sampler::kMipmap)
+      return near_integer(std::log2(std::max({glm::length(f.du), glm::length(f.dv), 1.0})) + 0.5,
+                          1e-3);
     const reference::FootprintAxes axes = reference::axes_of(f);
     if (sampler == Sampler::kAnisotropic)
       return near_integer(axes.longer / std::max(axes.shorter, 0.5), 1e-3);
@@ -285,7 +288,7 @@ std::string name_of(const ::testing::TestParamInfo<Sampler>& info) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, SamplersTest,
-                         ::testing::Values(Sampler::kNearest, Sampler::kBilinear,
+                         ::testing::Values(Sampler::kMipmap, Sampler::kNearest, Sampler::kBilinear,
                                            Sampler::kTrilinear, Sampler::kTrilinearDerivative,
                                            Sampler::kRipmap, Sampler::kSummedArea,
                                            Sampler::kAnisotropic, Sampler::kEwa),
