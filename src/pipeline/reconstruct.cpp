@@ -13,8 +13,8 @@
 #include "calib/silhouette.h"
 #include "carving/fit_grid.h"
 #include "carving/hull.h"
-#include "carving/thin_parts.h"
 #include "carving/photo.h"
+#include "carving/thin_parts.h"
 #include "core/error.h"
 #include "io/image_file.h"
 #include "pipeline/checks.h"
@@ -228,10 +228,7 @@ class Job {
     Progress silent;
     SparseVolume volume = carving::carve_silhouette(*context_, grid, box, cameras_, silhouettes,
                                                     hull_options, silent, &counts);
-    const auto t0 = std::chrono::steady_clock::now();
-    if (!getenv("PH_NOTHIN")) {
-    const auto nt = carving::keep_thin_parts(volume, box, cameras_, silhouettes, hull_options);
-    fprintf(stderr, "thin %zu of %zu voxels at %g: %.2f s\n", nt, volume.inside_voxels(), grid.voxel_size, std::chrono::duration<double>(std::chrono::steady_clock::now() - t0).count()); }
+    carving::keep_thin_parts(volume, box, cameras_, silhouettes, hull_options);
     if (volume.inside_voxels() == 0)
       throw Error(explain_empty_hull(*scene_.box, views_, grid.voxel_size));
     report_.nodes_tested += counts.nodes_tested;

@@ -9,47 +9,16 @@
 #include <cmath>
 
 #include "projtex/gpu_views.h"
+#include "refine/voxel_set.h"
 
 namespace photohull::refine {
 namespace {
 
 using glm::ivec3;
 
-constexpr float kFreed = 0.5f;       // distance of a voxel that was freed, voxels
-constexpr int kLeastViews = 3;       // that a surfel was matched in
-constexpr int kPasses = 3;           // of freeing what freed voxels outnumber
-constexpr std::size_t kPart = 1024;  // lines or points that a task takes
-
-/// Voxels by their place in the lattice, x fastest.
-class Lattice {
- public:
-  explicit Lattice(const GridSpec& grid) : n_(grid.voxels()) {}
-  bool contains(const ivec3& v) const {
-    return v.x >= 0 && v.y >= 0 && v.z >= 0 && v.x < n_.x && v.y < n_.y && v.z < n_.z;
-  }
-  std::uint64_t index(const ivec3& v) const {
-    return (std::uint64_t(v.z) * std::uint64_t(n_.y) + std::uint64_t(v.y)) * std::uint64_t(n_.x) +
-           std::uint64_t(v.x);
-  }
-  ivec3 voxel(std::uint64_t i) const {
-    const auto x = std::uint64_t(n_.x), y = std::uint64_t(n_.y);
-    return {int(i % x), int(i / x % y), int(i / x / y)};
-  }
-
- private:
-  ivec3 n_;
-};
-
-using Indices = std::vector<std::uint64_t>;
-
-Indices sorted(const std::vector<Indices>& parts) {
-  Indices all;
-  for (const Indices& part : parts) all.insert(all.end(), part.begin(), part.end());
-  tbb::parallel_sort(all.begin(), all.end());
-  return all;
-}
-
-ivec3 nearest(const glm::dvec3& p) { return ivec3(glm::floor(p + 0.5)); }
+constexpr float kFreed = 0.5f;  // distance of a voxel that was freed, voxels
+constexpr int kLeastViews = 3;  // that a surfel was matched in
+constexpr int kPasses = 3;      // of freeing what freed voxels outnumber
 
 std::vector<projtex::GridCamera> on_grid(std::span<const Camera> cameras, const GridSpec& grid) {
   std::vector<projtex::GridCamera> out;
@@ -57,28 +26,20 @@ std::vector<projtex::GridCamera> on_grid(std::span<const Camera> cameras, const 
   return out;
 }
 
-/// Calls f(voxel) for a voxel and its 26 neighbours, as far as they lie in the lattice.
-template <typename F>
-void for_block(const Lattice& lattice, const ivec3& middle, F&& f) {
-  for (int i = 0; i < 27; ++i) {
-    const ivec3 voxel = middle + ivec3(i % 3, i / 3 % 3, i / 9) - 1;
-    if (lattice.contains(voxel)) f(voxel);
-  }
-}
-
 /// Where lines pass through the volume's inside: a voxel comes as often as lines do.
-Indices blocked(std::span<const Sightline> lines, std::span<const projtex::GridCamera> cameras,
-                const SparseVolume& volume) {
+VoxelSet blocked(std::span<const Sightline> lines, std::span<const projtex::GridCamera> cameras,
+                 const SparseVolume& volume) {
   const Lattice lattice(volume.grid);
-  std::vector<Indices> parts((lines.size() + kPart - 1) / kPart);
+  std::vector<VoxelSet> parts((lines.size() + kVoxelSetPart - 1) / kVoxelSetPart);
   tbb::parallel_for(std::size_t(0), parts.size(), [&](std::size_t part) {
-    for (std::size_t l = part * kPart; l < std::min(lines.size(), (part + 1) * kPart); ++l) {
+    for (std::size_t l = part * kVoxelSetPart;
+         l < std::min(lines.size(), (part + 1) * kVoxelSetPart); ++l) {
       const glm::dvec3 from(lines[l].from);
       const glm::dvec3 way = cameras[std::size_t(lines[l].view)].centre - from;
       // A voxel a step along the longest axis, so that none comes twice.
       const int steps = int(std::max({std::abs(way.x), std::abs(way.y), std::abs(way.z)}));
       for (int i = 0; i < steps; ++i) {
-        const ivec3 voxel = nearest(from + double(i) / steps * way);
+        const ivec3 voxel = nearest_voxel(from + double(i) / steps * way);
         if (!lattice.contains(voxel)) break;
         if (volume.at(voxel) < 0) parts[part].push_back(lattice.index(voxel));
       }
@@ -87,28 +48,11 @@ Indices blocked(std::span<const Sightline> lines, std::span<const projtex::GridC
   return sorted(parts);
 }
 
-Indices around(std::span<const glm::vec3> points, const GridSpec& grid) {
-  const Lattice lattice(grid);
-  std::vector<Indices> parts((points.size() + kPart - 1) / kPart);
-  tbb::parallel_for(std::size_t(0), parts.size(), [&](std::size_t part) {
-    for (std::size_t i = part * kPart; i < std::min(points.size(), (part + 1) * kPart); ++i)
-      for_block(lattice, nearest(glm::dvec3(points[i])),
-                [&](const ivec3& voxel) { parts[part].push_back(lattice.index(voxel)); });
-  });
-  Indices out = sorted(parts);
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-  return out;
-}
-
-bool contains(const Indices& set, std::uint64_t index) {
-  return std::binary_search(set.begin(), set.end(), index);
-}
-
 /// Voxels beside `fresh` ones that are inside still and have more neighbours outside than inside.
-std::vector<ivec3> outnumbered(const std::vector<ivec3>& fresh, const Indices& kept,
+std::vector<ivec3> outnumbered(const std::vector<ivec3>& fresh, const VoxelSet& kept,
                                const SparseVolume& volume) {
   const Lattice lattice(volume.grid);
-  Indices about;
+  VoxelSet about;
   for (const ivec3& voxel : fresh)
     for_block(lattice, voxel, [&](const ivec3& v) {
       if (volume.at(v) < 0) about.push_back(lattice.index(v));
@@ -123,18 +67,6 @@ std::vector<ivec3> outnumbered(const std::vector<ivec3>& fresh, const Indices& k
     if (2 * inside <= 27) out.push_back(lattice.voxel(index));
   }
   return out;
-}
-
-/// The voxel's place in `volume.distance`; its brick is stored from now on.
-float& stored(const ivec3& voxel, SparseVolume& volume) {
-  std::uint32_t& entry = volume.table[volume.grid.brick_index(voxel / kBrickEdge)];
-  if (entry >= SparseVolume::kInside) {
-    const float all = entry == SparseVolume::kInside ? -SparseVolume::kBand : SparseVolume::kBand;
-    entry = std::uint32_t(volume.bricks.size());
-    volume.bricks.push_back(voxel / kBrickEdge);
-    volume.distance.resize(volume.distance.size() + kBrickVoxels, all);
-  }
-  return volume.distance[std::size_t(entry) * kBrickVoxels + std::size_t(voxel_offset(voxel & 7))];
 }
 
 /// Of the views that a surfel was matched in, the one that looks at it most like `view`.
@@ -206,8 +138,8 @@ std::size_t free_sightlines(std::span<const Sightline> lines,
                             std::span<const Camera> cameras, const LookOptions& options,
                             SparseVolume& volume) {
   if (lines.empty()) return 0;
-  const Indices hits = blocked(lines, on_grid(cameras, volume.grid), volume);
-  const Indices kept = around(known_positions, volume.grid);
+  const VoxelSet hits = blocked(lines, on_grid(cameras, volume.grid), volume);
+  const VoxelSet kept = around(known_positions, volume.grid);
   const Lattice lattice(volume.grid);
   std::vector<ivec3> fresh;
   for (std::size_t i = 0, end = 0; i < hits.size(); i = end) {

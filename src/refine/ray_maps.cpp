@@ -22,11 +22,15 @@ constexpr int kLengths[] = {8, 16, 32, 64};  // samples along a ray
 constexpr double kNearestPartner = 4, kFarthestPartner = 60, kBestPartner = 15;
 constexpr double kDuplicate = 8, kDuplicateCost = 30;
 constexpr std::size_t kMostThreads = std::size_t(1) << 21;  // of a dispatch
+// Samples about the surface that say whether it explains what a ray shows, voxels apart.
+constexpr int kSurfaceSamples = 2;
+constexpr double kBeside = 2;  // voxels from the surface within which a ray says nothing new
 
 struct Ray {
   int view, x, y;
   glm::dvec3 from, direction;  // voxels; direction unit
   double length, depth_per_length;
+  double surface = -1;  // where it meets the surface, voxels from `from`; negative: nowhere
 };
 
 double value_at(const SparseVolume& v, const glm::dvec3& p) {
@@ -51,8 +55,25 @@ class RayMatcher {
 
   std::vector<RayMap> run() {
     choose_partners();
-    make_rays();
-    for (std::size_t k = 0; k < std::size(kLengths); ++k) match(rays_[k], kLengths[k]);
+    search(make_rays(nullptr));
+    return std::move(maps_);
+  }
+
+  /// Only rays that the surface does not explain search the hull before it.
+  std::vector<RayMap> run(const SparseVolume& surface) {
+    choose_partners();
+    std::vector<Ray> rays = make_rays(&surface);
+    std::erase_if(rays, [](const Ray& ray) { return ray.surface < 0; });
+    std::vector<Ray> unexplained;
+    match(about_surface(rays), kSurfaceSamples, [&](std::size_t i, const float* s) {
+      const int best = int(std::max_element(s, s + kSurfaceSamples) - s);
+      if (s[best] < options_.least_score) {
+        unexplained.push_back(rays[i]);
+      } else {
+        tell(rays[i], rays[i].surface + best - 0.5 * (kSurfaceSamples - 1), confidence(s[best]));
+      }
+    });
+    search(unexplained);
     return std::move(maps_);
   }
 
@@ -87,7 +108,7 @@ class RayMatcher {
     }
   }
 
-  void make_rays() {
+  std::vector<Ray> make_rays(const SparseVolume* surface) {
     maps_.resize(cameras_.size());
     std::vector<std::vector<Ray>> found(cameras_.size());
     tbb::parallel_for(std::size_t(0), cameras_.size(), [&](std::size_t v) {
@@ -114,30 +135,52 @@ class RayMatcher {
             t0 = std::max(t0, std::min(s, e));
             t1 = std::min(t1, std::max(s, e));
           }
-          double first = -1, last = -1;
+          double first = -1, last = -1, at = -1;
           for (double t = t0; t < t1;) {
             const double value = value_at(hull_, c.centre + t * d);
             if (value <= 0.3) {
               if (first < 0) first = t;
               last = t;
+              if (surface && at < 0 && value_at(*surface, c.centre + t * d) <= 0) at = t;
             }
             t += std::max(0.5, std::abs(value) * 0.8);
           }
           if (first < 0) continue;
           first -= 1;
           last += 1;
-          found[v].push_back({int(v), x, y, c.centre + first * d, d, last - first, (m * d).z});
+          found[v].push_back({int(v), x, y, c.centre + first * d, d, last - first, (m * d).z,
+                              at < 0 ? -1 : at - first});
         }
     });
-    for (const auto& list : found)
-      for (const Ray& ray : list) {
-        std::size_t k = 0;
-        while (k + 1 < std::size(kLengths) && ray.length > kLengths[k]) ++k;
-        rays_[k].push_back(ray);
-      }
+    std::vector<Ray> rays;
+    for (const auto& list : found) rays.insert(rays.end(), list.begin(), list.end());
+    return rays;
   }
 
-  void match(const std::vector<Ray>& rays, int length) {
+  /// Rays that start before where the surface is and end behind.
+  static std::vector<Ray> about_surface(std::vector<Ray> rays) {
+    for (Ray& ray : rays) {
+      ray.from += (ray.surface - 0.5 * (kSurfaceSamples - 1)) * ray.direction;
+      ray.length = kSurfaceSamples;
+    }
+    return rays;
+  }
+
+  void search(const std::vector<Ray>& rays) {
+    std::vector<Ray> by_length[std::size(kLengths)];
+    for (const Ray& ray : rays) {
+      std::size_t k = 0;
+      while (k + 1 < std::size(kLengths) && ray.length > kLengths[k]) ++k;
+      by_length[k].push_back(ray);
+    }
+    for (std::size_t k = 0; k < std::size(kLengths); ++k)
+      match(by_length[k], kLengths[k],
+            [&](std::size_t i, const float* s) { decide(by_length[k][i], s, kLengths[k]); });
+  }
+
+  /// Calls decide(ray, scores) with the scores of `length` samples along each ray.
+  template <typename Decide>
+  void match(const std::vector<Ray>& rays, int length, Decide&& decide) {
     const auto program =
         gpu::Program::compute("refine_match_patches.comp.glsl", "#define PATCH_RADIUS 1\n");
     const Buffer views = Buffer::of(gpu_views_);
@@ -169,8 +212,7 @@ class RayMatcher {
       images_.texture().bind(0);
       program.dispatch(context_, "refine_vote", gpu::group_count(count * std::size_t(length), 64));
       const auto s = scores.download<float>(count * std::size_t(length));
-      for (std::size_t i = 0; i < count; ++i)
-        decide(rays[first + i], s.data() + i * std::size_t(length), length);
+      for (std::size_t i = 0; i < count; ++i) decide(first + i, s.data() + i * std::size_t(length));
     }
   }
 
@@ -190,13 +232,27 @@ class RayMatcher {
       if (curvature < 0)
         shift = std::clamp(0.5 * (s[best - 1] - s[best + 1]) / curvature, -0.5, 0.5);
     }
+    tell(ray, (best + shift) * step,
+         confidence(s[best]) * std::clamp((s[best] - second) / options_.distinct_by, 0.0, 1.0));
+  }
+
+  double confidence(double score) const {
+    return std::clamp((score - options_.least_score) / 0.3, 0.0, 1.0);
+  }
+
+  /// The ray's say: what it shows lies `along` voxels from its start.
+  void tell(const Ray& ray, double along, double weight) {
     RayMap& map = maps_[std::size_t(ray.view)];
     const std::size_t at = std::size_t(ray.y) * map.width + ray.x;
     const auto& c = cameras_[std::size_t(ray.view)];
-    map.depth[at] = float(glm::dot(ray.from - c.centre, ray.direction) + (best + shift) * step) *
-                    float(ray.depth_per_length);
-    map.weight[at] = float(std::clamp((s[best] - options_.least_score) / 0.3, 0.0, 1.0) *
-                           std::clamp((s[best] - second) / options_.distinct_by, 0.0, 1.0));
+    map.depth[at] =
+        float(glm::dot(ray.from - c.centre, ray.direction) + along) * float(ray.depth_per_length);
+    map.weight[at] = float(weight);
+    if (ray.surface >= 0 && along < ray.surface - kBeside && weight > 0)
+      map.before.push_back(glm::vec3(ray.from + along * ray.direction));
+    if (ray.surface >= 0 && along > ray.surface + kBeside && weight > 0)
+      for (double t = ray.surface; t < along - 1; t += 1)
+        map.through.push_back(glm::vec3(ray.from + t * ray.direction));
   }
 
   gpu::Context& context_;
@@ -207,7 +263,6 @@ class RayMatcher {
   std::vector<projtex::GridCamera> cameras_;
   std::vector<shaders::GpuView> gpu_views_;
   std::vector<shaders::MatchChoice> partners_;
-  std::vector<Ray> rays_[std::size(kLengths)];
   std::vector<RayMap> maps_;
 };
 
@@ -217,6 +272,13 @@ std::vector<RayMap> match_rays(gpu::Context& context, const SparseVolume& hull,
                                const projtex::ImageSet& images, std::span<const Camera> cameras,
                                double noise_sigma, const VoteOptions& options) {
   return RayMatcher(context, hull, images, cameras, noise_sigma, options).run();
+}
+
+std::vector<RayMap> match_rays_again(gpu::Context& context, const SparseVolume& hull,
+                                     const SparseVolume& surface, const projtex::ImageSet& images,
+                                     std::span<const Camera> cameras, double noise_sigma,
+                                     const VoteOptions& options) {
+  return RayMatcher(context, hull, images, cameras, noise_sigma, options).run(surface);
 }
 
 }  // namespace photohull::refine

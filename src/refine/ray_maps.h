@@ -15,13 +15,23 @@ namespace photohull::refine {
 struct RayMap {
   double stride = 1;  ///< pixels between rays
   int width = 0, height = 0;
-  std::vector<float> depth;   ///< voxels along the optical axis, row-major
-  std::vector<float> weight;  ///< [0, 1]; 0: the ray says nothing
+  std::vector<float> depth;        ///< voxels along the optical axis, row-major
+  std::vector<float> weight;       ///< [0, 1]; 0: the ray says nothing
+  std::vector<glm::vec3> before;   ///< what rays found before a known surface, voxels
+  std::vector<glm::vec3> through;  ///< where rays passed that found what lies behind it, voxels
 };
 
 /// For every view, the depths at which its rays through the hull agree best with views near it.
 std::vector<RayMap> match_rays(gpu::Context& context, const SparseVolume& hull,
                                const projtex::ImageSet& images, std::span<const Camera> cameras,
                                double noise_sigma, const VoteOptions& options);
+
+/// Likewise, with `surface` (on the same grid) known: depths of the surface where it explains what
+/// the photographs show, and of what is found elsewhere along the ray where it does not. Rays that
+/// do not meet the surface say nothing.
+std::vector<RayMap> match_rays_again(gpu::Context& context, const SparseVolume& hull,
+                                     const SparseVolume& surface, const projtex::ImageSet& images,
+                                     std::span<const Camera> cameras, double noise_sigma,
+                                     const VoteOptions& options);
 
 }  // namespace photohull::refine

@@ -97,6 +97,7 @@ class Refiner {
               : bounded(distance_from_mesh(extract_mesh(volume), volume, hull.grid, kNearReach),
                         hull);
       restore(volume, hull, counts);
+      if (level == 1 && options_.voting) vote(volume, hull, counts);
       const bool first = level == 0, last = level + 1 == grids.size();
       const int iterations = last    ? options_.fine_iterations
                              : first ? options_.coarse_iterations
@@ -137,6 +138,13 @@ class Refiner {
   void restore(SparseVolume& volume, const SparseVolume& hull, LevelReport& counts) {
     counts.restored += std::int64_t(
         restore_silhouettes(context_, volume, hull, cameras_, silhouettes_, options_.restore));
+  }
+
+  void vote(SparseVolume& volume, const SparseVolume& hull, LevelReport& counts) {
+    const Revision revision =
+        vote_again(context_, volume, hull, images_, cameras_, options_.noise_sigma, options_.vote);
+    counts.restored += std::int64_t(revision.added);
+    counts.freed += std::int64_t(revision.freed);
   }
 
   /// What of the volume lies in the hull, without space that nothing can have looked into.

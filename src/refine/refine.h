@@ -61,7 +61,7 @@ struct LevelReport {
   std::int64_t surfels = 0;   ///< of the last iteration
   std::int64_t samples = 0;   ///< texture samples
   std::int64_t bricks = 0;    ///< stored at the end
-  std::int64_t restored = 0;  ///< voxels of the hull that silhouettes brought back
+  std::int64_t restored = 0;  ///< voxels of the hull that silhouettes or votes brought back
   std::int64_t freed = 0;     ///< voxels before surface that views see through them
   /// Bricks of the level's surface that the next level matches, and that it does not: below the
   /// images' sampling, without texture, flat and certain.

@@ -39,7 +39,7 @@ class Restorer {
     tbb::parallel_for(std::size_t(0), bricks.size(), [&](std::size_t b) {
       for (int i = 0; i < kBrickVoxels; ++i) {
         const ivec3 voxel = bricks[b] * kBrickEdge + ivec3(i >> 6, (i >> 3) & 7, i & 7);
-        if (hull_.at(voxel) < 0 && volume_.at(voxel) > 0.5f && is_missed(voxel))
+        if (hull_.at(voxel) < 0 && volume_.at(voxel) > 0 && is_missed(voxel))
           found[b].push_back(voxel);
       }
     });
@@ -65,7 +65,7 @@ class Restorer {
     for (std::size_t slot = 0; slot < volume.bricks.size(); ++slot)
       for (int i = 0; i < kBrickVoxels; ++i) {
         const float d = volume.distance[slot * kBrickVoxels + std::size_t(i)];
-        if (d <= 0.3f && d > -1)
+        if (d <= 0 && d > -1)
           voxels.push_back(volume.bricks[slot] * kBrickEdge + ivec3(i >> 6, (i >> 3) & 7, i & 7));
       }
     return voxels;

@@ -12,7 +12,7 @@ namespace photohull::refine {
 struct RestoreOptions {
   int least_views = 2;      ///< that show foreground there which the volume does not cover
   double least_inside = 0;  ///< pixels within the silhouette
-  double most_before = 6;   ///< views in which it would hide what lies behind, for each of those
+  double most_before = 3;   ///< views in which it would hide what lies behind, for each of those
 };
 
 /// Brings back the voxels of `hull` (on the same grid) that fall, in at least `least_views` views,

@@ -9,6 +9,7 @@
 
 #include "projtex/gpu_views.h"
 #include "refine/ray_maps.h"
+#include "refine/voxel_set.h"
 
 namespace photohull::refine {
 namespace {
@@ -19,6 +20,25 @@ class Voter {
         const VoteOptions& options)
       : hull_(hull), options_(options), maps_(std::move(maps)) {
     for (const Camera& camera : cameras) cameras_.push_back(projtex::to_grid(camera, hull.grid));
+  }
+
+  /// Asks again about voxels beside what rays found before the volume's surface, and beside where
+  /// they passed through it.
+  Revision revise(SparseVolume& volume) const {
+    Revision out;
+    for (const auto& [voxel, value] : votes(&RayMap::before, volume.grid, SparseVolume::kBand)) {
+      const float old = volume.at(voxel);
+      if (value >= old) continue;
+      out.added += value < 0 && old >= 0;
+      stored(voxel, volume) = value;
+    }
+    for (const auto& [voxel, value] : votes(&RayMap::through, volume.grid, -SparseVolume::kBand)) {
+      const float old = volume.at(voxel);
+      if (value <= old || value < 0) continue;
+      out.freed += old < 0;
+      stored(voxel, volume) = value;
+    }
+    return out;
   }
 
   SparseVolume fuse() {
@@ -40,7 +60,8 @@ class Voter {
             const glm::ivec3 voxel = bricks[b] * kBrickEdge + glm::ivec3(x, y, z);
             const float hull = hull_.at(voxel);
             values[b * kBrickVoxels + std::size_t(voxel_offset({x, y, z}))] =
-                hull > 1 ? hull : std::max(hull, float(vote(glm::dvec3(voxel))));
+                hull > 1 ? hull
+                         : std::max(hull, float(vote(glm::dvec3(voxel), -SparseVolume::kBand)));
           }
     });
     for (std::size_t b = 0; b < bricks.size(); ++b) {
@@ -52,7 +73,23 @@ class Voter {
   }
 
  private:
-  double vote(const glm::dvec3& p) const {
+  /// What the rays say of voxels beside points of the maps.
+  std::vector<std::pair<glm::ivec3, float>> votes(std::vector<glm::vec3> RayMap::*points,
+                                                  const GridSpec& grid, double silent) const {
+    std::vector<glm::vec3> all;
+    for (const RayMap& map : maps_)
+      all.insert(all.end(), (map.*points).begin(), (map.*points).end());
+    const VoxelSet voxels = around(all, grid);
+    std::vector<std::pair<glm::ivec3, float>> out(voxels.size());
+    tbb::parallel_for(std::size_t(0), voxels.size(), [&](std::size_t i) {
+      const glm::ivec3 voxel = Lattice(grid).voxel(voxels[i]);
+      out[i] = {voxel, std::max(hull_.at(voxel), float(vote(glm::dvec3(voxel), silent)))};
+    });
+    return out;
+  }
+
+  /// `silent`: where the rays say too little.
+  double vote(const glm::dvec3& p, double silent) const {
     double sum = 0, total = 0;
     for (std::size_t v = 0; v < cameras_.size(); ++v) {
       const RayMap& map = maps_[v];
@@ -68,7 +105,7 @@ class Voter {
       sum += map.weight[at] * std::min(ahead, 1.0);
       total += map.weight[at];
     }
-    if (total < options_.least_weight) return -SparseVolume::kBand;
+    if (total < options_.least_weight) return silent;
     return sum / total * options_.band;
   }
 
@@ -86,6 +123,16 @@ SparseVolume vote_free_space(gpu::Context& context, const SparseVolume& hull,
   return Voter(hull, cameras, match_rays(context, hull, images, cameras, noise_sigma, options),
                options)
       .fuse();
+}
+
+Revision vote_again(gpu::Context& context, SparseVolume& volume, const SparseVolume& hull,
+                    const projtex::ImageSet& images, std::span<const Camera> cameras,
+                    double noise_sigma, VoteOptions options) {
+  options.ray_spacing = options.again_spacing;
+  return Voter(hull, cameras,
+               match_rays_again(context, hull, volume, images, cameras, noise_sigma, options),
+               options)
+      .revise(volume);
 }
 
 }  // namespace photohull::refine

@@ -1,6 +1,7 @@
 // Free space by voting of coarse depth maps.
 #pragma once
 
+#include <cstddef>
 #include <span>
 
 #include "core/grid.h"
@@ -10,11 +11,12 @@
 namespace photohull::refine {
 
 struct VoteOptions {
-  double ray_spacing = 1.0;   ///< between the rays of a view, voxels in the middle of the grid
-  double tap_spacing = 0.7;   ///< of the patches across the rays, voxels
-  double best_pairs = 0.5;    ///< share of the pairs of views that the score is the mean of
-  double least_score = 0.5;   ///< of the best sample on a ray; below, the ray says nothing
-  double distinct_by = 0.15;  ///< lead over the second best that gives a ray full weight
+  double ray_spacing = 1.0;     ///< between the rays of a view, voxels in the middle of the grid
+  double again_spacing = 1.25;  ///< likewise, in vote_again
+  double tap_spacing = 0.7;     ///< of the patches across the rays, voxels
+  double best_pairs = 0.5;      ///< share of the pairs of views that the score is the mean of
+  double least_score = 0.5;     ///< of the best sample on a ray; below, the ray says nothing
+  double distinct_by = 0.15;    ///< lead over the second best that gives a ray full weight
   double band = 1.5;          ///< voxels; at most kBand: a ray's say ends that far behind its depth
   double least_weight = 1.5;  ///< sum of the rays' weights below which a voxel stays
 };
@@ -29,5 +31,17 @@ struct VoteOptions {
 SparseVolume vote_free_space(gpu::Context& context, const SparseVolume& hull,
                              const projtex::ImageSet& images, std::span<const Camera> cameras,
                              double noise_sigma, const VoteOptions& options);
+
+struct Revision {
+  std::size_t added = 0, freed = 0;  ///< voxels
+};
+
+/// Votes once more on a finer grid than the one `volume` comes from, by rays that its surface does
+/// not explain: thin parts before the surface, which coarser voxels took for free space, come back,
+/// and bodies that only coarser voxels could not look past go. Rays that the surface explains vote
+/// too. `volume` is on the hull's grid.
+Revision vote_again(gpu::Context& context, SparseVolume& volume, const SparseVolume& hull,
+                    const projtex::ImageSet& images, std::span<const Camera> cameras,
+                    double noise_sigma, VoteOptions options);
 
 }  // namespace photohull::refine
