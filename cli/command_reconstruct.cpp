@@ -19,7 +19,7 @@ struct Arguments {
   std::optional<double> voxel_size;
   std::vector<std::string> tune;
   int threads = 0;
-  bool evidence = false, json = false;
+  bool evidence = false, fresh = false, json = false;
 };
 
 template <typename Enum>
@@ -54,6 +54,7 @@ pipeline::ReconstructOptions to_options(const Arguments& a) {
   o.device = a.device;
   o.threads = a.threads;
   o.evidence = a.evidence;
+  o.fresh = a.fresh;
   o.tune = a.tune;
   o.validate();
   return o;
@@ -121,6 +122,9 @@ void add_reconstruct(CLI::App& app) {
                 "NAME=VALUE: a parameter of the method changed, for experiments (repeatable)");
   c->add_flag("--evidence", a->evidence,
               "write evidence.ply too: the uniform mesh with what confidence is computed from");
+  c->add_flag("--fresh", a->fresh,
+              "start anew: else an interrupted refinement of the same job goes on after the last "
+              "level that it finished");
   c->add_flag("--json", a->json, "print report.json on standard output instead of a summary");
   c->footer(
       "Writes volume.vdb, mesh.ply, preview.png and report.json into the output folder.\n\n"

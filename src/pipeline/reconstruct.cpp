@@ -18,6 +18,7 @@
 #include "core/error.h"
 #include "io/image_file.h"
 #include "pipeline/checks.h"
+#include "pipeline/job_identity.h"
 #include "pipeline/result_files.h"
 #include "pipeline/stage_clock.h"
 #include "pipeline/tuning.h"
@@ -149,6 +150,7 @@ class Job {
     files.open("report.json").write(report.data(), report.size());
     progress_.check_cancelled();
     files.commit();
+    if (refining) remove_checkpoint();
     return report_;
   }
 
@@ -251,10 +253,14 @@ class Job {
       o.restore.least_inside = kDoubtfulRim;
     }
     tune(options_.tune, o);
+    const refine::CheckpointFile checkpoint{checkpoint_path(),
+                                            job_identity(options_, scene_, grid_, report_.device)};
+    if (options_.fresh) remove_checkpoint();
     refine::RefineReport counts;
     SparseVolume volume = refine::refine_surface(
         *context_, grid_, [&](const GridSpec& grid) { return hull_at(grid); }, silhouettes(),
-        *images_, cameras_, o, progress_, &counts);
+        *images_, cameras_, o, progress_, &counts, &checkpoint);
+    report_.resumed_levels = counts.resumed;
     for (const refine::FitReport& fit : counts.fits)
       report_.refine_fits.push_back(
           {fit.seconds, fit.held_before, fit.held_after, fit.mean_move, fit.kept});
@@ -275,6 +281,13 @@ class Job {
                   " % of it only (too little texture, or too few cameras that see the same): the "
                   "rest is the hull's guess"));
     return volume;
+  }
+
+  fs::path checkpoint_path() const { return options_.output / ".photohull-checkpoint"; }
+
+  void remove_checkpoint() const {
+    std::error_code ignored;  // what cannot be removed belongs to another job, or to this one anew
+    fs::remove(checkpoint_path(), ignored);
   }
 
   SparseVolume carve_hull() {

@@ -48,7 +48,8 @@ struct ReconstructOptions {
   std::optional<projtex::Sampler> sampler;
   std::optional<int> supersample;  ///< n x n samples a voxel, 1 to projtex::kMaxSupersample
   std::optional<carving::Statistic> consistency;
-  bool evidence = false;          ///< write evidence.ply too: what confidence is computed from
+  bool fresh = false;     ///< do not go on from where an interrupted run of the same job came to
+  bool evidence = false;  ///< write evidence.ply too: what confidence is computed from
   std::string device = "auto";    ///< auto, software or an index
   int threads = 0;                ///< 0: one a core
   std::vector<std::string> tune;  ///< NAME=VALUE, see pipeline/tuning.h
@@ -66,7 +67,8 @@ double total_weight(const ReconstructOptions& options);
 
 /// Runs the job and puts volume.vdb, mesh.ply, preview.png and report.json (and evidence.ply
 /// on demand) into the output folder, all together at the end. Throws Error, UsageError or
-/// Cancelled; earlier results then stay as they were and no half-written file is left.
+/// Cancelled; earlier results then stay as they were and no half-written file is left. Refinement
+/// keeps the levels that are done in `.photohull-checkpoint` there until the job has ended well.
 Report reconstruct(const ReconstructOptions& options, Progress& progress);
 
 }  // namespace photohull::pipeline

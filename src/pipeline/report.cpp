@@ -46,6 +46,7 @@ std::string Report::to_json() const {
     j["photo"]["supersample"] = sampling->supersample;
     j["photo"]["consistency"] = sampling->consistency;
   }
+  j["resumed_levels"] = resumed_levels;
   j["refine"] = ordered_json::array();
   for (const RefineLevelReport& level : refine_levels)
     j["refine"].push_back({{"voxel_size", level.voxel_size},

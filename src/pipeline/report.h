@@ -73,6 +73,7 @@ struct Report {
   std::int64_t bricks_stored = 0;
   int sweeps = 0;
   std::optional<SamplingReport> sampling;
+  int resumed_levels = 0;  ///< of refine_levels, done by an earlier run that was interrupted
   std::vector<RefineLevelReport> refine_levels;
   std::vector<RefineFitReport> refine_fits;
   std::int64_t vertices = 0, triangles = 0;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "refine/checkpoint.h"
 #include "refine/settle.h"
 #include "refine/surface.h"
 #include "refine/trust.h"
@@ -84,9 +85,17 @@ class Refiner {
     options_.match = fit_angles(cameras, middle, options.match);
   }
 
-  SparseVolume run(const std::vector<GridSpec>& grids, Progress& progress, RefineReport& report) {
+  SparseVolume run(const std::vector<GridSpec>& grids, const CheckpointFile* checkpoint,
+                   Progress& progress, RefineReport& report) {
     SparseVolume volume;
-    for (std::size_t level = 0; level < grids.size(); ++level) {
+    if (checkpoint)
+      if (auto done = read_checkpoint(*checkpoint, grids, progress)) {
+        volume = std::move(done->volume);
+        settled_ = std::move(done->settled);
+        report.levels = std::move(done->levels);
+      }
+    report.resumed = int(report.levels.size());
+    for (std::size_t level = report.levels.size(); level < grids.size(); ++level) {
       const auto start = std::chrono::steady_clock::now();
       LevelReport counts;
       counts.voxel_size = grids[level].voxel_size;
@@ -123,11 +132,21 @@ class Refiner {
       counts.seconds =
           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       report.levels.push_back(counts);
+      if (checkpoint && !last) keep(*checkpoint, {volume, settled_, report.levels}, progress);
     }
     return volume;
   }
 
  private:
+  /// A disk that is full must not end a job that may still write its results elsewhere.
+  static void keep(const CheckpointFile& file, const Checkpoint& checkpoint, Progress& progress) {
+    try {
+      write_checkpoint(file, checkpoint);
+    } catch (const Error& problem) {
+      progress.warn(concat("an interrupted run could not go on from here: ", problem.what()));
+    }
+  }
+
   SparseVolume first_guess(const SparseVolume& hull) {
     return bounded(options_.voting ? vote_free_space(context_, hull, images_, cameras_,
                                                      options_.noise_sigma, options_.vote)
@@ -284,8 +303,8 @@ class Refiner {
 SparseVolume refine_surface(gpu::Context& context, const GridSpec& finest, const HullAt& hull_at,
                             std::span<const carving::Silhouette> silhouettes,
                             const projtex::ImageSet& images, std::span<const Camera> cameras,
-                            const RefineOptions& options, Progress& progress,
-                            RefineReport* report) {
+                            const RefineOptions& options, Progress& progress, RefineReport* report,
+                            const CheckpointFile* checkpoint) {
   options.validate();
   PHOTOHULL_CHECK_OP(int(cameras.size()), ==, images.layers());
   PHOTOHULL_CHECK_OP(silhouettes.size(), ==, cameras.size());
@@ -302,7 +321,7 @@ SparseVolume refine_surface(gpu::Context& context, const GridSpec& finest, const
   RefineReport counts;
   SparseVolume volume =
       Refiner(context, hull_at, silhouettes, images, cameras, finest.bounds().center(), options)
-          .run(grids, progress, counts);
+          .run(grids, checkpoint, progress, counts);
   if (report) *report = std::move(counts);
   return volume;
 }

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "carving/hull.h"
@@ -79,8 +81,15 @@ struct FitReport {
 };
 
 struct RefineReport {
+  int resumed = 0;  ///< levels that an earlier run had done
   std::vector<LevelReport> levels;
   std::vector<FitReport> fits;
+};
+
+/// Where finished levels are kept until the job is done.
+struct CheckpointFile {
+  std::filesystem::path path;
+  std::string job;  ///< what makes two jobs the same: scene, photographs, options, program
 };
 
 /// The visual hull on a grid.
@@ -90,12 +99,14 @@ using HullAt = std::function<SparseVolume(const GridSpec&)>;
 /// (one per camera, parts may be empty) inwards. A level starts from the one before, takes back
 /// what only finer voxels of the hull show, and then matches the surface's tangent patches between
 /// the views that see them and moves its signed distance, a few times over. Surface that no camera
-/// sees is closed smoothly. Deterministic on one device. Throws Cancelled, UsageError for options,
-/// and what hull_at throws.
+/// sees is closed smoothly. Deterministic on one device. With a `checkpoint`, levels that an
+/// interrupted run of the same job finished are not done again; the caller removes the file. Throws
+/// Cancelled, UsageError for options, and what hull_at throws.
 SparseVolume refine_surface(gpu::Context& context, const GridSpec& finest, const HullAt& hull_at,
                             std::span<const carving::Silhouette> silhouettes,
                             const projtex::ImageSet& images, std::span<const Camera> cameras,
                             const RefineOptions& options, Progress& progress,
-                            RefineReport* report = nullptr);
+                            RefineReport* report = nullptr,
+                            const CheckpointFile* checkpoint = nullptr);
 
 }  // namespace photohull::refine

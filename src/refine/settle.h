@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/camera.h"
@@ -44,10 +45,17 @@ class SettledBricks {
                 std::span<const Camera> cameras, std::span<const Settled> before,
                 const SettleOptions& options);
 
+  /// As grid() and kinds() gave it.
+  SettledBricks(const GridSpec& grid, std::vector<std::uint8_t> kinds)
+      : grid_(grid), kinds_(std::move(kinds)) {}
+
   /// Of the brick at each point (voxels of `grid`); kSplit where the level had no surface.
   std::vector<Settled> at(const GridSpec& grid, std::span<const glm::vec3> positions) const;
 
   std::int64_t count(Settled kind) const;
+
+  const GridSpec& grid() const { return grid_; }
+  std::span<const std::uint8_t> kinds() const { return kinds_; }
 
  private:
   GridSpec grid_;

@@ -27,7 +27,9 @@ class Output : public SphereScene {
   void expect_earlier_results() const {
     for (const char* name : {"mesh.ply", "preview.png", "report.json", "volume.vdb"})
       EXPECT_EQ(read_bytes(fs::path(out()) / name), "earlier") << name;
-    EXPECT_EQ(listing(out()).size(), 4u);
+    std::vector<std::string> files = listing(out());
+    std::erase(files, ".photohull-checkpoint");  // for a rerun to go on from
+    EXPECT_EQ(files.size(), 4u);
   }
   /// A job of several seconds.
   Arguments long_job() const { return reconstruct({"--resolution", "160"}); }
@@ -74,6 +76,18 @@ TEST_F(Output, SignalsStopTheJobAndLeaveEarlierResults) {
     EXPECT_THAT(run.err, Not(HasSubstr(" mesh\n")));
     expect_earlier_results();
   }
+}
+
+TEST_F(Output, CheckpointGoesWhenTheJobHasEnded) {
+  succeed(reconstruct({"--method", "refine", "--resolution", "48"}));
+  EXPECT_FALSE(fs::exists(fs::path(out()) / ".photohull-checkpoint"));
+  write_bytes(fs::path(out()) / ".photohull-checkpoint", "damaged");
+  const Finished run = succeed(reconstruct({"--method", "refine", "--resolution", "48"}));
+  EXPECT_THAT(run.err, HasSubstr("starting afresh"));
+  write_bytes(fs::path(out()) / ".photohull-checkpoint", "damaged");
+  const Finished fresh =
+      succeed(reconstruct({"--method", "refine", "--resolution", "48", "--fresh"}));
+  EXPECT_THAT(fresh.err, Not(HasSubstr("starting afresh")));
 }
 
 TEST_F(Output, PlainLinesWithoutATerminal) {

@@ -1,0 +1,65 @@
+#include "pipeline/job_identity.h"
+
+#include <xxhash.h>
+
+#include <chrono>
+#include <cstdio>
+#include <iomanip>
+#include <sstream>
+
+namespace photohull::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Size and time of a file's last change; nothing of a file that is not there.
+void add_file(const fs::path& path, std::ostream& out) {
+  std::error_code error;
+  out << std::quoted(path.string());
+  if (const auto size = fs::file_size(path, error); !error) out << ' ' << size;
+  if (const auto time = fs::last_write_time(path, error); !error)
+    out << ' ' << time.time_since_epoch().count();
+  out << '\n';
+}
+
+void add_camera(const SourceView& view, std::ostream& out) {
+  const Intrinsics& k = view.camera.intrinsics;
+  out << k.width << ' ' << k.height << ' ' << k.fx << ' ' << k.fy << ' ' << k.skew << ' ' << k.cx
+      << ' ' << k.cy;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) out << ' ' << view.camera.cam_from_world.rotation[i][j];
+  for (int i = 0; i < 3; ++i) out << ' ' << view.camera.cam_from_world.translation[i];
+  for (const double c : view.distortion.coefficients) out << ' ' << c;
+  out << '\n';
+}
+
+}  // namespace
+
+std::string job_identity(const ReconstructOptions& options, const Scene& scene,
+                         const GridSpec& grid, const std::string& device) {
+  std::ostringstream text;
+  text << std::setprecision(17) << PHOTOHULL_VERSION << '\n'
+       << device << '\n'
+       << to_string(options.quality) << ' ' << to_string(options.effective_method()) << ' '
+       << int(options.load.masks) << '\n';
+  for (const std::string& tuned : options.tune) text << std::quoted(tuned) << '\n';
+  text << grid.voxel_size << ' ' << grid.origin.x << ' ' << grid.origin.y << ' ' << grid.origin.z
+       << ' ' << grid.bricks.x << ' ' << grid.bricks.y << ' ' << grid.bricks.z << '\n';
+  for (const glm::dvec3& corner : {scene.box->min, scene.box->max})
+    text << corner.x << ' ' << corner.y << ' ' << corner.z << '\n';
+  add_file(scene.path, text);
+  for (const SourceView& view : scene.views) {
+    add_file(view.image, text);
+    add_file(view.mask, text);
+    add_camera(view, text);
+  }
+  const std::string all = text.str();
+  const XXH128_hash_t hash = XXH3_128bits(all.data(), all.size());
+  char digits[33];
+  std::snprintf(digits, sizeof digits, "%016llx%016llx",
+                static_cast<unsigned long long>(hash.high64),
+                static_cast<unsigned long long>(hash.low64));
+  return digits;
+}
+
+}  // namespace photohull::pipeline
