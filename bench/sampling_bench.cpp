@@ -60,6 +60,7 @@ void raw_fetches(benchmark::State& state) {
   program.set("taps", kTaps);
   program.set("layers", kViews);
   program.set("lod", 0.4f);
+  program.set("lod_step", 0.0f);
   program.set("step_and_size", glm::vec4(1, 0, 640, 480));
   for (auto _ : state) {
     s.images->texture().bind(0);

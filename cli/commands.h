@@ -10,6 +10,7 @@ void add_evaluate(CLI::App& app);
 void add_info(CLI::App& app);
 void add_synthesize(CLI::App& app);
 void add_chart(CLI::App& app);
+void add_bench(CLI::App& app);
 void add_devices(CLI::App& app);
 
 }  // namespace photohull::cli

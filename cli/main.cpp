@@ -42,12 +42,14 @@ int run(int argc, char** argv) {
   photohull::cli::add_synthesize(app);
   photohull::cli::add_evaluate(app);
   photohull::cli::add_chart(app);
+  photohull::cli::add_bench(app);
   photohull::cli::add_devices(app);
   try {
     app.parse(argc, argv);
     if (app.get_subcommands().empty())
       throw photohull::UsageError(
-          "a command is missing: reconstruct, evaluate, synthesize, chart, info or devices; see "
+          "a command is missing: reconstruct, evaluate, synthesize, chart, bench, info or devices; "
+          "see "
           "--help");
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() != 0) throw photohull::UsageError(one_line(e.what()));

@@ -6,6 +6,7 @@ layout(std430, binding = 0) writeonly buffer Sums { vec4 sums[]; };
 uniform int taps;
 uniform int layers;
 uniform float lod;
+uniform float lod_step;  // from tap to tap; where it is 0, a device may work out the level once for all
 uniform vec4 step_and_size;  // du, dv in pixels a tap; image size in pixels
 
 void main() {
@@ -15,6 +16,7 @@ void main() {
   vec4 sum = vec4(0.0);
   for (int layer = 0; layer < layers; ++layer)
     for (int tap = 0; tap < taps; ++tap)
-      sum += textureLod(images, vec3((at + float(tap) * step_and_size.xy) / size, float(layer)), lod);
+      sum += textureLod(images, vec3((at + float(tap) * step_and_size.xy) / size, float(layer)),
+                        lod + lod_step * float(tap));
   sums[id] = sum;
 }

@@ -14,25 +14,31 @@ struct FootprintAxes {
   vec2 direction;
 };
 
+const float kLeastDepth = 1e-3;  // voxels
+const float kFarthest = 1e6;     // pixels, of axes and positions that loops run over
+
 // From homogeneous coordinates (s, t, q) of the centre and their steps along the edges. q, the
 // distance to the image plane, must be positive. Quotient rule on s / q and t / q; what lies nearly in
 // the camera's own plane is held finite.
 Footprint footprint_of(GpuView view, uint v, vec3 at, vec3 by_u, vec3 by_v) {
   Footprint f;
-  f.pixel = clamp(at.xy / at.z, vec2(-1e6), vec2(1e6));
-  f.du = clamp((by_u.xy - f.pixel * by_u.z) / at.z, vec2(-1e6), vec2(1e6));
-  f.dv = clamp((by_v.xy - f.pixel * by_v.z) / at.z, vec2(-1e6), vec2(1e6));
+  float nearness = 1.0 / max(at.z, kLeastDepth);
+  f.pixel = at.xy * nearness;
+  f.du = (by_u.xy - f.pixel * by_u.z) * nearness;
+  f.dv = (by_v.xy - f.pixel * by_v.z) * nearness;
   f.scale = vec3(view.size.zw, float(v));
   return f;
 }
 
 FootprintAxes axes_of(Footprint f) {
-  float xx = f.du.x * f.du.x + f.dv.x * f.dv.x, yy = f.du.y * f.du.y + f.dv.y * f.dv.y;
-  float xy = f.du.x * f.du.y + f.dv.x * f.dv.y;
+  vec2 du = clamp(f.du, vec2(-kFarthest), vec2(kFarthest));
+  vec2 dv = clamp(f.dv, vec2(-kFarthest), vec2(kFarthest));
+  float xx = du.x * du.x + dv.x * dv.x, yy = du.y * du.y + dv.y * dv.y;
+  float xy = du.x * du.y + dv.x * dv.y;
   float half_gap = 0.5 * (xx - yy), root = sqrt(half_gap * half_gap + xy * xy);
   FootprintAxes axes;
   axes.longer = sqrt(max(0.5 * (xx + yy) + root, 0.0));
-  axes.shorter = axes.longer > 0.0 ? abs(f.du.x * f.dv.y - f.du.y * f.dv.x) / axes.longer : 0.0;
+  axes.shorter = axes.longer > 0.0 ? abs(du.x * dv.y - du.y * dv.x) / axes.longer : 0.0;
   vec2 direction = half_gap >= 0.0 ? vec2(half_gap + root, xy) : vec2(xy, root - half_gap);
   float size = max(abs(direction.x), abs(direction.y));
   axes.direction = size > 0.0 ? normalize(direction / size) : vec2(1.0, 0.0);

@@ -33,7 +33,7 @@ vec4 sample_image(Footprint f) {
   float xy = (l - s) * e.x * e.y, slope = xy / yy;
   float rest = (l * s + kLeastVariance * (l + s + kLeastVariance)) / yy;  // xx - xy^2 / yy
   float deviation = sqrt(yy), spread = sqrt(rest + slope * slope * yy / (1.0 + 12.0 * yy));
-  vec2 at = (f.pixel + 0.5) / size - 0.5;
+  vec2 at = (clamp(f.pixel, vec2(-kFarthest), vec2(kFarthest)) + 0.5) / size - 0.5;
   vec4 sum = vec4(0.0);
   float weights = 0.0;
   float last_row = at.y + kReach * deviation + 0.5;

@@ -47,5 +47,5 @@ vec4 sample_square(GpuView view, uint v, vec3 at, vec3 by_u, vec3 by_v) {
 
 // Square roots of the linear colour without its coverage, which makes the noise even, and the coverage.
 vec4 resolve(vec4 covered) {
-  return covered.a > 0.0 ? vec4(sqrt(max(covered.rgb / covered.a, 0.0)), covered.a) : vec4(0.0);
+  return covered.a > 0.0 ? vec4(sqrt(max(covered.rgb * (1.0 / covered.a), 0.0)), covered.a) : vec4(0.0);
 }

@@ -20,7 +20,7 @@ vec4 sample_image(Footprint f) {
     ivec2 step = ivec2(k & 1, k >> 1), level = min(fine + step, kLastLevel);
     vec2 rest = lambda - vec2(fine);
     float share = (step.x == 1 ? rest.x : 1.0 - rest.x) * (step.y == 1 ? rest.y : 1.0 - rest.y);
-    vec2 at = (f.pixel + 0.5) / vec2(ivec2(1) << level) - 0.5, low = floor(at), between = at - low;
+    vec2 at = (clamp(f.pixel, vec2(-kFarthest), vec2(kFarthest)) + 0.5) / vec2(ivec2(1) << level) - 0.5, low = floor(at), between = at - low;
     ivec2 i = ivec2(low);
     vec4 above = mix(rip_texel(f, i, level), rip_texel(f, i + ivec2(1, 0), level), between.x);
     vec4 below = mix(rip_texel(f, i + ivec2(0, 1), level), rip_texel(f, i + 1, level), between.x);

@@ -15,7 +15,8 @@ uvec4 sum_at(Footprint f, int x, int y) {
 // pixel that it lies in and without what the low end leaves out of its own.
 vec4 sample_image(Footprint f) {
   vec2 half_side = 0.5 * clamp(upright_sides(f), vec2(kLeastWidth), vec2(kWidestBox));
-  vec2 low = f.pixel + 0.5 - half_side, high = f.pixel + 0.5 + half_side;  // of pixels' corners
+  vec2 middle = clamp(f.pixel, vec2(-kFarthest), vec2(kFarthest)) + 0.5;
+  vec2 low = middle - half_side, high = middle + half_side;  // of pixels' corners
   vec2 a = floor(low), b = floor(high);
   ivec4 x = ivec4(a.x, a.x + 1.0, b.x, b.x + 1.0), y = ivec4(a.y, a.y + 1.0, b.y, b.y + 1.0);
   const ivec2 span[3] = ivec2[3](ivec2(0, 2), ivec2(2, 3), ivec2(0, 1));

@@ -117,6 +117,15 @@ TEST_F(Usage, OptionsOfTheSweeps) {
   refuse({"--method", "hull", "--consistency", "census"}, {"--consistency", "--method hull"});
 }
 
+TEST_F(Usage, BenchNamesWhatItMeasures) {
+  fail(2, {"bench"}, {"--help"});
+  fail(2, {"bench", "everything"}, {"everything"});
+  fail(2, {"bench", "sampling", "--squares", "3"}, {"--squares 3", "16 to 100000"});
+  fail(2, {"bench", "sampling", "--device", "99"}, {"--device 99"});
+  EXPECT_THAT(succeed({"bench", "sampling", "--help"}).out,
+              HasSubstr("Examples:\n  photohull bench"));
+}
+
 TEST_F(Usage, Boxes) {
   for (const char* bad : {"0 0 0 1 1", "0 0 0 1 1 x", "nan 0 0 1 1 1", "", "0 0 0 1 1 1e999"})
     refuse({"--box", bad}, {"--box", "six numbers"});
