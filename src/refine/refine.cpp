@@ -187,7 +187,7 @@ class Refiner {
     const OffsetRange range{-options_.step * (offsets / 2), options_.step, offsets};
     std::vector<shaders::MatchChoice> choices =
         choose_views(context_, volume.grid, mesh, images_, cameras_, options_.match);
-    const std::vector<bool> seen = seen_by_any(choices);
+    std::vector<bool> seen = seen_by_any(choices);
     const std::vector<Settled> settled = settled_.at(volume.grid, positions);
     for (std::size_t i = 0; i < choices.size(); ++i)
       if (is_settled(settled[i])) choices[i].second.w = 0;
@@ -211,6 +211,9 @@ class Refiner {
       pull_to_hull(hull, positions, matches.texture, options_.rims, peaks);
     std::vector<float> moves =
         regularize(graph, peaks, positions, mesh.normals, trust, options_.regularize);
+    if (!any_silhouette(silhouettes_))  // plain background is no surface: nothing says where it is
+      for (std::size_t i = 0; i < seen.size(); ++i)
+        seen[i] = seen[i] && matches.texture[i] >= options_.settle.least_texture;
     if (options_.closing) {
       const auto closing = close_unseen(volume.grid, mesh, graph, seen, options_.close);
       for (std::size_t i = 0; i < moves.size(); ++i)
