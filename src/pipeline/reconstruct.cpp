@@ -32,6 +32,7 @@
 #include "volume/components.h"
 #include "volume/extract_mesh.h"
 #include "volume/remove_unseen.h"
+#include "volume/sharpen_edges.h"
 #include "volume/simplify_mesh.h"
 #include "volume/write_mesh.h"
 #include "volume/write_vdb.h"
@@ -51,6 +52,7 @@ constexpr double kDoubtfulRim = 2;
 constexpr double kLeastEvidence = 0.1;    // share of the surface below which a result is doubtful
 constexpr double kDebrisFraction = 5e-4;  // of the largest part's voxels
 constexpr int kCropMargin = 24;           // pixels around the box's projection: patches, mip levels
+constexpr double kDetail = 1.5;           // pixels: what refinement resolves, by its patches
 constexpr double kBoxSlack = 0.5;         // voxels that the surface may stand out of the box
 
 /// Shares of a job's time: tenths of a wall second of templeRing's stages on two cores (`photohull
@@ -128,7 +130,7 @@ class Job {
     else if (options_.effective_method() != Method::kHull)
       volume = clock_.run("photo", Weights::kPhoto, [&] { return carve_photo(volume); });
     clock_.run("clean", Weights::kClean, [&] { remove_small_components(volume, kDebrisFraction); });
-    TriMesh mesh = clock_.run("mesh", Weights::kMesh, [&] { return extract_mesh(volume); });
+    TriMesh mesh = clock_.run("mesh", Weights::kMesh, [&] { return extract(volume); });
     VolumeAttributes attributes = clock_.run("colour", Weights::kColour, [&] {
       colour(mesh, files);
       return attributes_from_mesh(volume, mesh);
@@ -252,7 +254,7 @@ class Job {
           std::max(o.restore.least_views, int(cameras_.size()) / kDoubtingViews);
       o.restore.least_inside = kDoubtfulRim;
     }
-    tune(options_.tune, o);
+    tune(options_.tune, o, sharpen_);
     const refine::CheckpointFile checkpoint{checkpoint_path(),
                                             job_identity(options_, scene_, grid_, report_.device)};
     if (options_.fresh) remove_checkpoint();
@@ -335,6 +337,16 @@ class Job {
       return carving::carve_photo(*context_, hull, *images_, cameras_, photo, progress_, &counts);
     const projtex::SampleImages images(views_, sampler);
     return carving::carve_photo(*context_, hull, images, cameras_, photo, progress_, &counts);
+  }
+
+  TriMesh extract(const SparseVolume& volume) {
+    TriMesh mesh = extract_mesh(volume);
+    if (options_.effective_method() == Method::kRefine) {
+      const double detail = kDetail * carving::pixel_footprint(*scene_.box, cameras_);
+      report_.sharpened_vertices = std::int64_t(
+          sharpen_edges(sharpen_, grid_.voxel_size, std::max(detail, grid_.voxel_size), mesh));
+    }
+    return mesh;
   }
 
   void colour(TriMesh& mesh, ResultFiles& files) {
@@ -480,6 +492,7 @@ class Job {
   std::unique_ptr<gpu::Context> context_;
   std::unique_ptr<projtex::ImageSet> images_;
   std::vector<SilhouetteDistance> silhouette_distances_;
+  SharpenOptions sharpen_;
   std::int64_t hull_samples_ = 0, photo_samples_ = 0, refine_samples_ = 0;
 };
 

@@ -30,8 +30,10 @@ void check_sweep_options(const ReconstructOptions& o) {
 void check_tuning(const std::vector<std::string>& assignments, Method method) {
   if (method == Method::kRefine) {
     refine::RefineOptions o;
-    tune(assignments, o);
+    SharpenOptions sharpen;
+    tune(assignments, o, sharpen);
     o.validate();
+    sharpen.validate();
   } else if (method != Method::kHull) {
     carving::PhotoOptions o;
     tune(assignments, o);

@@ -74,6 +74,7 @@ std::string Report::to_json() const {
   j["mesh"] = {{"vertices", vertices},
                {"triangles", triangles},
                {"uniform_triangles", uniform_triangles},
+               {"sharpened_vertices", sharpened_vertices},
                {"unseen_share", unseen_share}};
   if (mesh_error)
     j["mesh"]["error_voxels"] = {{"limit", mesh_error->limit},

@@ -77,7 +77,8 @@ struct Report {
   std::vector<RefineLevelReport> refine_levels;
   std::vector<RefineFitReport> refine_fits;
   std::int64_t vertices = 0, triangles = 0;
-  std::int64_t uniform_triangles = 0;  ///< before simplification
+  std::int64_t uniform_triangles = 0;   ///< before simplification
+  std::int64_t sharpened_vertices = 0;  ///< moved onto sharp edges, or onto what meets there
   std::optional<MeshErrorReport> mesh_error;
   double unseen_share = 0;  ///< of the mesh's vertices
   std::int64_t peak_memory_bytes = 0;

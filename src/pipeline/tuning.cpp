@@ -53,7 +53,8 @@ void tune(const std::vector<std::string>& assignments, carving::PhotoOptions& o)
                        {"max_rounds", &o.max_rounds}});
 }
 
-void tune(const std::vector<std::string>& assignments, refine::RefineOptions& o) {
+void tune(const std::vector<std::string>& assignments, refine::RefineOptions& o,
+          SharpenOptions& sharpen) {
   assign(assignments, {{"levels", &o.levels},
                        {"coarse_iterations", &o.coarse_iterations},
                        {"middle_iterations", &o.middle_iterations},
@@ -122,7 +123,15 @@ void tune(const std::vector<std::string>& assignments, refine::RefineOptions& o)
                        {"regularize.fairing", &o.regularize.fairing},
                        {"regularize.robust", &o.regularize.robust},
                        {"regularize.reweightings", &o.regularize.reweightings},
-                       {"regularize.iterations", &o.regularize.iterations}});
+                       {"regularize.iterations", &o.regularize.iterations},
+                       {"sharpen", &sharpen.on},
+                       {"sharpen.bend", &sharpen.bend},
+                       {"sharpen.reach", &sharpen.reach},
+                       {"sharpen.most_turn", &sharpen.most_turn},
+                       {"sharpen.distinct", &sharpen.distinct},
+                       {"sharpen.rounding", &sharpen.rounding},
+                       {"sharpen.share", &sharpen.share},
+                       {"sharpen.shortest", &sharpen.shortest}});
 }
 
 }  // namespace photohull::pipeline

@@ -6,6 +6,7 @@
 
 #include "carving/photo.h"
 #include "refine/refine.h"
+#include "volume/sharpen_edges.h"
 
 namespace photohull::pipeline {
 
@@ -13,6 +14,7 @@ namespace photohull::pipeline {
 /// number, whole where the field is (0 or 1 for what is on or off). Throws UsageError naming what
 /// is wrong, with the known names.
 void tune(const std::vector<std::string>& assignments, carving::PhotoOptions& options);
-void tune(const std::vector<std::string>& assignments, refine::RefineOptions& options);
+void tune(const std::vector<std::string>& assignments, refine::RefineOptions& options,
+          SharpenOptions& sharpen);
 
 }  // namespace photohull::pipeline

@@ -9,15 +9,18 @@ namespace {
 
 TEST(Tune, SetsFieldsOfEveryKind) {
   refine::RefineOptions r;
+  SharpenOptions s;
   tune({"levels=2", "step=0.25", "voting=0", "match.best_pairs=1", "vote.band=2e0",
-        "peak.least_score=-0.5"},
-       r);
+        "peak.least_score=-0.5", "sharpen=0", "sharpen.reach=7"},
+       r, s);
   EXPECT_EQ(r.levels, 2);
   EXPECT_EQ(r.step, 0.25);
   EXPECT_FALSE(r.voting);
   EXPECT_EQ(r.match.best_pairs, 1);
   EXPECT_EQ(r.vote.band, 2);
   EXPECT_EQ(r.peak.least_score, -0.5);
+  EXPECT_FALSE(s.on);
+  EXPECT_EQ(s.reach, 7);
   carving::PhotoOptions p;
   tune({"max_rounds=1", "keep_score=0.9", "front_face=1", "max_rounds=3"}, p);
   EXPECT_EQ(p.max_rounds, 3) << "the last one counts";
@@ -28,8 +31,9 @@ TEST(Tune, SetsFieldsOfEveryKind) {
 /// The message of the UsageError that an assignment meets.
 std::string refusal(const std::string& text) {
   refine::RefineOptions options;
+  SharpenOptions sharpen;
   try {
-    tune({text}, options);
+    tune({text}, options, sharpen);
   } catch (const UsageError& error) {
     return error.what();
   }
