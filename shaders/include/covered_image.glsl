@@ -16,11 +16,9 @@ vec4 image_texel(Footprint f, ivec2 at, int level) {
   return inside ? value : vec4(0.0);
 }
 
-// Integral over an upright box of `width` pixels at a level, as far as that is at most one of its
-// texels: bilinear interpolation whose transition between texels is as wide as the box.
-vec4 box_at_level(Footprint f, vec2 pixel, vec2 width, int level) {
-  float size = float(1 << level);
-  vec2 at = (pixel + 0.5) / size - 0.5, low = floor(at);
-  vec2 share = clamp((at - low - 0.5) / clamp(width / size, kLeastWidth, 1.0) + 0.5, 0.0, 1.0);
-  return textureLod(images, vec3((low + share + 0.5) * size * f.scale.xy, f.scale.z), float(level));
+// Where bilinear interpolation gives the integral over an upright box whose sides are one over `steepness`
+// pixels, as far as that is at most one: the transition between pixels becomes as wide as the box.
+vec2 box_position(vec2 pixel, vec2 steepness) {
+  vec2 low = floor(pixel);
+  return low + clamp((pixel - low - 0.5) * clamp(steepness, 1.0, 1.0 / kLeastWidth) + 0.5, 0.0, 1.0);
 }

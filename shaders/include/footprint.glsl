@@ -38,10 +38,10 @@ FootprintAxes axes_of(Footprint f) {
   float half_gap = 0.5 * (xx - yy), root = sqrt(half_gap * half_gap + xy * xy);
   FootprintAxes axes;
   axes.longer = sqrt(max(0.5 * (xx + yy) + root, 0.0));
-  axes.shorter = axes.longer > 0.0 ? abs(du.x * dv.y - du.y * dv.x) / axes.longer : 0.0;
+  axes.shorter = abs(du.x * dv.y - du.y * dv.x) / max(axes.longer, 1e-18);
   vec2 direction = half_gap >= 0.0 ? vec2(half_gap + root, xy) : vec2(xy, root - half_gap);
-  float size = max(abs(direction.x), abs(direction.y));
-  axes.direction = size > 0.0 ? normalize(direction / size) : vec2(1.0, 0.0);
+  float squared = dot(direction, direction);
+  axes.direction = squared > 1e-30 ? direction * inversesqrt(squared) : vec2(1.0, 0.0);
   return axes;
 }
 

@@ -1,23 +1,23 @@
 // Unconstrained anisotropic filter: the mip level from the footprint's short axis, up to 16 taps in a
-// row along the long one, each trilinear and, where it is smaller than a texel, no wider than itself.
+// row along the long one, each trilinear and, where it is smaller than a pixel, no wider than itself.
 // Reference: projtex::reference::sample_footprint.
 const float kMostTaps = 16.0;
 const float kLeastTap = 0.5;  // pixels between taps
+const float kRound = 0.25;    // footprints longer by this share need no further tap
 
 vec4 sample_image(Footprint f) {
   FootprintAxes axes = axes_of(f);
-  float taps = clamp(ceil(axes.longer / max(axes.shorter, kLeastTap)), 1.0, kMostTaps);
-  float spacing = axes.longer / taps;
+  // Not clamp(): compilers that see the greatest count unroll the loop and then always run all of it.
+  float taps = max(min(ceil(axes.longer / max(axes.shorter, kLeastTap) - kRound), kMostTaps), 1.0);
+  float share = 1.0 / taps, spacing = axes.longer * share;
   vec2 along = axes.direction * spacing;
   vec2 across = vec2(-axes.direction.y, axes.direction.x) * axes.shorter;
-  vec2 width = sqrt(along * along + across * across);
-  float lambda = clamp(log2(max(max(axes.shorter, spacing), 1.0)), 0.0, float(kLastLevel));
-  int fine = min(int(lambda), kLastLevel - 1);
-  float coarse_share = lambda - float(fine);
+  vec2 steepness = inversesqrt(max(along * along + across * across, 1e-8));
+  float lambda = log2(max(max(axes.shorter, spacing), 1.0));
   vec4 sum = vec4(0.0);
   for (float k = 0.0; k < taps; k += 1.0) {
     vec2 pixel = f.pixel + along * (k + 0.5 - 0.5 * taps);
-    sum += mix(box_at_level(f, pixel, width, fine), box_at_level(f, pixel, width, fine + 1), coarse_share);
+    sum += textureLod(images, image_coordinate(f, box_position(pixel, steepness)), lambda);
   }
-  return sum / taps;
+  return sum * share;
 }

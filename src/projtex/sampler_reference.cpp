@@ -18,6 +18,7 @@ using glm::dvec4;
 constexpr double kMostAnisotropy = 16;
 constexpr double kLeastWidth = 1.0 / 16;       // pixels, of the transition between two of them
 constexpr double kLeastTap = 0.5;              // pixels, along the long axis
+constexpr double kRound = 0.25;                // of a tap, that footprints may be longer
 constexpr double kGaussianVariance = 1.0 / 6;  // of the square's edge squared
 constexpr double kLeastVariance = 4e-4;        // pixels squared
 constexpr double kTexelsAcross = 2;            // of a level, along the short axis, at least
@@ -28,15 +29,9 @@ dvec4 texel(const LinearImage& image, double x, double y) {
   return image.pixels[std::size_t(y) * image.width + std::size_t(x)];
 }
 
-/// Between four texels around a position in level coordinates; transitions `width` texels wide
-/// around their borders: the integral over an upright box of that size. 1 is plain bilinear
-/// interpolation.
-dvec4 between(const LinearImage& image, const dvec2& at, const dvec2& width = dvec2(1)) {
-  const dvec2 low = glm::floor(at);
-  dvec2 share;
-  for (int i = 0; i < 2; ++i)
-    share[i] =
-        std::clamp((at[i] - low[i] - 0.5) / std::clamp(width[i], kLeastWidth, 1.0) + 0.5, 0.0, 1.0);
+/// Bilinear interpolation at a position in level coordinates.
+dvec4 between(const LinearImage& image, const dvec2& at) {
+  const dvec2 low = glm::floor(at), share = at - low;
   dvec4 sum(0);
   for (int dy = 0; dy < 2; ++dy)
     for (int dx = 0; dx < 2; ++dx)
@@ -104,19 +99,21 @@ dvec4 summed_area(const LinearImage& image, const Footprint& f) {
 
 dvec4 anisotropic(std::span<const LinearImage> chain, const Footprint& f) {
   const FootprintAxes axes = axes_of(f);
-  const double taps =
-      std::clamp(std::ceil(axes.longer / std::max(axes.shorter, kLeastTap)), 1.0, kMostAnisotropy);
+  const double ratio = axes.longer / std::max(axes.shorter, kLeastTap);
+  const double taps = std::clamp(std::ceil(ratio - kRound), 1.0, kMostAnisotropy);
   const double spacing = axes.longer / taps;
   const dvec2 along = axes.direction, across(-along.y, along.x);
-  dvec2 width;
-  for (int i = 0; i < 2; ++i) width[i] = std::hypot(spacing * along[i], axes.shorter * across[i]);
-  const double lambda = std::log2(std::max({axes.shorter, spacing, 1.0}));
+  const double widest = std::max(axes.shorter, spacing);
   dvec4 sum(0);
   for (double k = 0; k < taps; ++k) {
-    const dvec2 pixel = f.pixel + along * (spacing * (k + 0.5 - 0.5 * taps));
-    sum += between_levels(chain.size(), lambda, [&](int level) {
-      return between(chain[level], on_level(pixel, level), width / double(1 << level));
-    });
+    dvec2 at = f.pixel + along * (spacing * (k + 0.5 - 0.5 * taps));
+    // Between two pixels, the place that stands for a box around `at` of the tap's own size.
+    for (int i = 0; i < 2; ++i) {
+      const double width = std::hypot(spacing * along[i], axes.shorter * across[i]);
+      const double low = std::floor(at[i]), transition = std::clamp(width, kLeastWidth, 1.0);
+      at[i] = low + std::clamp((at[i] - low - 0.5) / transition + 0.5, 0.0, 1.0);
+    }
+    sum += trilinear(chain, at, widest);
   }
   return sum / taps;
 }

@@ -99,7 +99,7 @@ class SamplersTest : public ::testing::TestWithParam<Sampler> {
                           1e-3);
     const reference::FootprintAxes axes = reference::axes_of(f);
     if (sampler == Sampler::kAnisotropic)
-      return near_integer(axes.longer / std::max(axes.shorter, 0.5), 1e-3);
+      return near_integer(axes.longer / std::max(axes.shorter, 0.5) - 0.25, 1e-3);
     if (sampler == Sampler::kEwa)
       return near_integer(std::log2(std::max(axes.shorter, axes.longer / 16) / 2), 1e-3);
     return false;
