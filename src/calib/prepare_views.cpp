@@ -47,13 +47,14 @@ bool is_object_in_part(const Mask& mask) {
          !std::all_of(c.begin(), c.end(), is_foreground);
 }
 
-/// Masks of the views that have none, from the background model; rather none than bad ones.
-/// Returns the model's separation.
-double add_background_masks(PreparedViews& prepared, std::vector<MaskOrigin>& origins) {
+/// Masks of the views that have none and may have one, from the background model; rather none than
+/// bad ones. Returns the model's separation.
+double add_background_masks(const Scene& scene, PreparedViews& prepared,
+                            std::vector<MaskOrigin>& origins) {
   std::vector<std::size_t> missing;
   std::vector<const ColourImage*> images;
   for (std::size_t i = 0; i < origins.size(); ++i)
-    if (origins[i] == MaskOrigin::kNone) {
+    if (origins[i] == MaskOrigin::kNone && scene.views[i].silhouette) {
       missing.push_back(i);
       images.push_back(&prepared.views[i].image);
     }
@@ -118,7 +119,7 @@ PreparedViews prepare_views(const Scene& scene, const ViewLoader& loader,
   });
 
   check_masks(result);
-  const double separation = use_masks ? add_background_masks(result, origins) : 0;
+  const double separation = use_masks ? add_background_masks(scene, result, origins) : 0;
   describe_masks(origins, separation, result);
 
   for_each_view(count, kDecodeShare, 1.0, progress, [&](std::size_t i) {

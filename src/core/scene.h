@@ -23,6 +23,7 @@ struct SourceView {
   std::filesystem::path mask;   ///< empty where the scene names none
   Camera camera;                ///< pixel centres already converted to (0, 0)
   Distortion distortion;
+  bool silhouette = true;  ///< false: the scene says that no usable one can be cut from the picture
 };
 
 /// Immutable result of io::load_scene.

@@ -160,8 +160,12 @@ std::vector<RawView> fill_views(const LoadSceneOptions& options, const RawScene&
     const RawView& view = raw.views[i];
     if (images[i].empty()) report_missing_image(raw, view);
     const double center = options.pixel_center.value_or(raw.pixel_center);
-    scene.views.push_back(
-        {names[i], images[i], {}, complete_camera(view, images[i], center), view.distortion});
+    scene.views.push_back({names[i],
+                           images[i],
+                           {},
+                           complete_camera(view, images[i], center),
+                           view.distortion,
+                           view.silhouette});
     selected.push_back(view);
   }
   if (scene.views.size() < kFewestViews)

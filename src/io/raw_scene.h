@@ -22,6 +22,7 @@ struct RawView {
   double angle_x = 0;  ///< horizontal field of view, radians; 0: not stated
   double angle_y = 0;  ///< vertical field of view, radians; 0: not stated
   Distortion distortion;
+  bool silhouette = true;  ///< as in SourceView
 };
 
 struct RawScene {

@@ -67,18 +67,19 @@ std::string joined(const std::vector<std::string>& names) {
 }
 
 /// dinoRing lists the images whose silhouettes can be trusted in a file of its own.
-void warn_of_bad_silhouettes(const fs::path& folder, RawScene& scene) {
+void mark_bad_silhouettes(const fs::path& folder, RawScene& scene) {
   std::error_code failure;
   for (const auto& entry : fs::directory_iterator(folder, failure)) {
     if (!entry.path().filename().string().ends_with("_good_silhouette_images.txt")) continue;
     std::vector<std::string> good, bad;
     for (Lines lines(entry.path()); lines.next_content();) good.emplace_back(lines.text());
-    for (const RawView& view : scene.views)
-      if (std::find(good.begin(), good.end(), view.listed) == good.end())
-        bad.push_back(view.listed);
+    for (RawView& view : scene.views) {
+      view.silhouette = std::find(good.begin(), good.end(), view.listed) != good.end();
+      if (!view.silhouette) bad.push_back(view.listed);
+    }
     if (!bad.empty())
       scene.warnings.push_back(concat(entry.path().filename().string(), " leaves out ", joined(bad),
-                                      ": no usable silhouette can be cut from them"));
+                                      ": no silhouette is cut from them"));
   }
 }
 
@@ -107,7 +108,7 @@ RawScene read_middlebury(const fs::path& par_file) {
   if (std::int64_t(scene.views.size()) != count)
     throw Error(concat(par_file.string(), ": the file states ", count, " images but lists ",
                        scene.views.size(), "; complete it or correct its first line"));
-  warn_of_bad_silhouettes(folder, scene);
+  mark_bad_silhouettes(folder, scene);
   return scene;
 }
 

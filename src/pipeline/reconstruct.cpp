@@ -47,7 +47,7 @@ namespace fs = std::filesystem;
 constexpr int kHighIterations = 2, kHighPasses = 3, kHighSteps = 3;
 // Masks that were made from the background are wrong in places, and mostly at their rims: a part
 // comes back only when one view in so many asks for it, so many pixels within its mask.
-constexpr int kDoubtingViews = 6;
+constexpr int kDoubtingViews = 3;
 constexpr double kDoubtfulRim = 2;
 constexpr double kLeastEvidence = 0.1;    // share of the surface below which a result is doubtful
 constexpr double kDebrisFraction = 5e-4;  // of the largest part's voxels

@@ -129,6 +129,7 @@ Revision vote_again(gpu::Context& context, SparseVolume& volume, const SparseVol
                     const projtex::ImageSet& images, std::span<const Camera> cameras,
                     double noise_sigma, VoteOptions options) {
   options.ray_spacing = options.again_spacing;
+  options.least_score = options.again_score;
   return Voter(hull, cameras,
                match_rays_again(context, hull, volume, images, cameras, noise_sigma, options),
                options)

@@ -12,11 +12,12 @@ namespace photohull::refine {
 
 struct VoteOptions {
   double ray_spacing = 1.0;    ///< between the rays of a view, voxels in the middle of the grid
-  double again_spacing = 1.5;  ///< likewise, in vote_again
-  double tap_spacing = 0.7;    ///< of the patches across the rays, voxels
-  double best_pairs = 0.5;     ///< share of the pairs of views that the score is the mean of
-  double least_score = 0.5;    ///< of the best sample on a ray; below, the ray says nothing
-  double distinct_by = 0.15;   ///< lead over the second best that gives a ray full weight
+  double again_spacing = 1.5;  ///< between the rays of vote_again
+  double again_score = 0.7;  ///< likewise: below, the surface explains nothing, a ray finds nothing
+  double tap_spacing = 0.7;  ///< of the patches across the rays, voxels
+  double best_pairs = 0.5;   ///< share of the pairs of views that the score is the mean of
+  double least_score = 0.5;  ///< of the best sample on a ray; below, the ray says nothing
+  double distinct_by = 0.15;  ///< lead over the second best that gives a ray full weight
   double band = 1.5;          ///< voxels; at most kBand: a ray's say ends that far behind its depth
   double least_weight = 1.5;  ///< sum of the rays' weights below which a voxel stays
 };

@@ -148,6 +148,15 @@ TEST_F(PrepareViews, FallsBackToTheBackground) {
   }
 }
 
+TEST_F(PrepareViews, CutsNoSilhouetteWhereTheSceneSaysSo) {
+  for (const char* name : {"a.png", "b.png", "c.png"}) add_view(name, clay_disc());
+  scene_.views[1].silhouette = false;
+  const PreparedViews prepared = prepare();
+  EXPECT_FALSE(prepared.views[0].mask.empty());
+  EXPECT_TRUE(prepared.views[1].mask.empty());
+  EXPECT_FALSE(prepared.views[2].mask.empty());
+}
+
 TEST_F(PrepareViews, SaysWhichViewsGotWhichMasks) {
   add_view("a.png", clay_disc());
   add_mask(kDisc);

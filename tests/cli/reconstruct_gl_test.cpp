@@ -51,7 +51,7 @@ TEST_F(Reconstruct, ReportHasTheDocumentedFields) {
     "grid": {"origin": [], "voxel_size": 0.1, "voxels": [], "bricks_stored": 1},
     "hull": {"nodes_tested": 1, "bricks_evaluated": 1},
     "photo": {"sweeps": 1, "voxels_judged": 1, "voxels_carved": 1, "voxels_undecided": 1},
-    "refine": [], "refine_fits": [], "mesh": {"vertices": 1, "triangles": 1, "uniform_triangles": 1,
+    "resumed_levels": 0, "refine": [], "refine_fits": [], "mesh": {"vertices": 1, "triangles": 1, "uniform_triangles": 1,
     "sharpened_vertices": 1, "unseen_share": 0.1}})");
   const json fields = schema.flatten();
   for (const auto& [key, value] : fields.items()) {

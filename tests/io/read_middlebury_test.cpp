@@ -154,8 +154,11 @@ TEST_F(ReadMiddlebury, InvertedReadmeBoxIsNamed) {
 
 TEST_F(ReadMiddlebury, ImagesWithoutUsableSilhouettesAreReported) {
   put("x_good_silhouette_images.txt", "a.png\n");
-  EXPECT_THAT(load(std::string("2\n") + kFirst + kSecond).warnings,
+  const Scene scene = load(std::string("2\n") + kFirst + kSecond);
+  EXPECT_THAT(scene.warnings,
               ElementsAre(AllOf(HasSubstr("x_good_silhouette_images.txt"), HasSubstr("b.png"))));
+  EXPECT_TRUE(scene.views[0].silhouette);
+  EXPECT_FALSE(scene.views[1].silhouette);
   put("x_good_silhouette_images.txt", "a.png\nb.png\n");
   EXPECT_THAT(load(std::string("2\n") + kFirst + kSecond).warnings, ElementsAre());
 }
