@@ -14,8 +14,8 @@ struct FootprintAxes {
   vec2 direction;
 };
 
-const float kLeastDepth = 1e-3;  // voxels
-const float kFarthest = 1e6;     // pixels, of axes and positions that loops run over
+const float kLeastDepth = 0.1;   // voxels: keeps the squares of lengths finite
+const float kFarthest = 1e6;     // pixels, of positions that loops run over
 
 // From homogeneous coordinates (s, t, q) of the centre and their steps along the edges. q, the
 // distance to the image plane, must be positive. Quotient rule on s / q and t / q; what lies nearly in
@@ -31,14 +31,12 @@ Footprint footprint_of(GpuView view, uint v, vec3 at, vec3 by_u, vec3 by_v) {
 }
 
 FootprintAxes axes_of(Footprint f) {
-  vec2 du = clamp(f.du, vec2(-kFarthest), vec2(kFarthest));
-  vec2 dv = clamp(f.dv, vec2(-kFarthest), vec2(kFarthest));
-  float xx = du.x * du.x + dv.x * dv.x, yy = du.y * du.y + dv.y * dv.y;
-  float xy = du.x * du.y + dv.x * dv.y;
+  float xx = f.du.x * f.du.x + f.dv.x * f.dv.x, yy = f.du.y * f.du.y + f.dv.y * f.dv.y;
+  float xy = f.du.x * f.du.y + f.dv.x * f.dv.y;
   float half_gap = 0.5 * (xx - yy), root = sqrt(half_gap * half_gap + xy * xy);
   FootprintAxes axes;
-  axes.longer = sqrt(max(0.5 * (xx + yy) + root, 0.0));
-  axes.shorter = abs(du.x * dv.y - du.y * dv.x) / max(axes.longer, 1e-18);
+  axes.longer = sqrt(0.5 * (xx + yy) + root);
+  axes.shorter = abs(f.du.x * f.dv.y - f.du.y * f.dv.x) / max(axes.longer, 1e-18);
   vec2 direction = half_gap >= 0.0 ? vec2(half_gap + root, xy) : vec2(xy, root - half_gap);
   float squared = dot(direction, direction);
   axes.direction = squared > 1e-30 ? direction * inversesqrt(squared) : vec2(1.0, 0.0);

@@ -3,6 +3,7 @@
 // Reference: projtex::reference::sample_footprint.
 const float kMostTaps = 16.0;
 const float kLeastTap = 0.5;  // pixels between taps
+const float kFiner = 0.8408964;  // a quarter level below lambda errs least against the exact integral
 const float kRound = 0.25;    // footprints longer by this share need no further tap
 
 vec4 sample_image(Footprint f) {
@@ -13,7 +14,7 @@ vec4 sample_image(Footprint f) {
   vec2 along = axes.direction * spacing;
   vec2 across = vec2(-axes.direction.y, axes.direction.x) * axes.shorter;
   vec2 steepness = inversesqrt(max(along * along + across * across, 1e-8));
-  float lambda = log2(max(max(axes.shorter, spacing), 1.0));
+  float lambda = log2(max(kFiner * max(axes.shorter, spacing), 1.0));
   vec4 sum = vec4(0.0);
   for (float k = 0.0; k < taps; k += 1.0) {
     vec2 pixel = f.pixel + along * (k + 0.5 - 0.5 * taps);

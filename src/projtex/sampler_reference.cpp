@@ -18,6 +18,7 @@ using glm::dvec4;
 constexpr double kMostAnisotropy = 16;
 constexpr double kLeastWidth = 1.0 / 16;       // pixels, of the transition between two of them
 constexpr double kLeastTap = 0.5;              // pixels, along the long axis
+constexpr double kFiner = 0.25;                // levels below lambda that err least
 constexpr double kRound = 0.25;                // of a tap, that footprints may be longer
 constexpr double kGaussianVariance = 1.0 / 6;  // of the square's edge squared
 constexpr double kLeastVariance = 4e-4;        // pixels squared
@@ -113,7 +114,7 @@ dvec4 anisotropic(std::span<const LinearImage> chain, const Footprint& f) {
       const double low = std::floor(at[i]), transition = std::clamp(width, kLeastWidth, 1.0);
       at[i] = low + std::clamp((at[i] - low - 0.5) / transition + 0.5, 0.0, 1.0);
     }
-    sum += trilinear(chain, at, widest);
+    sum += trilinear(chain, at, widest * std::exp2(-kFiner));
   }
   return sum / taps;
 }
