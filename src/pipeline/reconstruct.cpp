@@ -120,7 +120,8 @@ class Job {
       measure_silhouettes();
       return refining ? SparseVolume() : carve_hull();
     });
-    if (!refining && !options_.sampler)
+    // The other samplers weight by the masks.
+    if (!refining && sampler() == projtex::Sampler::kMipmap)
       for (View& view : views_) std::vector<std::uint8_t>().swap(view.mask.coverage);
     context_->release_deleted();
     images_ = clock_.run("images", Weights::kImages,
@@ -328,14 +329,15 @@ class Job {
     return volume;
   }
 
+  projtex::Sampler sampler() const { return options_.sampler.value_or(projtex::kDefaultSampler); }
+
   SparseVolume sweep(const SparseVolume& hull, const carving::PhotoOptions& photo,
                      carving::PhotoReport& counts) {
-    const projtex::Sampler sampler = options_.sampler.value_or(projtex::kDefaultSampler);
-    report_.sampling = {projtex::to_string(sampler), photo.supersample,
+    report_.sampling = {projtex::to_string(sampler()), photo.supersample,
                         carving::to_string(photo.statistic)};
-    if (sampler == projtex::Sampler::kMipmap)
+    if (sampler() == projtex::Sampler::kMipmap)
       return carving::carve_photo(*context_, hull, *images_, cameras_, photo, progress_, &counts);
-    const projtex::SampleImages images(views_, sampler);
+    const projtex::SampleImages images(views_, sampler());
     return carving::carve_photo(*context_, hull, images, cameras_, photo, progress_, &counts);
   }
 
