@@ -37,6 +37,30 @@ double value_at(const SparseVolume& v, const glm::dvec3& p) {
   return v.at(glm::ivec3(glm::floor(p + 0.5)));
 }
 
+/// Trilinear interpolation.
+double interpolated(const SparseVolume& v, const glm::dvec3& p) {
+  const glm::dvec3 low = glm::floor(p), share = p - low;
+  double sum = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::ivec3 step(corner & 1, (corner >> 1) & 1, corner >> 2);
+    const glm::dvec3 w = glm::mix(1.0 - share, share, glm::dvec3(step));
+    sum += w.x * w.y * w.z * double(v.at(glm::ivec3(low) + step));
+  }
+  return sum;
+}
+
+/// Where a ray enters the surface, about `t` voxels along it.
+double crossing(const SparseVolume& surface, const glm::dvec3& from, const glm::dvec3& direction,
+                double t) {
+  double outside = t - 1.5, inside = t + 1;
+  if (interpolated(surface, from + inside * direction) > 0) return t;
+  for (int i = 0; i < 6; ++i) {
+    const double middle = 0.5 * (outside + inside);
+    (interpolated(surface, from + middle * direction) > 0 ? outside : inside) = middle;
+  }
+  return 0.5 * (outside + inside);
+}
+
 double degrees_between(const glm::dvec3& a, const glm::dvec3& b) {
   return glm::degrees(std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0)));
 }
@@ -70,7 +94,7 @@ class RayMatcher {
       if (s[best] < options_.least_score) {
         unexplained.push_back(rays[i]);
       } else {
-        tell(rays[i], rays[i].surface + best - 0.5 * (kSurfaceSamples - 1), confidence(s[best]));
+        tell(rays[i], rays[i].surface, confidence(s[best]));
       }
     });
     search(unexplained);
@@ -141,7 +165,8 @@ class RayMatcher {
             if (value <= 0.3) {
               if (first < 0) first = t;
               last = t;
-              if (surface && at < 0 && value_at(*surface, c.centre + t * d) <= 0) at = t;
+              if (surface && at < 0 && value_at(*surface, c.centre + t * d) <= 0)
+                at = crossing(*surface, c.centre, d, t);
             }
             t += std::max(0.5, std::abs(value) * 0.8);
           }

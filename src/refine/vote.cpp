@@ -14,6 +14,8 @@
 namespace photohull::refine {
 namespace {
 
+constexpr float kNews = 1;  // voxels: a voxel's distance that votes change by less stays as it is
+
 class Voter {
  public:
   Voter(const SparseVolume& hull, std::span<const Camera> cameras, std::vector<RayMap> maps,
@@ -28,13 +30,13 @@ class Voter {
     Revision out;
     for (const auto& [voxel, value] : votes(&RayMap::before, volume.grid, SparseVolume::kBand)) {
       const float old = volume.at(voxel);
-      if (value >= old) continue;
+      if (value > old - kNews) continue;
       out.added += value < 0 && old >= 0;
       stored(voxel, volume) = value;
     }
     for (const auto& [voxel, value] : votes(&RayMap::through, volume.grid, -SparseVolume::kBand)) {
       const float old = volume.at(voxel);
-      if (value <= old || value < 0) continue;
+      if (value < old + kNews || value < 0) continue;
       out.freed += old < 0;
       stored(voxel, volume) = value;
     }
