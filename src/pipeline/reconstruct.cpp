@@ -53,7 +53,8 @@ constexpr double kLeastEvidence = 0.1;    // share of the surface below which a 
 constexpr double kDebrisFraction = 5e-4;  // of the largest part's voxels
 constexpr int kCropMargin = 24;           // pixels around the box's projection: patches, mip levels
 constexpr double kDetail = 1.5;           // pixels: what refinement resolves, by its patches
-constexpr double kBoxSlack = 0.5;         // voxels that the surface may stand out of the box
+constexpr std::size_t kFewestThinVoxels = 32;  // a hull of fewer, all of them thin, is none
+constexpr double kBoxSlack = 0.5;              // voxels that the surface may stand out of the box
 
 /// Shares of a job's time: tenths of a wall second of templeRing's stages on two cores (`photohull
 /// reconstruct templeRing --json`). They only drive the progress bar's time left.
@@ -233,8 +234,10 @@ class Job {
     Progress silent;
     SparseVolume volume = carving::carve_silhouette(*context_, grid, box, cameras_, silhouettes,
                                                     hull_options, silent, &counts);
-    carving::keep_thin_parts(volume, box, cameras_, silhouettes, hull_options);
-    if (volume.inside_voxels() == 0)
+    const std::size_t thin =
+        carving::keep_thin_parts(volume, box, cameras_, silhouettes, hull_options);
+    const std::size_t inside = volume.inside_voxels();
+    if (inside == 0 || (inside == thin && thin < kFewestThinVoxels))
       throw Error(explain_empty_hull(*scene_.box, views_, grid.voxel_size));
     report_.nodes_tested += counts.nodes_tested;
     report_.bricks_evaluated += counts.bricks_evaluated;
