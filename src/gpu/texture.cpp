@@ -104,7 +104,9 @@ void TextureArray::set_anisotropy(float most) {
     offered = offered || std::string_view(
                              reinterpret_cast<const char*>(glGetStringi(GL_EXTENSIONS, GLuint(i))))
                              .ends_with("_texture_filter_anisotropic");
-  if (!offered) throw Error("this device has no anisotropic texture filter of its own; use --sampler anisotropic");
+  if (!offered)
+    throw Error(
+        "this device has no anisotropic texture filter of its own; use --sampler anisotropic");
   GLfloat limit = 1;
   glGetFloatv(GL_MAX_TEXTURE_MAX_ANISOTROPY, &limit);
   glTextureParameterf(id_, GL_TEXTURE_MAX_ANISOTROPY, std::min(most, limit));
