@@ -3,7 +3,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -73,32 +72,11 @@ class Field {
   std::vector<View> views_;
 };
 
-bool in_lattice(const ivec3& voxel, const ivec3& n) {
-  return glm::all(glm::greaterThanEqual(voxel, ivec3(0))) && glm::all(glm::lessThan(voxel, n));
-}
-
-float value_at(const SparseVolume& volume, const ivec3& voxel) {
-  return in_lattice(voxel, volume.grid.voxels()) ? volume.at(voxel) : SparseVolume::kBand;
-}
-
 /// Does the distance rise on all sides, as nowhere at the boundary of a part thicker than a voxel?
 bool in_valley(const SparseVolume& volume, const ivec3& voxel, float value) {
   for (int i = 0; i < 27; ++i)
-    if (value_at(volume, voxel + ivec3(i % 3, i / 3 % 3, i / 9) - 1) < value - kOnSlope)
-      return false;
+    if (volume.at(voxel + ivec3(i % 3, i / 3 % 3, i / 9) - 1) < value - kOnSlope) return false;
   return true;
-}
-
-double interpolated(const SparseVolume& volume, const dvec3& p) {
-  const ivec3 base(glm::floor(p));
-  const dvec3 f = p - dvec3(base);
-  double sum = 0;
-  for (int i = 0; i < 8; ++i) {
-    const ivec3 corner(i & 1, (i >> 1) & 1, i >> 2);
-    const dvec3 w = glm::mix(1.0 - f, f, dvec3(corner));
-    sum += w.x * w.y * w.z * double(value_at(volume, base + corner));
-  }
-  return sum;
 }
 
 /// The deepest point of the field within a voxel, by steps along the axes.
@@ -143,7 +121,7 @@ std::size_t keep_thin_parts(SparseVolume& volume, const Box& box, std::span<cons
       if (!in_valley(volume, voxel, value)) continue;
       dvec3 where;
       const double depth = deepest(field, voxel, value, where);
-      if (depth < 0 && interpolated(volume, where) > 0)
+      if (depth < 0 && volume.interpolated(where) > 0)
         changes[slot].push_back({index, float(depth)});
     }
   });

@@ -51,6 +51,8 @@ struct SparseVolume {
 
   /// Value at a voxel of the grid; outside the grid it is +kBand.
   float at(const glm::ivec3& voxel) const;
+  /// Trilinear interpolation of at(), at a point in voxel coordinates.
+  double interpolated(const glm::dvec3& p) const;
   /// Number of voxels with negative distance, unstored inside bricks included.
   std::size_t inside_voxels() const;
 };

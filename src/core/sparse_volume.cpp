@@ -17,6 +17,17 @@ float SparseVolume::at(const glm::ivec3& voxel) const {
   return distance[std::size_t(slot) * kBrickVoxels + voxel_offset(voxel % kBrickEdge)];
 }
 
+double SparseVolume::interpolated(const glm::dvec3& p) const {
+  const glm::dvec3 low = glm::floor(p), share = p - low;
+  double sum = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::ivec3 step(corner & 1, (corner >> 1) & 1, corner >> 2);
+    const glm::dvec3 w = glm::mix(1.0 - share, share, glm::dvec3(step));
+    sum += w.x * w.y * w.z * double(at(glm::ivec3(low) + step));
+  }
+  return sum;
+}
+
 std::size_t SparseVolume::inside_voxels() const {
   std::size_t count = 0;
   for (const std::uint32_t slot : table) count += slot == kInside ? kBrickVoxels : 0;

@@ -2,7 +2,6 @@
 
 #include <xxhash.h>
 
-#include <chrono>
 #include <cstdio>
 #include <iomanip>
 #include <sstream>
@@ -29,6 +28,7 @@ void add_camera(const SourceView& view, std::ostream& out) {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) out << ' ' << view.camera.cam_from_world.rotation[i][j];
   for (int i = 0; i < 3; ++i) out << ' ' << view.camera.cam_from_world.translation[i];
+  out << ' ' << int(view.distortion.model);
   for (const double c : view.distortion.coefficients) out << ' ' << c;
   out << '\n';
 }
@@ -47,6 +47,7 @@ std::string job_identity(const ReconstructOptions& options, const Scene& scene,
        << ' ' << grid.bricks.x << ' ' << grid.bricks.y << ' ' << grid.bricks.z << '\n';
   for (const glm::dvec3& corner : {scene.box->min, scene.box->max})
     text << corner.x << ' ' << corner.y << ' ' << corner.z << '\n';
+  add_file("/proc/self/exe", text);  // versions change less often than programs
   add_file(scene.path, text);
   for (const SourceView& view : scene.views) {
     add_file(view.image, text);

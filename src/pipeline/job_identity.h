@@ -1,16 +1,15 @@
 // What makes two reconstructions the same job.
 #pragma once
 
-#include <span>
 #include <string>
 
-#include "core/camera.h"
+#include "core/grid.h"
 #include "core/scene.h"
 #include "pipeline/reconstruct.h"
 
 namespace photohull::pipeline {
 
-/// 32 hexadecimal digits of the program's version, the device, the options, the lattice, the
+/// 32 hexadecimal digits of the program and its version, the device, the options, the lattice, the
 /// cameras and the names, sizes and times of the photographs and masks.
 std::string job_identity(const ReconstructOptions& options, const Scene& scene,
                          const GridSpec& grid, const std::string& device);

@@ -237,7 +237,9 @@ class Job {
     const std::size_t thin =
         carving::keep_thin_parts(volume, box, cameras_, silhouettes, hull_options);
     const std::size_t inside = volume.inside_voxels();
-    if (inside == 0 || (inside == thin && thin < kFewestThinVoxels))
+    const bool specks = grid.voxel_size == grid_.voxel_size && inside == thin &&
+                        thin < kFewestThinVoxels;  // coarse grids may hold no more of it
+    if (inside == 0 || specks)
       throw Error(explain_empty_hull(*scene_.box, views_, grid.voxel_size));
     report_.nodes_tested += counts.nodes_tested;
     report_.bricks_evaluated += counts.bricks_evaluated;

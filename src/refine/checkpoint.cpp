@@ -1,5 +1,6 @@
 #include "refine/checkpoint.h"
 
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <type_traits>

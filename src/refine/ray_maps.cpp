@@ -37,26 +37,14 @@ double value_at(const SparseVolume& v, const glm::dvec3& p) {
   return v.at(glm::ivec3(glm::floor(p + 0.5)));
 }
 
-/// Trilinear interpolation.
-double interpolated(const SparseVolume& v, const glm::dvec3& p) {
-  const glm::dvec3 low = glm::floor(p), share = p - low;
-  double sum = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::ivec3 step(corner & 1, (corner >> 1) & 1, corner >> 2);
-    const glm::dvec3 w = glm::mix(1.0 - share, share, glm::dvec3(step));
-    sum += w.x * w.y * w.z * double(v.at(glm::ivec3(low) + step));
-  }
-  return sum;
-}
-
 /// Where a ray enters the surface, about `t` voxels along it.
 double crossing(const SparseVolume& surface, const glm::dvec3& from, const glm::dvec3& direction,
                 double t) {
   double outside = t - 1.5, inside = t + 1;
-  if (interpolated(surface, from + inside * direction) > 0) return t;
+  if (surface.interpolated(from + inside * direction) > 0) return t;
   for (int i = 0; i < 6; ++i) {
     const double middle = 0.5 * (outside + inside);
-    (interpolated(surface, from + middle * direction) > 0 ? outside : inside) = middle;
+    (surface.interpolated(from + middle * direction) > 0 ? outside : inside) = middle;
   }
   return 0.5 * (outside + inside);
 }
@@ -83,7 +71,8 @@ class RayMatcher {
     return std::move(maps_);
   }
 
-  /// Only rays that the surface does not explain search the hull before it.
+  /// Only rays that the surface does not explain search the hull; what they find elsewhere than at
+  /// the surface is news.
   std::vector<RayMap> run(const SparseVolume& surface) {
     choose_partners();
     std::vector<Ray> rays = make_rays(&surface);
@@ -203,7 +192,7 @@ class RayMatcher {
             [&](std::size_t i, const float* s) { decide(by_length[k][i], s, kLengths[k]); });
   }
 
-  /// Calls decide(ray, scores) with the scores of `length` samples along each ray.
+  /// Calls decide(i, scores) with the scores of `length` samples along the i-th ray.
   template <typename Decide>
   void match(const std::vector<Ray>& rays, int length, Decide&& decide) {
     const auto program =
