@@ -176,7 +176,7 @@ class Refiner {
   /// Moves the surface to where the photographs agree; `first`: at the first level.
   void step(SparseVolume& volume, const SparseVolume& hull, bool first, LevelReport& counts) {
     const int offsets = first ? options_.coarse_offsets : options_.fine_offsets;
-    const TriMesh mesh = extract_mesh(volume);
+    const TriMesh mesh = extract_mesh(volume, settled_.coarse(volume.grid));
     const VertexGraph graph = make_graph(mesh);
     const std::vector<glm::vec3> positions = voxel_positions(volume.grid, mesh);
     // The curvature of a guess that no silhouette shaped says nothing of the surface's.
@@ -241,7 +241,7 @@ class Refiner {
     for (int i = 0; i <= options_.photometric && options_.photometric > 0; ++i) {
       progress.check_cancelled();
       const auto start = std::chrono::steady_clock::now();
-      const TriMesh mesh = extract_mesh(volume);
+      const TriMesh mesh = extract_mesh(volume, settled_.coarse(volume.grid));
       const VertexGraph graph = make_graph(mesh);
       const std::vector<glm::vec3> positions = voxel_positions(volume.grid, mesh);
       std::vector<shaders::MatchChoice> choices =

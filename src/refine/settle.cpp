@@ -60,6 +60,23 @@ std::vector<Settled> SettledBricks::at(const GridSpec& grid,
   return out;
 }
 
+std::vector<std::uint8_t> SettledBricks::coarse(const GridSpec& grid) const {
+  std::vector<std::uint8_t> out(kinds_.empty() ? 0 : grid.brick_count(), 0);
+  const double half = 0.5 * (kBrickEdge - 1);
+  std::size_t index = 0;
+  for (int z = 0; z < grid.bricks.z && !out.empty(); ++z)
+    for (int y = 0; y < grid.bricks.y; ++y)
+      for (int x = 0; x < grid.bricks.x; ++x, ++index) {
+        const glm::dvec3 middle = grid.world(glm::dvec3(glm::ivec3(x, y, z) * kBrickEdge) + half);
+        const glm::dvec3 at = (middle - grid_.origin) / grid_.voxel_size + 0.5;
+        const glm::ivec3 voxel =
+            glm::clamp(glm::ivec3(glm::floor(at)), glm::ivec3(0), grid_.voxels() - 1);
+        const std::uint8_t kind = kinds_[grid_.brick_index(voxel / kBrickEdge)];
+        out[index] = kind != kNone && is_settled(Settled(kind));
+      }
+  return out;
+}
+
 std::int64_t SettledBricks::count(Settled kind) const {
   return std::count(kinds_.begin(), kinds_.end(), std::uint8_t(kind));
 }

@@ -52,6 +52,9 @@ class SettledBricks {
   /// Of the brick at each point (voxels of `grid`); kSplit where the level had no surface.
   std::vector<Settled> at(const GridSpec& grid, std::span<const glm::vec3> positions) const;
 
+  /// For each brick of a grid as fine or finer whether it lies in one that is settled.
+  std::vector<std::uint8_t> coarse(const GridSpec& grid) const;
+
   std::int64_t count(Settled kind) const;
 
   const GridSpec& grid() const { return grid_; }

@@ -17,10 +17,11 @@ namespace {
 using glm::ivec3;
 using glm::vec3;
 
-constexpr float kSpacing = 1.25f;  // voxels between points on a triangle, at most
-constexpr int kMaxSteps = 256;     // along a triangle's edge: one of nonsense must not stall
-constexpr float kBlend = 0.6f;     // voxels: width of the blend between tangent planes
-constexpr float kSameWay = 0.3f;   // cosine between normals that are blended
+constexpr float kSpacing = 1.25f;     // voxels between points on a triangle, at most
+constexpr float kMoveSpacing = 2.5f;  // the same for displacements, which vary less
+constexpr int kMaxSteps = 256;        // along a triangle's edge: one of nonsense must not stall
+constexpr float kBlend = 0.6f;        // voxels: width of the blend between tangent planes
+constexpr float kSameWay = 0.3f;      // cosine between normals that are blended
 constexpr float kDoubt = 1;  // voxels of the old volume within which its sides are not trusted
 constexpr float kUnknown = std::numeric_limits<float>::infinity();
 
@@ -42,23 +43,27 @@ std::vector<Point> vertices_of(const TriMesh& mesh, const GridSpec& grid) {
   return points;
 }
 
-/// Vertices, and points on the triangles that are larger than the spacing.
-std::vector<Point> points_of(const TriMesh& mesh, const GridSpec& grid) {
+/// Vertices, and points on the triangles that are larger than the spacing: add(triangle, u, v) is
+/// told of each of these, with the weights of the second and third corner.
+template <typename Add>
+std::vector<Point> points_of(const TriMesh& mesh, const GridSpec& grid, float spacing, Add&& add) {
   std::vector<Point> points = vertices_of(mesh, grid);
   for (const auto& t : mesh.triangles) {
     const Point a = points[t[0]], b = points[t[1]], c = points[t[2]];
     const vec3 ab = b.position - a.position, ac = c.position - a.position, bc = ac - ab;
     const float longest =
         std::sqrt(std::max({glm::dot(ab, ab), glm::dot(ac, ac), glm::dot(bc, bc)}));
-    if (!(longest > kSpacing)) continue;
-    const int steps = int(std::min(std::ceil(longest / kSpacing), float(kMaxSteps)));
+    if (!(longest > spacing)) continue;
+    const int steps = int(std::min(std::ceil(longest / spacing), float(kMaxSteps)));
     for (int i = 0; i <= steps; ++i)
       for (int j = 0; i + j <= steps; ++j) {
         if ((i == 0 && j == 0) || i == steps || j == steps) continue;
         const float u = float(i) / float(steps), v = float(j) / float(steps);
         const vec3 normal = (1 - u - v) * a.normal + u * b.normal + v * c.normal;
         const float length = glm::length(normal);
-        if (length > 0.1f) points.push_back({a.position + u * ab + v * ac, normal / length});
+        if (!(length > 0.1f)) continue;
+        points.push_back({a.position + u * ab + v * ac, normal / length});
+        add(t, u, v);
       }
   }
   return points;
@@ -238,15 +243,19 @@ class Field {
 void move_surface(SparseVolume& volume, const TriMesh& mesh, std::span<const float> displacement) {
   PHOTOHULL_CHECK_OP(mesh.normals.size(), ==, mesh.positions.size());
   PHOTOHULL_CHECK_OP(displacement.size(), ==, mesh.positions.size());
-  const std::vector<Point> points = vertices_of(mesh, volume.grid);
-  Field(points, volume.grid, SparseVolume::kBand).subtract(displacement, volume);
+  std::vector<float> all(displacement.begin(), displacement.end());
+  const auto points =
+      points_of(mesh, volume.grid, kMoveSpacing, [&](const auto& t, float u, float v) {
+        all.push_back((1 - u - v) * all[t[0]] + u * all[t[1]] + v * all[t[2]]);
+      });
+  Field(points, volume.grid, SparseVolume::kBand).subtract(all, volume);
 }
 
 SparseVolume distance_from_mesh(const TriMesh& mesh, const SparseVolume& sides,
                                 const GridSpec& grid, double reach) {
   PHOTOHULL_CHECK_OP(mesh.normals.size(), ==, mesh.positions.size());
   PHOTOHULL_CHECK_OP(sides.grid.voxel_size, >, 0.0);
-  const std::vector<Point> points = points_of(mesh, grid);
+  const auto points = points_of(mesh, grid, kSpacing, [](const auto&...) {});
   return Field(points, grid, float(reach)).run(sides);
 }
 

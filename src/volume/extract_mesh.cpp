@@ -23,6 +23,9 @@ using Accessor = openvdb::tree::ValueAccessor<openvdb::FloatTree, false>;
 /// voxel's centre would otherwise give cells whose vertices coincide: triangles without area.
 constexpr float kLeastDistance = 0.005f;  // voxels
 
+/// 1 - cosine of the angle between normals of voxels that may share a vertex.
+constexpr double kSameWay = 0.01;
+
 float away_from_zero(float distance) {
   return distance < 0 ? std::min(distance, -kLeastDistance) : std::max(distance, kLeastDistance);
 }
@@ -69,6 +72,19 @@ openvdb::FloatGrid::Ptr distance_grid(const SparseVolume& volume, const glm::dve
   return grid;
 }
 
+/// 1 in the flagged bricks, by which the mesher multiplies its tolerance.
+openvdb::FloatGrid::Ptr tolerance_grid(const SparseVolume& volume,
+                                       std::span<const std::uint8_t> coarse,
+                                       const openvdb::math::Transform& transform) {
+  auto grid = openvdb::FloatGrid::create(0);
+  Accessor accessor(grid->tree());
+  for (const glm::ivec3& b : volume.bricks)
+    if (coarse[volume.grid.brick_index(b)])
+      accessor.addTile(1, openvdb::Coord(b.x, b.y, b.z) << 3, 1, true);
+  grid->setTransform(transform.copy());
+  return grid;
+}
+
 void add_triangle(TriMesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   if (a != b && b != c && c != a) mesh.triangles.push_back({a, b, c});
 }
@@ -107,13 +123,14 @@ void add_polygons(const openvdb::tools::VolumeToMesh& mesher, TriMesh& mesh) {
 
 }  // namespace
 
-TriMesh extract_mesh(const SparseVolume& volume, double adaptivity) {
-  if (!(adaptivity >= 0 && adaptivity <= 1))
-    throw UsageError(concat("mesh adaptivity is ", adaptivity, "; choose a number from 0 to 1."));
+TriMesh extract_mesh(const SparseVolume& volume, std::span<const std::uint8_t> coarse) {
+  PHOTOHULL_CHECK(coarse.empty() || coarse.size() == volume.table.size());
   TriMesh mesh;
   mesh.origin = volume.grid.bounds().center();
   const auto grid = distance_grid(volume, mesh.origin);
-  openvdb::tools::VolumeToMesh mesher(0.0, adaptivity);
+  openvdb::tools::VolumeToMesh mesher(0.0, coarse.empty() ? 0 : kSameWay);
+  if (!coarse.empty())
+    mesher.setSpatialAdaptivity(tolerance_grid(volume, coarse, grid->transform()));
   mesher(*grid);
 
   static_assert(sizeof(openvdb::Vec3s) == sizeof(glm::vec3));

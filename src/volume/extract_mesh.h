@@ -1,6 +1,9 @@
 // The surface of a volume as triangles.
 #pragma once
 
+#include <cstdint>
+#include <span>
+
 #include "core/grid.h"
 #include "core/mesh.h"
 
@@ -11,11 +14,10 @@ namespace photohull {
 /// unit and point outward. The mesh is closed: what lies outside the grid counts as outside, so a
 /// body that the grid's border cuts gets a flat face there. Colours and confidence stay empty.
 ///
-/// `adaptivity` in [0, 1] merges flat neighbourhoods into larger polygons: 0 keeps a vertex for
-/// every voxel that the surface crosses; larger values trade detail for fewer triangles.
-///
-/// Throws UsageError when adaptivity is outside its range. An empty volume gives an empty mesh.
-TriMesh extract_mesh(const SparseVolume& volume, double adaptivity = 0);
+/// Every voxel that the surface crosses gets a vertex; but in bricks flagged in `coarse` (one flag
+/// per brick of the grid, or none at all) neighbourhoods of up to 8^3 voxels whose normals agree to
+/// within 8 degrees share one. An empty volume gives an empty mesh.
+TriMesh extract_mesh(const SparseVolume& volume, std::span<const std::uint8_t> coarse = {});
 
 /// Moves the vertices of a mesh of this volume's surface onto the zero of the distance (one step of
 /// Newton's along the gradient, at most a quarter voxel) and sets their outward unit normals: the

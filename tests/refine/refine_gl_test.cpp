@@ -35,16 +35,17 @@ class RefineSurface : public testing::Test {
   RefineReport report_;
 };
 
-TEST_F(RefineSurface, WhatIsSettledIsNotMatchedAgain) {
+TEST_F(RefineSurface, WhatIsSettledStaysCoarseAndIsNotMatchedAgain) {
   run(8);
   const auto samples = [&] { return report_.levels[1].samples; };
-  const std::int64_t all = samples();
+  const std::int64_t all = samples(), surfels = report_.levels[1].surfels;
   options_.settle.least_pixels = 1000;
   const SparseVolume volume = run(8);
   EXPECT_EQ(report_.levels[0].split, 0);
   EXPECT_GT(report_.levels[0].settled_pixels, 30);
   // Only bricks that the first level's surface did not pass are matched.
   EXPECT_LT(samples(), 0.2 * double(all));
+  EXPECT_LT(double(report_.levels[1].surfels), 0.6 * double(surfels));
   EXPECT_LT(test::mean_error(volume), 0.4) << "the coarse level's surface";
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "support/cameras.h"
 
 namespace photohull::refine {
@@ -73,6 +75,20 @@ TEST_F(Settle, WhatWasSettledStaysSoAndWhatWasUnseenIsAskedAgain) {
   bends_[0] = {1, 0, 0};
   EXPECT_EQ(kind(), Settled::kSplit) << "somebody sees it now";
   EXPECT_FALSE(is_settled(Settled::kUnseen));
+}
+
+TEST_F(Settle, FinerGridsAreCoarseWhereABrickIsSettled) {
+  EXPECT_TRUE(SettledBricks().coarse(grid_).empty());
+  const GridSpec finer{dvec3(-0.25), 0.5, {8, 8, 8}};
+  const std::vector<std::uint8_t> flags = settle().coarse(finer);
+  ASSERT_EQ(flags.size(), 512u);
+  for (int z = 0; z < 8; ++z)
+    for (int y = 0; y < 8; ++y)
+      for (int x = 0; x < 8; ++x)  // the surfel's brick is (1, 1, 1)
+        EXPECT_EQ(flags[finer.brick_index({x, y, z})], x / 2 == 1 && y / 2 == 1 && z / 2 == 1);
+  bends_[0] = {0.2f, 0, 0};
+  const std::vector<std::uint8_t> split = settle().coarse(finer);
+  EXPECT_EQ(std::count(split.begin(), split.end(), 1), 0);
 }
 
 TEST_F(Settle, WithoutCurvatureNothingIsFlat) {

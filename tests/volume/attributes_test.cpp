@@ -55,7 +55,7 @@ TEST(Attributes, FollowTheMesh) {
 
 TEST(Attributes, FollowLargeTriangles) {
   const SparseVolume volume = sample_volume(glm::ivec3(8), box({10, 10, 10}, {50, 51, 52}));
-  const TriMesh mesh = painted(extract_mesh(volume, 0.5));
+  const TriMesh mesh = painted(extract_mesh(volume, std::vector<std::uint8_t>(512, 1)));
   ASSERT_LT(mesh.positions.size(), 2000u);
   // The coarse mesh passes the box's edges by: some voxels there have no mesh near them.
   EXPECT_LT(count_unknown(volume, attributes_from_mesh(volume, mesh)),

@@ -117,7 +117,7 @@ TEST(DistanceFromMesh, FacesOfABoxAndAThinPlate) {
 TEST(DistanceFromMesh, LargeTrianglesArePointsAllOver) {
   const Distance truth = box(dvec3(6), dvec3(26));
   const SparseVolume volume = sample_volume({4, 4, 4}, truth);
-  const TriMesh merged = extract_mesh(volume, 1.0);
+  const TriMesh merged = extract_mesh(volume, std::vector<std::uint8_t>(64, 1));
   ASSERT_LT(merged.positions.size(), 0.5 * double(extract_mesh(volume).positions.size()));
   const SparseVolume again = distance_from_mesh(merged, volume, volume.grid);
   for_voxels(again, [&](const ivec3& voxel, double d) {
@@ -179,6 +179,17 @@ TEST_P(MovedSphere, HasTheRadiusThatItShould) {
 }
 
 INSTANTIATE_TEST_SUITE_P(By, MovedSphere, testing::Values(-1.5, -0.4, 0.0, 0.7, 1.5));
+
+TEST(MoveSurface, LargeTrianglesMoveAsAWhole) {
+  const Distance truth = box(dvec3(6), dvec3(42));
+  SparseVolume volume = sample_volume({6, 6, 6}, truth);
+  const TriMesh merged = extract_mesh(volume, std::vector<std::uint8_t>(216, 1));
+  ASSERT_LT(4 * merged.positions.size(), extract_mesh(volume).positions.size());
+  move_surface(volume, merged, std::vector<float>(merged.positions.size(), 0.8f));
+  for (int x = 14; x < 34; ++x)
+    for (int y = 14; y < 34; ++y)
+      EXPECT_NEAR(volume.at({x, y, 42}), truth({x, y, 42}) - 0.8, 0.05) << x << ' ' << y;
+}
 
 TEST(MoveSurface, OnlyWhereItIsTold) {
   const dvec3 centre(15.5);

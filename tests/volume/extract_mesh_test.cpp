@@ -5,7 +5,6 @@
 #include <random>
 
 #include "analytic_volumes.h"
-#include "core/error.h"
 
 namespace photohull {
 namespace {
@@ -123,10 +122,12 @@ TEST(ExtractMesh, NoiseIsClosedAndManifold) {
     std::uniform_real_distribution<double> value(-4 * inside, 4 * (1 - inside));
     const SparseVolume volume =
         sample_volume(glm::ivec3(3), [&](const glm::dvec3&) { return value(random); });
-    for (const double adaptivity : {0.0, 0.2}) {
-      const TriMesh mesh = extract_mesh(volume, adaptivity);
+    for (const int kept : {1, 2, 27}) {  // one brick in so many stays fine
+      std::vector<std::uint8_t> coarse;
+      for (int i = 0; i < 27; ++i) coarse.push_back(i % kept != 0);
+      const TriMesh mesh = extract_mesh(volume, coarse);
       EXPECT_GT(mesh.triangles.size(), 1000u);
-      EXPECT_EQ(open_edges(mesh), 0u) << inside << ' ' << adaptivity;
+      EXPECT_EQ(open_edges(mesh), 0u) << inside << ' ' << kept;
       EXPECT_GT(signed_volume(mesh), 0);
     }
   }
@@ -141,15 +142,34 @@ TEST(ExtractMesh, ValuesThatTouchZeroGiveNoFlatTriangles) {
   EXPECT_GT(smallest_area(mesh), 0.0);
 }
 
-TEST(ExtractMesh, AdaptivityMergesFlatParts) {
-  const Distance distance = sphere(kCenter, 20);
+TEST(ExtractMesh, CoarseBricksShareVertices) {
+  const Distance distance = sphere(kCenter, 25);
   const SparseVolume volume = sample_volume(glm::ivec3(8), distance);
-  const TriMesh fine = extract_mesh(volume), coarse = extract_mesh(volume, 0.1);
+  std::vector<std::uint8_t> flags(volume.table.size(), 1);
+  const TriMesh fine = extract_mesh(volume), coarse = extract_mesh(volume, flags);
   expect_sound(coarse);
-  EXPECT_LT(4 * coarse.triangles.size(), fine.triangles.size());
+  EXPECT_LT(2 * coarse.triangles.size(), fine.triangles.size());
   const Deviation worst = largest_deviation(volume, coarse, distance);
   EXPECT_LT(worst.distance, 0.05);
   EXPECT_LT(worst.angle, 2.0);
+}
+
+TEST(ExtractMesh, OnlyCoarseBricksShareVertices) {
+  const SparseVolume volume = sample_volume(glm::ivec3(6), box({8, 8, 8}, {40, 40, 40}));
+  std::vector<std::uint8_t> flags;
+  for (int i = 0; i < 216; ++i) flags.push_back(i % 6 < 3);  // x below 24
+  const TriMesh fine = extract_mesh(volume), mesh = extract_mesh(volume, flags);
+  EXPECT_EQ(open_edges(mesh), 0u);
+  const auto beyond = [&](const TriMesh& m, double from, double to) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < m.positions.size(); ++i) {
+      const double x = m.world(i).x;
+      count += x >= from && x < to ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_EQ(beyond(mesh, 24, 48), beyond(fine, 24, 48));
+  EXPECT_LT(3 * beyond(mesh, 0, 23), beyond(fine, 0, 23));
 }
 
 TEST(ExtractMesh, EmptyVolumesGiveEmptyMeshes) {
@@ -159,12 +179,6 @@ TEST(ExtractMesh, EmptyVolumesGiveEmptyMeshes) {
       extract_mesh(sample_volume(glm::ivec3(2), [](const glm::dvec3&) { return 1.0; }));
   EXPECT_TRUE(mesh.positions.empty());
   EXPECT_TRUE(mesh.triangles.empty());
-}
-
-TEST(ExtractMesh, RejectsAdaptivityOutOfRange) {
-  const SparseVolume volume = sample_volume(glm::ivec3(1), sphere(glm::dvec3(4), 2));
-  EXPECT_THROW(extract_mesh(volume, -0.1), UsageError);
-  EXPECT_THROW(extract_mesh(volume, NAN), UsageError);
 }
 
 }  // namespace
