@@ -1,9 +1,10 @@
+#include <array>
 #include <cstdio>
 #include <memory>
 #include <optional>
 
 #include "commands.h"
-#include "core/error.h"
+#include "core/parse_name.h"
 #include "pipeline/reconstruct.h"
 #include "scene_arguments.h"
 #include "terminal_progress.h"
@@ -22,16 +23,6 @@ struct Arguments {
   bool evidence = false, fresh = false, json = false;
 };
 
-template <typename Enum>
-Enum parse(const std::string& option, const std::string& text, std::initializer_list<Enum> values) {
-  std::string legal;
-  for (const Enum value : values) {
-    if (text == pipeline::to_string(value)) return value;
-    legal += std::string(legal.empty() ? "" : ", ") + pipeline::to_string(value);
-  }
-  throw UsageError(option + " " + text + ": expected one of " + legal);
-}
-
 pipeline::ReconstructOptions to_options(const Arguments& a) {
   using pipeline::Method;
   using pipeline::Quality;
@@ -39,18 +30,21 @@ pipeline::ReconstructOptions to_options(const Arguments& a) {
   o.scene = a.scene.scene;
   o.output = a.out;
   o.load = a.scene.options();
-  o.quality = parse("--quality", a.quality, {Quality::kDraft, Quality::kNormal, Quality::kHigh});
+  o.quality = parse_name("--quality", a.quality,
+                         std::array{Quality::kDraft, Quality::kNormal, Quality::kHigh});
   if (a.method)
-    o.method =
-        parse("--method", *a.method,
-              {Method::kHull, Method::kVoxelColoring, Method::kSpaceCarving, Method::kRefine});
-  if (a.sampler) o.sampler = projtex::parse_sampler("--sampler", *a.sampler);
-  if (a.consistency) o.consistency = carving::parse_statistic("--consistency", *a.consistency);
+    o.method = parse_name(
+        "--method", *a.method,
+        std::array{Method::kHull, Method::kVoxelColoring, Method::kSpaceCarving, Method::kRefine});
+  if (a.sampler) o.sampler = parse_name("--sampler", *a.sampler, projtex::kSamplers);
+  if (a.consistency)
+    o.consistency = parse_name("--consistency", *a.consistency, carving::kStatistics);
   o.supersample = a.supersample;
   o.resolution = a.resolution;
   o.voxel_size = a.voxel_size;
   o.mesh_error = pipeline::parse_mesh_error(a.mesh_error);
-  o.unseen = parse("--unseen", a.unseen, {pipeline::Unseen::kOpen, pipeline::Unseen::kClosed});
+  o.unseen = parse_name("--unseen", a.unseen,
+                        std::array{pipeline::Unseen::kOpen, pipeline::Unseen::kClosed});
   o.device = a.device;
   o.threads = a.threads;
   o.evidence = a.evidence;

@@ -26,7 +26,7 @@ packages=(
   libglm-dev libcli11-dev nlohmann-json3-dev
   # Charts: JavaScript engine, SVG to PNG, hashes.
   duktape-dev librsvg2-dev libxxhash-dev pkg-config
-  libgtest-dev libgmock-dev libbenchmark-dev
+  libgtest-dev libgmock-dev
 )
 
 preset=release

@@ -1,6 +1,6 @@
 #include "carving/statistic.h"
 
-#include "core/error.h"
+#include "gpu/shader_source.h"
 
 namespace photohull::carving {
 
@@ -22,19 +22,9 @@ const char* to_string(Statistic statistic) {
   return "?";
 }
 
-Statistic parse_statistic(const std::string& option, const std::string& text) {
-  std::string legal;
-  for (const Statistic statistic : kStatistics) {
-    if (text == to_string(statistic)) return statistic;
-    legal += (legal.empty() ? "" : ", ") + std::string(to_string(statistic));
-  }
-  throw UsageError(concat(option, " ", text, ": expected one of ", legal));
-}
-
 std::string statistic_defines(Statistic statistic, bool coverage) {
-  std::string name = to_string(statistic);
-  for (char& c : name) c = c == '-' ? '_' : char(c - 'a' + 'A');
-  return concat("#define CONSISTENCY_", name, "\n", coverage ? "#define SAMPLE_COVERAGE\n" : "");
+  return gpu::define("CONSISTENCY_", to_string(statistic)) +
+         (coverage ? gpu::define("SAMPLE_", "coverage") : "");
 }
 
 }  // namespace photohull::carving

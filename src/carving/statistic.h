@@ -20,8 +20,6 @@ inline constexpr Statistic kStatistics[] = {
 
 /// Name on the command line: "zncc", "gain-variance", ...
 const char* to_string(Statistic statistic);
-/// Throws UsageError naming the option and the legal values.
-Statistic parse_statistic(const std::string& option, const std::string& text);
 
 /// Lines of "#define" for carving_score_columns. `coverage`: samples tell coverage by their alpha
 /// (SampleImages), and taps without any do not count.

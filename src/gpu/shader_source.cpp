@@ -55,4 +55,10 @@ std::string shader_file(int number) {
   return number >= 0 && number < int(shaders.size()) ? std::string(shaders[number].path) : "?";
 }
 
+std::string define(std::string_view prefix, std::string_view name) {
+  std::string line = "#define " + std::string(prefix);
+  for (const char c : name) line += c == '-' ? '_' : c >= 'a' && c <= 'z' ? char(c - 'a' + 'A') : c;
+  return line + '\n';
+}
+
 }  // namespace photohull::gpu

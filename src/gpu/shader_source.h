@@ -22,4 +22,7 @@ std::string expand_shader(std::string_view path, std::string_view defines);
 /// Name of the file that a #line number of expand_shader stands for.
 std::string shader_file(int number);
 
+/// A line that defines `prefix` with a lower-case name in upper case and underscores after it.
+std::string define(std::string_view prefix, std::string_view name);
+
 }  // namespace photohull::gpu

@@ -64,13 +64,6 @@ struct Weights {
                           kSimplify = 15, kPreview = 2.7, kFiles = 2;
 };
 
-std::string number(double value) {
-  std::ostringstream out;
-  out.precision(9);
-  out << value;
-  return out.str();
-}
-
 double voxel_size_of(const ReconstructOptions& options, const Box& box,
                      std::span<const Camera> cameras) {
   if (options.resolution) return carving::voxel_size_for(box, *options.resolution);
@@ -104,7 +97,10 @@ double median_noise(std::span<const View> views) {
 class Job {
  public:
   Job(const ReconstructOptions& options, Progress& progress)
-      : options_(options), progress_(progress), clock_(report_, progress) {}
+      : options_(options), progress_(progress), clock_(report_, progress) {
+    report_.version = PHOTOHULL_VERSION;
+    report_.options = named_options(options);
+  }
 
   Report run() {
     const auto start = std::chrono::steady_clock::now();
@@ -446,47 +442,6 @@ class Job {
     report_.peak_memory_bytes = process_peak_memory();
   }
 
-  std::string tuning() const {
-    std::string text;
-    for (const std::string& assignment : options_.tune)
-      text += (text.empty() ? "" : " ") + assignment;
-    return text;
-  }
-
-  std::string mask_option() const {
-    switch (options_.load.masks) {
-      case io::MaskSource::kAuto:
-        return "auto";
-      case io::MaskSource::kNone:
-        return "none";
-      case io::MaskSource::kDirectory:
-        break;
-    }
-    return options_.load.mask_directory.string();
-  }
-
- public:
-  /// Notes the options as they took effect.
-  void note_options() {
-    auto& list = report_.options;
-    report_.version = PHOTOHULL_VERSION;
-    list.emplace_back("quality", to_string(options_.quality));
-    list.emplace_back("method", to_string(options_.effective_method()));
-    if (options_.resolution) list.emplace_back("resolution", std::to_string(*options_.resolution));
-    if (options_.voxel_size) list.emplace_back("voxel_size", number(*options_.voxel_size));
-    if (!options_.load.views.empty()) list.emplace_back("views", options_.load.views);
-    if (!options_.load.hold_out.empty()) list.emplace_back("hold_out", options_.load.hold_out);
-    list.emplace_back("mesh_error", number(options_.mesh_error.value) +
-                                        (options_.mesh_error.world_units ? "u" : ""));
-    list.emplace_back("unseen", to_string(options_.unseen));
-    list.emplace_back("masks", mask_option());
-    if (options_.load.pixel_center)
-      list.emplace_back("pixel_center", number(*options_.load.pixel_center));
-    if (!options_.tune.empty()) list.emplace_back("tune", tuning());
-    list.emplace_back("device", options_.device);
-    list.emplace_back("threads", std::to_string(options_.threads));
-  }
-
  private:
   const ReconstructOptions& options_;
   Progress& progress_;
@@ -522,7 +477,6 @@ Report reconstruct(const ReconstructOptions& options, Progress& progress) {
     limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
                                                   std::size_t(options.threads));
   Job job(options, progress);
-  job.note_options();
   return job.run();
 }
 

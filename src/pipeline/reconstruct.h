@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "carving/statistic.h"
@@ -58,6 +59,11 @@ struct ReconstructOptions {
   void validate() const;
   Method effective_method() const;
 };
+
+using NamedValues = std::vector<std::pair<std::string, std::string>>;
+
+/// The options as they take effect, but for scene and output.
+NamedValues named_options(const ReconstructOptions& options);
 
 /// Voxel size in pixels' footprints when neither resolution nor voxel size is given.
 double footprint_factor(Quality quality);

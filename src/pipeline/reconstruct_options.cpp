@@ -43,6 +43,25 @@ void check_tuning(const std::vector<std::string>& assignments, Method method) {
   }
 }
 
+std::string number(double value) {
+  std::ostringstream out;
+  out.precision(9);
+  out << value;
+  return out.str();
+}
+
+std::string mask_option(const io::LoadSceneOptions& load) {
+  switch (load.masks) {
+    case io::MaskSource::kAuto:
+      return "auto";
+    case io::MaskSource::kNone:
+      return "none";
+    case io::MaskSource::kDirectory:
+      break;
+  }
+  return load.mask_directory.string();
+}
+
 }  // namespace
 
 const char* to_string(Quality quality) {
@@ -121,6 +140,29 @@ void ReconstructOptions::validate() const {
 Method ReconstructOptions::effective_method() const {
   if (method) return *method;
   return quality == Quality::kDraft ? Method::kHull : Method::kRefine;
+}
+
+NamedValues named_options(const ReconstructOptions& options) {
+  NamedValues list;
+  list.emplace_back("quality", to_string(options.quality));
+  list.emplace_back("method", to_string(options.effective_method()));
+  if (options.resolution) list.emplace_back("resolution", concat(*options.resolution));
+  if (options.voxel_size) list.emplace_back("voxel_size", number(*options.voxel_size));
+  if (!options.load.views.empty()) list.emplace_back("views", options.load.views);
+  if (!options.load.hold_out.empty()) list.emplace_back("hold_out", options.load.hold_out);
+  list.emplace_back("mesh_error",
+                    number(options.mesh_error.value) + (options.mesh_error.world_units ? "u" : ""));
+  list.emplace_back("unseen", to_string(options.unseen));
+  list.emplace_back("masks", mask_option(options.load));
+  if (options.load.pixel_center)
+    list.emplace_back("pixel_center", number(*options.load.pixel_center));
+  std::string tuning;
+  for (const std::string& assignment : options.tune)
+    tuning += (tuning.empty() ? "" : " ") + assignment;
+  if (!tuning.empty()) list.emplace_back("tune", tuning);
+  list.emplace_back("device", options.device);
+  list.emplace_back("threads", concat(options.threads));
+  return list;
 }
 
 }  // namespace photohull::pipeline

@@ -1,6 +1,7 @@
 #include "projtex/sampler.h"
 
 #include "core/error.h"
+#include "gpu/shader_source.h"
 
 namespace photohull::projtex {
 
@@ -32,20 +33,10 @@ const char* to_string(Sampler sampler) {
   return "?";
 }
 
-Sampler parse_sampler(const std::string& option, const std::string& text) {
-  std::string legal;
-  for (const Sampler sampler : kSamplers) {
-    if (text == to_string(sampler)) return sampler;
-    legal += (legal.empty() ? "" : ", ") + std::string(to_string(sampler));
-  }
-  throw UsageError(concat(option, " ", text, ": expected one of ", legal));
-}
-
 std::string sampler_defines(Sampler sampler, int supersample) {
   PHOTOHULL_CHECK(supersample >= 1 && supersample <= kMaxSupersample);
-  std::string name = to_string(sampler);
-  for (char& c : name) c = c == '-' ? '_' : char(c - 'a' + 'A');
-  return concat("#define SAMPLER_", name, "\n#define SUPERSAMPLE ", supersample, "\n");
+  return gpu::define("SAMPLER_", to_string(sampler)) +
+         gpu::define("SUPERSAMPLE ", concat(supersample));
 }
 
 }  // namespace photohull::projtex

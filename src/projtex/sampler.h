@@ -38,8 +38,6 @@ inline constexpr Sampler kDefaultSampler = Sampler::kMipmap;
 
 /// Name on the command line: "mipmap", "centroid", ...
 const char* to_string(Sampler sampler);
-/// Throws UsageError naming the option and the legal values.
-Sampler parse_sampler(const std::string& option, const std::string& text);
 
 /// Lines of "#define" that make the kernels use the sampler.
 std::string sampler_defines(Sampler sampler, int supersample);

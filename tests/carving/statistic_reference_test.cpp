@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "core/error.h"
+#include "core/parse_name.h"
 #include "support/cameras.h"
 
 namespace photohull::carving::reference {
@@ -107,8 +107,8 @@ TEST(Statistics, TooFewViewsOrTapsAreNoEvidence) {
 
 TEST(StatisticNames, AreReadBackAndOthersRefused) {
   for (const Statistic statistic : kStatistics)
-    EXPECT_EQ(parse_statistic("--consistency", to_string(statistic)), statistic);
-  EXPECT_THROW(parse_statistic("--consistency", "mean"), UsageError);
+    EXPECT_EQ(parse_name("--consistency", to_string(statistic), kStatistics), statistic);
+  EXPECT_THROW(parse_name("--consistency", "mean", kStatistics), UsageError);
 }
 
 }  // namespace

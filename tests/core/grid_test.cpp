@@ -81,5 +81,19 @@ TEST(SparseVolume, CountsInsideVoxels) {
   EXPECT_EQ(small_volume().inside_voxels(), std::size_t(kBrickVoxels + 1));
 }
 
+TEST(SparseVolume, InterpolationIsExactForWhatIsLinearInEachCoordinate) {
+  SparseVolume volume = small_volume();
+  const auto f = [](double x, double y, double z) { return 0.1 * x - 0.05 * y * z + 0.2 * z; };
+  for (int x = 0; x < 8; ++x)
+    for (int y = 0; y < 8; ++y)
+      for (int z = 0; z < 8; ++z) volume.distance[voxel_offset({x, y, z})] = float(f(x, y, z));
+  for (const glm::dvec3& p : {glm::dvec3(1.25, 2.5, 3.75), glm::dvec3(0), glm::dvec3(6.9, 0.1, 2)})
+    EXPECT_NEAR(volume.interpolated(p), f(p.x, p.y, p.z), 1e-6);
+  // Half way to what is not stored: inside along x, outside the grid below.
+  EXPECT_NEAR(volume.interpolated({7.5, 1, 1}), 0.5 * (f(7, 1, 1) - SparseVolume::kBand), 1e-6);
+  EXPECT_NEAR(volume.interpolated({-0.5, 1, 1}), 0.5 * (f(0, 1, 1) + SparseVolume::kBand), 1e-6);
+  EXPECT_NEAR(volume.interpolated({-40, 1, 1}), SparseVolume::kBand, 1e-6);
+}
+
 }  // namespace
 }  // namespace photohull

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/error.h"
+#include "core/parse_name.h"
 #include "support/cameras.h"
 
 namespace photohull::projtex::reference {
@@ -202,9 +202,9 @@ TEST(Samplers, SupersampledTheyComeWithinAPercentOfTheOracle) {
 
 TEST(SamplerNames, AreReadBackAndOthersRefused) {
   for (const Sampler sampler : kSamplers)
-    EXPECT_EQ(parse_sampler("--sampler", to_string(sampler)), sampler);
+    EXPECT_EQ(parse_name("--sampler", to_string(sampler), kSamplers), sampler);
   try {
-    parse_sampler("--sampler", "bicubic");
+    parse_name("--sampler", "bicubic", kSamplers);
     FAIL();
   } catch (const UsageError& e) {
     EXPECT_NE(std::string(e.what()).find("--sampler bicubic"), std::string::npos);
