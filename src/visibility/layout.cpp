@@ -16,6 +16,7 @@ using glm::dvec4;
 
 constexpr double kNearestShare = 1e-4;  // nearest depth that is drawn, of the farthest
 constexpr double kNearSlack = 0.99;
+constexpr double kDepthSlack = 1e-3;
 constexpr double kMargin = 2;  // texels around a region, for kernels
 constexpr int kSplitTries = 11;
 
@@ -75,7 +76,9 @@ class Layouter {
       out_.near = std::min(out_.near, plain_(corner).z);
       out_.far = std::max(out_.far, plain_(corner).z);
     }
-    out_.near = std::max(out_.near, kNearestShare * out_.far);
+    // A little more, for geometry of one depth has a range too.
+    if (out_.far > 0) out_.far *= 1 + kDepthSlack;
+    out_.near = std::max((1 - kDepthSlack) * out_.near, kNearestShare * out_.far);
   }
 
   void add_part(const dmat3& warp, double end) {
