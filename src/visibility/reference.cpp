@@ -51,6 +51,7 @@ Map::Map(const MapLayout& layout, const Technique& technique, const TriMesh& mes
   const double texel = layout.texel_width * std::max(layout.middle(), 0.0);
   bias_ = technique.bias_texels * texel;
   z_max_ = technique.z_max_texels * texel;
+  if (technique.detail != Detail::kNone) return;  // keeps triangles, not depths
   texels_.resize(layout.parts.size() * std::size_t(layout.size.x) * layout.size.y);
   for (int part = 0; part < int(layout.parts.size()); ++part)
     for (int y = 0; y < layout.size.y; ++y)
