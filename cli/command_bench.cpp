@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "bench_visibility.h"
 #include "chart/png.h"
 #include "chart/sampling_chart.h"
 #include "chart/svg_renderer.h"
@@ -175,6 +176,7 @@ void add_bench(CLI::App& app) {
       "  photohull bench sampling\n"
       "  photohull bench sampling --squares 64 --out out/sampling");
   s->callback([a] { run_sampling(*a); });
+  add_bench_visibility(*c);
 }
 
 }  // namespace photohull::cli

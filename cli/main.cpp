@@ -39,6 +39,7 @@ int run(int argc, char** argv) {
       "Exit codes: 0 done, 1 failed, 2 wrong usage, 130 cancelled.");
   photohull::cli::add_reconstruct(app);
   photohull::cli::add_info(app);
+  photohull::cli::add_convert(app);
   photohull::cli::add_synthesize(app);
   photohull::cli::add_evaluate(app);
   photohull::cli::add_chart(app);
@@ -48,7 +49,8 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
     if (app.get_subcommands().empty())
       throw photohull::UsageError(
-          "a command is missing: reconstruct, evaluate, synthesize, chart, bench, info or devices; "
+          "a command is missing: reconstruct, evaluate, synthesize, convert, chart, bench, info or "
+          "devices; "
           "see "
           "--help");
   } catch (const CLI::ParseError& e) {

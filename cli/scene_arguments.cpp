@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "io/write_scene.h"
 
 namespace photohull::cli {
 namespace {
@@ -22,27 +23,31 @@ Box parse_box(const std::string& text) {
   return {glm::min(a, b), glm::max(a, b)};
 }
 
-SceneFormat parse_format(const std::string& text) {
-  for (const SceneFormat f : {SceneFormat::kMiddlebury, SceneFormat::kColmapText,
-                              SceneFormat::kColmapBinary, SceneFormat::kTransforms})
-    if (text == to_string(f)) return f;
-  throw UsageError("--format " + text +
-                   ": expected middlebury, colmap-text, colmap-binary or transforms");
+}  // namespace
+
+std::string format_names() {
+  std::string names;
+  const std::vector<SceneFormat> formats = io::scene_formats();
+  for (const SceneFormat f : formats)
+    names += std::string(names.empty() ? "" : f == formats.back() ? " or " : ", ") + to_string(f);
+  return names;
 }
 
-}  // namespace
+SceneFormat parse_format(const std::string& option, const std::string& text) {
+  for (const SceneFormat f : io::scene_formats())
+    if (text == to_string(f)) return f;
+  throw UsageError(option + " " + text + ": expected " + format_names());
+}
 
 std::vector<CLI::Option*> SceneArguments::add_reading_options(CLI::App& command) {
   return {
-      command.add_option(
-          "--format", format,
-          "middlebury, colmap-text, colmap-binary or transforms (default: detected)"),
+      command.add_option("--format", format, format_names() + " (default: detected)"),
       command
           .add_option("--masks", masks,
                       "auto (files, alpha, else a background model), none, or a folder of masks")
           ->capture_default_str(),
       command.add_option("--pixel-center", pixel_center,
-                         "coordinate of the top-left pixel's centre in the scene file, 0 or 0.5 "
+                         "coordinate of the top-left pixel's centre in the scene file, 0, 0.5 or 1 "
                          "(default: the format's)")};
 }
 
@@ -59,7 +64,7 @@ void SceneArguments::add_to(CLI::App& command) {
 io::LoadSceneOptions SceneArguments::options() const {
   io::LoadSceneOptions out;
   if (scene.empty()) throw UsageError("SCENE is empty: give the folder or file of the scene");
-  if (format) out.format = parse_format(*format);
+  if (format) out.format = parse_format("--format", *format);
   out.pixel_center = pixel_center;
   if (box) out.box = parse_box(*box);
   if (views && views->empty()) throw UsageError("--views is empty: write e.g. 0-10,15");

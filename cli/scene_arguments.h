@@ -10,6 +10,12 @@
 
 namespace photohull::cli {
 
+/// "middlebury, ..., matlab or opencv".
+std::string format_names();
+
+/// Throws UsageError naming the option for names that are no format's.
+SceneFormat parse_format(const std::string& option, const std::string& text);
+
 struct SceneArguments {
   std::string scene, masks = "auto";
   std::optional<std::string> format, box, views, hold_out;

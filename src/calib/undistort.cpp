@@ -20,6 +20,21 @@ double one_plus(const std::array<double, n>& c, double x) {
   return 1 + sum;
 }
 
+/// Distorted over ideal distance where ideal = distorted (1 + k1 distorted^2 + k2 distorted^4);
+/// zero, which reads as folded, beyond where that grows.
+double measured_scale(double k1, double k2, double ideal) {
+  double distorted = ideal;
+  for (int step = 0; step < 50; ++step) {
+    const double squared = distorted * distorted;
+    const double slope = 1 + squared * (3 * k1 + 5 * k2 * squared);
+    if (!(slope > 1e-3)) return 0;
+    const double change = (distorted * (1 + squared * (k1 + k2 * squared)) - ideal) / slope;
+    distorted -= change;
+    if (std::abs(change) <= 1e-15 * (1 + ideal)) return ideal > 0 ? distorted / ideal : 1;
+  }
+  return 0;
+}
+
 /// Distorted over ideal distance from the axis.
 double radial_scale(const Distortion& d, double radius) {
   const auto& k = d.coefficients;
@@ -29,6 +44,9 @@ double radial_scale(const Distortion& d, double radius) {
     const double theta = std::atan(radius), t2 = theta * theta;
     return theta * one_plus<4>({k[0], k[1], k[2], k[3]}, t2) / radius;
   }
+  if (d.model == DistortionModel::kPolynomial)
+    return one_plus<4>({k[0], k[1], k[4], k[5]}, squared);
+  if (d.model == DistortionModel::kMeasured) return measured_scale(k[0], k[1], radius);
   return one_plus<3>({k[0], k[1], k[4]}, squared) / one_plus<3>({k[5], k[6], k[7]}, squared);
 }
 
@@ -212,7 +230,7 @@ void resample(const Format& format, const LensMap& map, const Intrinsics& k, Vie
 bool is_pinhole(const Distortion& d) {
   const auto is_zero = [](double k) { return k == 0; };
   return d.model == DistortionModel::kNone ||
-         (d.model == DistortionModel::kBrown &&
+         (d.model != DistortionModel::kFisheye &&
           std::all_of(d.coefficients.begin(), d.coefficients.end(), is_zero));
 }
 
@@ -222,7 +240,8 @@ glm::dvec2 distort(const Distortion& distortion, const glm::dvec2& ideal) {
   if (distortion.model == DistortionModel::kNone) return ideal;
   const double squared = glm::dot(ideal, ideal);
   glm::dvec2 p = radial_scale(distortion, std::sqrt(squared)) * ideal;
-  if (distortion.model == DistortionModel::kBrown) {
+  if (distortion.model == DistortionModel::kBrown ||
+      distortion.model == DistortionModel::kPolynomial) {
     const double p1 = distortion.coefficients[2], p2 = distortion.coefficients[3];
     const double xy = 2 * ideal.x * ideal.y;
     p.x += p1 * xy + p2 * (squared + 2 * ideal.x * ideal.x);
@@ -257,15 +276,54 @@ Intrinsics undistorted_intrinsics(const Intrinsics& source, const Distortion& di
   return k;
 }
 
-void undistort(const Distortion& distortion, double max_growth, View& view) {
-  if (is_pinhole(distortion)) return;
-  const LensMap map(view.camera.intrinsics, distortion, max_growth);
-  const Intrinsics k = undistorted_intrinsics(view.camera.intrinsics, distortion, max_growth);
+namespace {
+
+/// Resamples a view to a pinhole camera's picture.
+void resample_to(const Intrinsics& k, const LensMap& map, View& view) {
   if (view.image.encoding == ColourImage::Encoding::kSrgb8)
     resample(Srgb8(), map, k, view);
   else
     resample(LinearHalf(), map, k, view);
   view.camera.intrinsics = k;
+}
+
+/// The smallest such camera whose frame, centred on the principal point, shows what `source` does.
+Intrinsics centred_square(const Intrinsics& source) {
+  double right = 0, down = 0;
+  for (const double u : {-0.5, source.width - 0.5})
+    for (const double v : {-0.5, source.height - 0.5}) {
+      const glm::dvec2 p = ideal_point(source, u, v);
+      right = std::max(right, std::abs(p.x));
+      down = std::max(down, std::abs(p.y));
+    }
+  Intrinsics k;
+  k.fx = k.fy = std::max(source.fx, source.fy);
+  // Less than a hundredth of a pixel more is no reason for another column.
+  k.width = std::max(1, int(std::ceil(2 * right * k.fx - 0.01)));
+  k.height = std::max(1, int(std::ceil(2 * down * k.fy - 0.01)));
+  k.cx = 0.5 * (k.width - 1);
+  k.cy = 0.5 * (k.height - 1);
+  return k;
+}
+
+}  // namespace
+
+void undistort(const Distortion& distortion, double max_growth, View& view) {
+  if (is_pinhole(distortion)) return;
+  const LensMap map(view.camera.intrinsics, distortion, max_growth);
+  resample_to(undistorted_intrinsics(view.camera.intrinsics, distortion, max_growth), map, view);
+}
+
+void rectify(const Distortion& distortion, double max_growth, View& view) {
+  Intrinsics source = view.camera.intrinsics;
+  const LensMap map(source, distortion, max_growth);
+  if (!is_pinhole(distortion)) source = undistorted_intrinsics(source, distortion, max_growth);
+  const Intrinsics k = centred_square(source);
+  const Intrinsics& before = view.camera.intrinsics;
+  const bool same = is_pinhole(distortion) && k.width == before.width &&
+                    k.height == before.height && k.fx == before.fx && k.fy == before.fy &&
+                    before.skew == 0 && k.cx == before.cx && k.cy == before.cy;
+  if (!same) resample_to(k, map, view);
 }
 
 }  // namespace photohull

@@ -21,4 +21,8 @@ Intrinsics undistorted_intrinsics(const Intrinsics& source, const Distortion& di
 /// show get alpha 0 and coverage 255: they are unknown. Without distortion nothing happens.
 void undistort(const Distortion& distortion, double max_growth, View& view);
 
+/// The same, to a camera that every format can express: no distortion, no skew, square pixels of
+/// the finer of the two focal lengths, the principal point in the middle of the frame.
+void rectify(const Distortion& distortion, double max_growth, View& view);
+
 }  // namespace photohull

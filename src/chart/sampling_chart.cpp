@@ -10,7 +10,6 @@ namespace {
 
 constexpr int kWidth = 1240, kHeight = 560;
 constexpr int kLeft = 84, kRight = 30, kTop = 118, kGap = 34, kBottom = 64;
-constexpr const char* kOnePercent = "1 %";
 
 /// Four decimals, so that equal runs give equal files.
 double rounded(double value) { return std::round(value * 1e4) / 1e4; }
@@ -55,12 +54,13 @@ Json line_of(const SamplingCurve& curve, int panel, const SeriesStyle& style, Js
 
 }  // namespace
 
-Chart sampling_chart(const std::string& title, const std::vector<SamplingPanel>& panels) {
+Chart sampling_chart(const std::string& title, const std::vector<SamplingPanel>& panels,
+                     const PanelAxes& axes) {
   PHOTOHULL_CHECK(!panels.empty());
   const std::vector<SeriesStyle> styles = styles_for(panels);
   std::vector<std::string> legend;
   for (const SamplingCurve& curve : panels[0].curves) legend.push_back(curve.name);
-  legend.emplace_back(kOnePercent);
+  legend.push_back(axes.mark_name);
   std::pair<double, double> x{1e30, 0}, y{1e30, 0};
   for (const SamplingPanel& panel : panels)
     for (const SamplingCurve& curve : panel.curves)
@@ -85,18 +85,18 @@ Chart sampling_chart(const std::string& title, const std::vector<SamplingPanel>&
                                     {"width", width},
                                     {"top", kTop},
                                     {"bottom", kBottom}});
-    chart.option["xAxis"].push_back(axis("footprint (pixels), " + panel.name, x, i, 2));
-    chart.option["yAxis"].push_back(axis(i == 0 ? "RMS error (% of full scale)" : "", y, i, 10));
+    chart.option["xAxis"].push_back(axis(axes.x + ", " + panel.name, x, i, 2));
+    chart.option["yAxis"].push_back(axis(i == 0 ? axes.y : "", y, i, 10));
     if (i > 0) chart.option["yAxis"].back()["axisLabel"]["show"] = false;
     chart.option["series"].push_back(
         {{"type", "line"},
-         {"name", kOnePercent},
+         {"name", axes.mark_name},
          {"xAxisIndex", i},
          {"yAxisIndex", i},
          {"symbol", "none"},
          {"itemStyle", {{"color", "#777"}}},
          {"lineStyle", {{"color", "#777"}, {"width", 1.4}, {"type", "dashed"}}},
-         {"data", {{x.first, 1}, {x.second, 1}}}});
+         {"data", {{x.first, axes.mark}, {x.second, axes.mark}}}});
     for (const SamplingCurve& curve : panel.curves) {
       Json data = Json::array();
       for (const auto& [footprint, error] : curve.points)

@@ -21,8 +21,16 @@ struct SamplingPanel {
   std::vector<SamplingCurve> curves;
 };
 
+/// What the axes of panels show.
+struct PanelAxes {
+  std::string x = "footprint (pixels)", y = "RMS error (% of full scale)";
+  double mark = 1;  ///< on y, where a line is drawn
+  std::string mark_name = "1 %";
+};
+
 /// Panels side by side, log-log, with a line at one percent. A curve of one name looks the same in
 /// all.
-Chart sampling_chart(const std::string& title, const std::vector<SamplingPanel>& panels);
+Chart sampling_chart(const std::string& title, const std::vector<SamplingPanel>& panels,
+                     const PanelAxes& axes = {});
 
 }  // namespace photohull::chart

@@ -32,8 +32,10 @@ struct Pose {
 /// Lens distortion as the source states it; removed by calib::prepare_views.
 enum class DistortionModel {
   kNone,
-  kBrown,   ///< OpenCV: k1 k2 p1 p2 k3 k4 k5 k6 (rational when k4..k6 are not zero)
-  kFisheye  ///< OpenCV fisheye (equidistant): k1 k2 k3 k4
+  kBrown,       ///< OpenCV: k1 k2 p1 p2 k3 k4 k5 k6 (rational when k4..k6 are not zero)
+  kFisheye,     ///< OpenCV fisheye (equidistant): k1 k2 k3 k4
+  kPolynomial,  ///< Brown without denominator: k1 k2 p1 p2 k3 k4, with k4 of the eighth power
+  kMeasured     ///< ideal = distorted (1 + k1 r^2 + k2 r^4), r of the distorted point
 };
 
 struct Distortion {

@@ -11,9 +11,27 @@
 
 namespace photohull {
 
-enum class SceneFormat { kMiddlebury, kColmapText, kColmapBinary, kTransforms };
+enum class SceneFormat {
+  kMiddlebury,
+  kColmapText,
+  kColmapBinary,
+  kTransforms,
+  kBundler,
+  kNvm,
+  kOpenMvg,
+  kAliceVision,
+  kMetashape,
+  kRealityCapture,
+  kStrecha,
+  kPmvs,
+  kMvsNet,
+  kMve,
+  kProjection,
+  kMatlab,
+  kOpenCv
+};
 
-/// "middlebury", "colmap-text", "colmap-binary", "transforms".
+/// The name that --format and --to know it by, such as "colmap-text".
 const char* to_string(SceneFormat format);
 
 /// One photograph as listed by the scene; in pixels of the file (distorted, not scaled).

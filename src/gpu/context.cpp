@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 
 #include "core/error.h"
 #include "gpu/egl_devices.h"
@@ -18,6 +19,13 @@ std::int64_t now_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
              std::chrono::steady_clock::now().time_since_epoch())
       .count();
+}
+
+/// Of all the process's threads.
+std::int64_t cpu_ns() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return std::int64_t(now.tv_sec) * 1000000000 + now.tv_nsec;
 }
 
 const char* error_name(GLenum error) {
@@ -64,7 +72,10 @@ Context::Context(int egl_device_index) : egl_(std::make_unique<Egl>()) {
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
 }
 
-Context::~Context() { destroy_context(*egl_); }
+Context::~Context() {
+  programs_.clear();
+  destroy_context(*egl_);
+}
 
 void Context::check_errors(const char* where) const {
   const GLenum error = glGetError();
@@ -81,7 +92,7 @@ void Context::release_deleted() {
 }
 
 Launch::Launch(Context& context, const char* name)
-    : context_(context), name_(name), start_ns_(now_ns()) {
+    : context_(context), name_(name), start_ns_(now_ns()), start_cpu_ns_(cpu_ns()) {
   glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, name);
 }
 
@@ -91,6 +102,7 @@ Launch::~Launch() {
   LaunchStatistics& statistics = context_.statistics()[name_];
   ++statistics.launches;
   statistics.seconds += 1e-9 * double(now_ns() - start_ns_);
+  statistics.cpu_seconds += 1e-9 * double(cpu_ns() - start_cpu_ns_);
 }
 
 }  // namespace photohull::gpu

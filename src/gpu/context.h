@@ -17,10 +17,13 @@ struct Limits {
   std::int64_t groups_x = 0;    ///< largest dispatch along x
 };
 
+class Program;
+
 /// Time spent in the launches of one name.
 struct LaunchStatistics {
   std::int64_t launches = 0;
-  double seconds = 0;
+  double seconds = 0;      ///< by the clock
+  double cpu_seconds = 0;  ///< of all the process's threads; what software devices cost
 };
 
 class Context {
@@ -45,6 +48,8 @@ class Context {
 
   /// Seconds and count per launch name since the start; kernels add to it through `Launch`.
   std::map<std::string, LaunchStatistics>& statistics() { return statistics_; }
+  /// Programs that live as long as the context; Program::shared_... fill it.
+  std::map<std::string, std::shared_ptr<const Program>>& programs() { return programs_; }
 
  private:
   struct Egl;
@@ -52,6 +57,7 @@ class Context {
   DeviceInfo device_;
   Limits limits_;
   std::map<std::string, LaunchStatistics> statistics_;
+  std::map<std::string, std::shared_ptr<const Program>> programs_;
 };
 
 /// Scope of a named launch: a GL debug group, and wall time up to the end of the work on the
@@ -66,7 +72,7 @@ class Launch {
  private:
   Context& context_;
   const char* name_;
-  std::int64_t start_ns_;
+  std::int64_t start_ns_, start_cpu_ns_;
 };
 
 }  // namespace photohull::gpu

@@ -71,6 +71,22 @@ Program Program::raster(std::string_view vertex_path, std::string_view fragment_
       link({vertex, compile_stage(GL_FRAGMENT_SHADER, fragment_path, defines)}, fragment_path));
 }
 
+std::shared_ptr<const Program> Program::shared_compute(Context& context, std::string_view path,
+                                                       std::string_view defines) {
+  auto& kept = context.programs()[concat(path, "\n", defines)];
+  if (!kept) kept = std::make_shared<const Program>(compute(path, defines));
+  return kept;
+}
+
+std::shared_ptr<const Program> Program::shared_raster(Context& context,
+                                                      std::string_view vertex_path,
+                                                      std::string_view fragment_path,
+                                                      std::string_view defines) {
+  auto& kept = context.programs()[concat(vertex_path, "\n", fragment_path, "\n", defines)];
+  if (!kept) kept = std::make_shared<const Program>(raster(vertex_path, fragment_path, defines));
+  return kept;
+}
+
 Program::~Program() {
   if (id_) glDeleteProgram(id_);
 }

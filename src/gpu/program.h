@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,6 +19,14 @@ class Program {
   static Program compute(std::string_view path, std::string_view defines = {});
   static Program raster(std::string_view vertex_path, std::string_view fragment_path,
                         std::string_view defines = {});
+  /// The same, made at the first call and kept by the context: drivers compile again for every
+  /// program that is made anew.
+  static std::shared_ptr<const Program> shared_compute(Context& context, std::string_view path,
+                                                       std::string_view defines = {});
+  static std::shared_ptr<const Program> shared_raster(Context& context,
+                                                      std::string_view vertex_path,
+                                                      std::string_view fragment_path,
+                                                      std::string_view defines = {});
   Program(Program&& other) noexcept : id_(std::exchange(other.id_, 0)) {}
   Program& operator=(Program&& other) noexcept {
     std::swap(id_, other.id_);

@@ -30,6 +30,10 @@ FormatInfo info_of(TextureFormat format) {
       return {GL_R16F, GL_RED, GL_FLOAT};
     case TextureFormat::kR32f:
       return {GL_R32F, GL_RED, GL_FLOAT};
+    case TextureFormat::kRg32f:
+      return {GL_RG32F, GL_RG, GL_FLOAT};
+    case TextureFormat::kR32ui:
+      return {GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT};
     case TextureFormat::kRgba32ui:
       return {GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT};
   }
@@ -52,7 +56,7 @@ TextureArray::TextureArray(TextureFormat format, int width, int height, int laye
   glTextureParameteri(id_, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   glTextureParameteri(id_, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
   // Integers cannot be filtered.
-  const bool integers = format == TextureFormat::kRgba32ui;
+  const bool integers = format == TextureFormat::kRgba32ui || format == TextureFormat::kR32ui;
   glTextureParameteri(id_, GL_TEXTURE_MAG_FILTER, integers ? GL_NEAREST : GL_LINEAR);
   if (integers)
     glTextureParameteri(id_, GL_TEXTURE_MIN_FILTER, GL_NEAREST);

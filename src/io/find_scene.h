@@ -17,7 +17,7 @@ struct SceneLocation {
 };
 
 /// Finds the scene in a folder, or recognises the file given. Where a folder holds several formats
-/// the order is Middlebury, COLMAP, transforms.json, with a warning. Throws Error listing what was
+/// the order is that of format_entries(), with a warning. Throws Error listing what was
 /// looked for when there is none, or several par files.
 SceneLocation find_scene(const std::filesystem::path& path, std::optional<SceneFormat> format);
 

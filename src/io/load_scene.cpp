@@ -7,7 +7,9 @@
 
 #include "core/error.h"
 #include "io/camera_checks.h"
+#include "io/find_files.h"
 #include "io/find_scene.h"
+#include "io/formats.h"
 #include "io/image_file.h"
 #include "io/raw_scene.h"
 #include "io/scene_box.h"
@@ -20,38 +22,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kFewestViews = 2;
-
-RawScene read_raw(const SceneLocation& location) {
-  switch (location.format) {
-    case SceneFormat::kMiddlebury:
-      return read_middlebury(location.file);
-    case SceneFormat::kTransforms:
-      return read_transforms(location.file);
-    case SceneFormat::kColmapText:
-      return read_colmap_text(location.file);
-    case SceneFormat::kColmapBinary:
-      return read_colmap_binary(location.file);
-  }
-  PHOTOHULL_CHECK(false);
-}
-
-/// The file that a path means, tidied where that does not change it (".." after a symbolic link
-/// may); empty when there is none.
-fs::path existing(const fs::path& path) {
-  const fs::path tidy = path.lexically_normal();
-  return is_file(tidy) ? tidy : is_file(path) ? path : fs::path();
-}
-
-/// The file a listed name means; empty when it is nowhere.
-fs::path find_image(const std::string& listed, const std::vector<fs::path>& folders) {
-  for (const fs::path& folder : folders)
-    for (const char* extension :
-         {"", ".png", ".jpg", ".jpeg", ".PNG", ".JPG", ".tif", ".tiff", ".exr"}) {
-      const fs::path found = existing(folder / (listed + extension));
-      if (!found.empty()) return found;
-    }
-  return {};
-}
 
 /// Throws Error when two views share an image.
 void reject_duplicates(const RawScene& raw, const std::vector<fs::path>& images) {
@@ -180,8 +150,8 @@ std::vector<RawView> fill_views(const LoadSceneOptions& options, const RawScene&
 }  // namespace
 
 void LoadSceneOptions::validate() const {
-  if (pixel_center && *pixel_center != 0.0 && *pixel_center != 0.5)
-    throw UsageError(concat("--pixel-center ", *pixel_center, ": expected 0 or 0.5"));
+  if (pixel_center && *pixel_center != 0.0 && *pixel_center != 0.5 && *pixel_center != 1.0)
+    throw UsageError(concat("--pixel-center ", *pixel_center, ": expected 0, 0.5 or 1"));
   if (masks == MaskSource::kDirectory && mask_directory.empty())
     throw UsageError("--masks is empty: expected auto, none or the folder that holds the masks");
   if (!box) return;
@@ -195,7 +165,7 @@ void LoadSceneOptions::validate() const {
 Scene load_scene(const fs::path& path, const LoadSceneOptions& options) {
   options.validate();
   const SceneLocation location = find_scene(path, options.format);
-  RawScene raw = read_raw(location);
+  RawScene raw = format_entry(location.format).read(location.file);
   Scene scene;
   scene.path = path;
   scene.format = raw.format;

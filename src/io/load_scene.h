@@ -19,8 +19,8 @@ enum class MaskSource {
 struct LoadSceneOptions {
   /// Format of the scene; detected from the files' names where absent.
   std::optional<SceneFormat> format;
-  /// Coordinates of the centre of the top-left pixel in the file: 0 or 0.5. Absent: the format's
-  /// own convention (Middlebury 0, COLMAP and transforms.json 0.5). For files whose writer
+  /// Coordinates of the centre of the top-left pixel in the file: 0, 0.5 or 1. Absent: the
+  /// format's own convention (docs/formats.md). For files whose writer
   /// followed another one.
   std::optional<double> pixel_center;
   /// Region of interest in world coordinates; replaces the scene's own. Finite, min < max.
@@ -39,13 +39,8 @@ struct LoadSceneOptions {
   void validate() const;
 };
 
-/// Reads a scene from a folder or from the file that lists its views:
-///
-///   Middlebury       *_par.txt; images beside it or in images/
-///   COLMAP           cameras, images, points3D as .txt or .bin, in the folder, sparse/0/ or
-///                    sparse/; images beside the model, in its images/, ../images or ../../images
-///   transforms.json  NeRF, Instant-NGP, nerfstudio; file_path with or without extension
-///
+/// Reads a scene from a folder or from the file that lists its views, in any SceneFormat
+/// (docs/formats.md).
 /// Poses, intrinsics and pixel centres come back in the program's own conventions (core/camera.h);
 /// rotations are exactly orthonormal. Image and mask sizes are read from the files' headers, no
 /// pixel is decoded. The box is, in this order: options.box, bbox.txt in the scene's folder, the

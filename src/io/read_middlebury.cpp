@@ -2,10 +2,10 @@
 // matrices row by row, P = K [R | t]. Format: Seitz et al., CVPR 2006 (README of the data sets).
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "core/error.h"
 #include "io/camera_checks.h"
+#include "io/pose_parts.h"
 #include "io/raw_scene.h"
 #include "io/text_file.h"
 
@@ -19,23 +19,6 @@ constexpr std::array<const char*, kNumbers> kFieldNames = {
     "r13", "r21", "r22", "r23", "r31", "r32", "r33", "t1",  "t2",  "t3"};
 
 using Numbers = std::array<double, kNumbers>;
-
-Intrinsics intrinsics_of(const Numbers& v, const std::string& where) {
-  const double largest = std::abs(v[0]) + std::abs(v[4]) + std::abs(v[8]);
-  if (v[8] == 0 || v[0] == 0 || v[4] == 0)
-    throw Error(concat(where, ": K is singular (k11 ", v[0], ", k22 ", v[4], ", k33 ", v[8],
-                       "); none of them may be 0"));
-  if (std::abs(v[3]) + std::abs(v[6]) + std::abs(v[7]) > 1e-9 * largest)
-    throw Error(concat(where, ": K is not upper triangular (k21 ", v[3], ", k31 ", v[6], ", k32 ",
-                       v[7], "); all three must be 0"));
-  Intrinsics k;
-  k.fx = v[0] / v[8];
-  k.skew = v[1] / v[8];
-  k.cx = v[2] / v[8];
-  k.fy = v[4] / v[8];
-  k.cy = v[5] / v[8];
-  return k;
-}
 
 RawView parse_view(const Lines& lines) {
   const std::vector<std::string_view> fields = split_fields(lines.text());
@@ -52,7 +35,7 @@ RawView parse_view(const Lines& lines) {
   view.where = lines.where();
   const char* name_end = fields[first - 1].data() + fields[first - 1].size();
   view.listed = std::string(fields[0].data(), name_end);
-  view.camera.intrinsics = intrinsics_of(v, view.where);
+  view.camera.intrinsics = intrinsics_of(std::span<const double, 9>(v.data(), 9), view.where);
   const glm::dmat3 rows(v[9], v[10], v[11], v[12], v[13], v[14], v[15], v[16], v[17]);
   view.camera.cam_from_world.rotation =
       checked_rotation(glm::transpose(rows), view.where, "R (r11 ... r33)");

@@ -7,36 +7,14 @@
 
 #include "core/error.h"
 #include "io/camera_checks.h"
+#include "io/json_file.h"
 #include "io/raw_scene.h"
-#include "io/text_file.h"
 
 namespace photohull::io {
 namespace fs = std::filesystem;
 namespace {
 
 using nlohmann::json;
-
-/// A frame takes about 40 values; this is enough for half a million and keeps a hostile file from
-/// growing to many times its size in memory.
-constexpr std::size_t kMaxValues = 20'000'000;
-constexpr int kMaxDepth = 32;
-
-json parse_json(const fs::path& file) {
-  const std::string text = read_text_file(file);
-  std::size_t values = 0;
-  const auto guard = [&](int depth, json::parse_event_t, json&) {
-    if (depth > kMaxDepth || ++values > kMaxValues)
-      throw Error(concat(file.string(), ": more than ", kMaxDepth, " levels or ", kMaxValues,
-                         " values are no scene; check that this is the right file"));
-    return true;
-  };
-  try {
-    return json::parse(text, guard);
-  } catch (const json::exception& failure) {
-    throw Error(concat(file.string(), ": not valid JSON (", failure.what(),
-                       "); NaN, comments and trailing commas are not allowed"));
-  }
-}
 
 /// One frame's fields with those of the whole file behind them.
 class Fields {
@@ -144,9 +122,9 @@ Distortion read_distortion(const Fields& fields) {
   const bool fisheye = model == "OPENCV_FISHEYE" || fields.flag("is_fisheye");
   if (!fisheye && !model.empty() && model != "OPENCV" && model != "PINHOLE" &&
       model != "SIMPLE_PINHOLE" && model != "SIMPLE_RADIAL" && model != "RADIAL" &&
-      model != "PERSPECTIVE")
+      model != "PERSPECTIVE" && model != "FULL_OPENCV")
     throw Error(concat(fields.where(), ": camera_model ", model,
-                       " is not known; use PINHOLE, OPENCV or OPENCV_FISHEYE"));
+                       " is not known; use PINHOLE, OPENCV, FULL_OPENCV or OPENCV_FISHEYE"));
   Distortion d;
   const double k1 = fields.number("k1"), k2 = fields.number("k2"), k3 = fields.number("k3"),
                k4 = fields.number("k4"), p1 = fields.number("p1"), p2 = fields.number("p2");
@@ -155,13 +133,12 @@ Distortion read_distortion(const Fields& fields) {
     d.coefficients = {k1, k2, k3, k4};
     return d;
   }
-  // Programs disagree whether k4 is the eighth-order term or OpenCV's denominator.
-  if (k4 != 0)
-    throw Error(concat(fields.where(), ": k4 is ", k4,
-                       ", which has no agreed meaning outside OPENCV_FISHEYE; undistort the images "
-                       "or fit k1, k2, k3, p1, p2 only"));
-  d.coefficients = {k1, k2, p1, p2, k3};
-  if (d.coefficients != std::array<double, 8>{}) d.model = DistortionModel::kBrown;
+  const double k5 = fields.number("k5"), k6 = fields.number("k6");
+  // OpenCV's k4 to k6 are a denominator; nerfstudio's k4, alone, is the term of the eighth power.
+  const bool eighth = model != "FULL_OPENCV" && k4 != 0 && k5 == 0 && k6 == 0;
+  d.coefficients = {k1, k2, p1, p2, k3, k4, k5, k6};
+  if (d.coefficients != std::array<double, 8>{})
+    d.model = eighth ? DistortionModel::kPolynomial : DistortionModel::kBrown;
   return d;
 }
 

@@ -117,4 +117,16 @@ std::int64_t Lines::integer(std::string_view token, std::string_view field) cons
   return *value;
 }
 
+std::vector<double> read_numbers(const fs::path& file, std::size_t count) {
+  std::vector<double> values;
+  Lines lines(file);
+  while (lines.next_content())
+    for (const std::string_view field : split_fields(lines.text(), count + 1))
+      values.push_back(lines.number(field, concat("number ", values.size() + 1)));
+  if (values.size() != count)
+    throw Error(
+        concat(file.string(), ": ", values.size(), " numbers found, but ", count, " are needed"));
+  return values;
+}
+
 }  // namespace photohull::io

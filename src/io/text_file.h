@@ -31,6 +31,9 @@ std::vector<std::string_view> split_fields(std::string_view line, std::size_t li
 std::optional<double> parse_double(std::string_view token);
 std::optional<std::int64_t> parse_integer(std::string_view token);
 
+/// All numbers of a file of exactly `count`, between blanks and line ends. Throws Error otherwise.
+std::vector<double> read_numbers(const std::filesystem::path& file, std::size_t count);
+
 /// Walks over a file's lines.
 class Lines {
  public:

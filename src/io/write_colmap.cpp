@@ -40,6 +40,9 @@ CameraEntry camera_entry(const SourceView& view) {
   const Intrinsics& k = view.camera.intrinsics;
   const std::array<double, 8>& c = view.distortion.coefficients;
   const char* name = "PINHOLE";
+  if (view.distortion.model == DistortionModel::kPolynomial ||
+      view.distortion.model == DistortionModel::kMeasured)
+    refuse_distortion(view, "COLMAP");
   if (view.distortion.model == DistortionModel::kFisheye) name = "OPENCV_FISHEYE";
   if (view.distortion.model == DistortionModel::kBrown)
     name = c[4] == 0 && c[5] == 0 && c[6] == 0 && c[7] == 0 ? "OPENCV" : "FULL_OPENCV";

@@ -1,7 +1,9 @@
-// Scenes to the files of other programs: cameras, box and sparse points; images are not copied.
+// Scenes to the files of other programs: cameras, box and sparse points. Images are not copied but
+// where a format finds them by place or number: PMVS, MVSNet, MVE and Strecha's.
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "core/scene.h"
 
@@ -15,6 +17,11 @@ namespace photohull::io {
 /// Throws Error when the folder cannot be written or the format cannot express a camera; `what`
 /// says which view and why.
 
+void write_scene(const Scene& scene, SceneFormat format, const std::filesystem::path& folder);
+
+/// All formats, in the order in which a folder is searched for them.
+std::vector<SceneFormat> scene_formats();
+
 /// scene_par.txt, images looked for in `folder` and images/. No distortion.
 void write_middlebury(const Scene& scene, const std::filesystem::path& folder);
 
@@ -23,7 +30,7 @@ void write_middlebury(const Scene& scene, const std::filesystem::path& folder);
 void write_colmap_text(const Scene& scene, const std::filesystem::path& folder);
 void write_colmap_binary(const Scene& scene, const std::filesystem::path& folder);
 
-/// transforms.json with masks. No skew; Brown distortion without k4, k5, k6.
+/// transforms.json with masks. No skew; No distortion of measured points.
 void write_transforms(const Scene& scene, const std::filesystem::path& folder);
 
 }  // namespace photohull::io

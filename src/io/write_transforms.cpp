@@ -28,18 +28,22 @@ void add_distortion(const SourceView& view, ordered_json& frame) {
   switch (view.distortion.model) {
     case DistortionModel::kNone:
       return;
-    case DistortionModel::kBrown:
-      if (c[5] != 0 || c[6] != 0 || c[7] != 0)
-        throw Error(concat(view.name,
-                           ": its camera has rational distortion (k4, k5, k6), which "
-                           "transforms.json cannot express; write COLMAP"));
-      frame["camera_model"] = "OPENCV";
+    case DistortionModel::kMeasured:
+      refuse_distortion(view, "transforms.json");
+    case DistortionModel::kPolynomial:
+    case DistortionModel::kBrown: {
+      const bool rational =
+          view.distortion.model == DistortionModel::kBrown && (c[5] != 0 || c[6] != 0 || c[7] != 0);
+      frame["camera_model"] = rational ? "FULL_OPENCV" : "OPENCV";
       frame["k1"] = c[0];
       frame["k2"] = c[1];
       frame["p1"] = c[2];
       frame["p2"] = c[3];
       frame["k3"] = c[4];
+      if (rational || c[5] != 0) frame["k4"] = c[5];
+      if (rational) frame["k5"] = c[6], frame["k6"] = c[7];
       return;
+    }
     case DistortionModel::kFisheye:
       frame["camera_model"] = "OPENCV_FISHEYE";
       for (int i = 0; i < 4; ++i) frame[concat("k", i + 1)] = c[i];
@@ -72,9 +76,7 @@ void write_transforms(const Scene& scene, const std::filesystem::path& folder) {
   if (scene.box) root["aabb"] = {triple(scene.box->min), triple(scene.box->max)};
   root["frames"] = ordered_json::array();
   for (const SourceView& view : scene.views) root["frames"].push_back(frame_of(view, folder));
-  // Names that are not UTF-8 could not be read back, but must not end in an exception of json's.
-  const auto replace = ordered_json::error_handler_t::replace;
-  write_atomically(folder / "transforms.json", root.dump(1, ' ', false, replace) + "\n");
+  write_atomically(folder / "transforms.json", json_text(root));
 }
 
 }  // namespace photohull::io

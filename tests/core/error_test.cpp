@@ -46,6 +46,8 @@ TEST(SceneFormat, HasANameOfItsOwn) {
   EXPECT_STREQ(to_string(SceneFormat::kColmapText), "colmap-text");
   EXPECT_STREQ(to_string(SceneFormat::kColmapBinary), "colmap-binary");
   EXPECT_STREQ(to_string(SceneFormat::kTransforms), "transforms");
+  EXPECT_STREQ(to_string(SceneFormat::kBundler), "bundler");
+  EXPECT_STREQ(to_string(SceneFormat::kOpenCv), "opencv");
 }
 
 }  // namespace

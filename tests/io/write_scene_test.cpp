@@ -92,14 +92,6 @@ TEST_F(WriteScene, DistortionSurvivesWhereTheFormatHasIt) {
               AllOf(HasSubstr("a.png"), HasSubstr("distortion")));
 }
 
-TEST_F(WriteScene, RationalDistortionSurvivesInColmapOnly) {
-  scene_.views[2].distortion = {DistortionModel::kBrown, {.1, .2, .3, .4, .5, .6, .7, .8}};
-  EXPECT_EQ(round_trip(write_colmap_text, "c").views[2].distortion.coefficients,
-            scene_.views[2].distortion.coefficients);
-  EXPECT_THAT(error_of([&] { write_transforms(scene_, folder_ / "j"); }),
-              AllOf(HasSubstr("c.png"), HasSubstr("k4")));
-}
-
 TEST_F(WriteScene, UnwritablePlacesAreNamed) {
   put("file", "");
   EXPECT_THAT(error_of([&] { write_middlebury(scene_, folder_ / "file" / "x"); }),

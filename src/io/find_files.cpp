@@ -1,0 +1,124 @@
+#include "io/find_files.h"
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+
+#include "core/error.h"
+#include "io/text_file.h"
+
+namespace photohull::io {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kImageEndings[] = {".png", ".jpg", ".jpeg", ".tif", ".tiff",
+                                         ".exr", ".ppm", ".pgm",  ".bmp"};
+
+/// The file that a path means, tidied where that does not change it (".." after a symbolic link
+/// may); empty when there is none.
+fs::path existing(const fs::path& path) {
+  const fs::path tidy = path.lexically_normal();
+  return is_file(tidy) ? tidy : is_file(path) ? path : fs::path();
+}
+
+fs::path find_listed(const std::string& listed, const std::vector<fs::path>& folders) {
+  for (const fs::path& folder : folders)
+    for (const char* extension :
+         {"", ".png", ".jpg", ".jpeg", ".PNG", ".JPG", ".tif", ".tiff", ".exr"}) {
+      const fs::path found = existing(folder / (listed + extension));
+      if (!found.empty()) return found;
+    }
+  return {};
+}
+
+bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
+
+std::string lower(std::string text) {
+  for (char& c : text) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+void sort_naturally(std::vector<fs::path>& paths) {
+  std::sort(paths.begin(), paths.end(), [](const fs::path& a, const fs::path& b) {
+    return natural_less(a.filename().string(), b.filename().string());
+  });
+}
+
+}  // namespace
+
+bool natural_less(std::string_view a, std::string_view b) {
+  std::size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (is_digit(a[i]) && is_digit(b[j])) {
+      std::size_t i_end = i, j_end = j;
+      while (i_end < a.size() && is_digit(a[i_end])) ++i_end;
+      while (j_end < b.size() && is_digit(b[j_end])) ++j_end;
+      std::string_view x = a.substr(i, i_end - i), y = b.substr(j, j_end - j);
+      while (x.size() > 1 && x[0] == '0') x.remove_prefix(1);
+      while (y.size() > 1 && y[0] == '0') y.remove_prefix(1);
+      if (x.size() != y.size()) return x.size() < y.size();
+      if (x != y) return x < y;
+      i = i_end, j = j_end;
+    } else if (a[i] != b[j]) {
+      return a[i] < b[j];
+    } else {
+      ++i, ++j;
+    }
+  }
+  if (a.size() - i != b.size() - j) return a.size() - i < b.size() - j;
+  return a < b;
+}
+
+std::vector<fs::path> files_ending(const fs::path& folder, std::string_view ending) {
+  std::vector<fs::path> found;
+  std::error_code failure;
+  for (const auto& entry : fs::directory_iterator(folder, failure))
+    if (entry.path().filename().string().ends_with(ending) && is_file(entry.path()))
+      found.push_back(entry.path());
+  sort_naturally(found);
+  return found;
+}
+
+fs::path only_file_ending(const fs::path& folder, std::string_view ending) {
+  const std::vector<fs::path> files = files_ending(folder, ending);
+  if (files.size() > 1)
+    throw Error(concat(folder.string(), ": several scenes lie here (", files[0].filename().string(),
+                       ", ", files[1].filename().string(), "); give the path of one of them"));
+  return files.empty() ? fs::path() : files[0];
+}
+
+std::vector<fs::path> images_in(const fs::path& folder) {
+  std::vector<fs::path> found;
+  std::error_code failure;
+  for (const auto& entry : fs::directory_iterator(folder, failure)) {
+    const std::string extension = lower(entry.path().extension().string());
+    if (std::find(std::begin(kImageEndings), std::end(kImageEndings), extension) !=
+            std::end(kImageEndings) &&
+        is_file(entry.path()))
+      found.push_back(entry.path());
+  }
+  sort_naturally(found);
+  return found;
+}
+
+fs::path find_image(const std::string& listed, const std::vector<fs::path>& folders) {
+  const fs::path found = find_listed(listed, folders);
+  if (!found.empty()) return found;
+  // Paths of Windows' programs come with backslashes.
+  const std::string name = listed.substr(listed.find_last_of("/\\") + 1);
+  return name == listed || name.empty() ? fs::path() : find_listed(name, folders);
+}
+
+std::string file_head(const fs::path& file, std::size_t bytes) {
+  std::string head(bytes, '\0');
+  std::ifstream in(file, std::ios::binary);
+  in.read(head.data(), std::streamsize(bytes));
+  head.resize(std::size_t(std::max<std::streamsize>(in.gcount(), 0)));
+  return head;
+}
+
+fs::path folder_of(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+}  // namespace photohull::io

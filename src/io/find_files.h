@@ -1,0 +1,39 @@
+// Files of scenes by patterns of their names. Internal to io.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace photohull::io {
+
+/// The regular files directly in a folder whose names end so, in natural order (2 before 10);
+/// none when there is no such folder.
+std::vector<std::filesystem::path> files_ending(const std::filesystem::path& folder,
+                                                std::string_view ending);
+
+/// The only such file, or empty when there is none. Throws Error naming two of them where there
+/// are several.
+std::filesystem::path only_file_ending(const std::filesystem::path& folder,
+                                       std::string_view ending);
+
+/// The images of a folder, in natural order.
+std::vector<std::filesystem::path> images_in(const std::filesystem::path& folder);
+
+/// The file that a listed name means, with or without an extension, relative to one of the
+/// folders; else, since files name paths of other machines, a file of the same name alone in one
+/// of them. Empty when it is nowhere.
+std::filesystem::path find_image(const std::string& listed,
+                                 const std::vector<std::filesystem::path>& folders);
+
+/// The first bytes of a file (fewer where it is shorter, none where it cannot be read).
+std::string file_head(const std::filesystem::path& file, std::size_t bytes = 4096);
+
+/// Digits compare as numbers: "view2" before "view10".
+bool natural_less(std::string_view a, std::string_view b);
+
+/// The folder that holds a file; "." for a bare name.
+std::filesystem::path folder_of(const std::filesystem::path& file);
+
+}  // namespace photohull::io

@@ -1,0 +1,79 @@
+#include "visibility/visibility_map.h"
+
+#include <algorithm>
+
+namespace photohull::visibility {
+namespace {
+
+std::size_t texel_bytes(const gpu::TextureArray& texture, std::size_t each) {
+  return texture.id() ? std::size_t(texture.width()) * texture.height() * texture.layers() * each
+                      : 0;
+}
+
+}  // namespace
+
+std::size_t VisibilityMap::bytes() const {
+  return texel_bytes(first_, 4) + texel_bytes(second_, 4) + texel_bytes(ids_, 4) +
+         texel_bytes(moments_, 8) + triangles_.bytes() + list_ends_.bytes() + list_.bytes();
+}
+
+std::vector<float> VisibilityMap::depths(bool second) const {
+  const gpu::TextureArray& texture = second ? second_ : first_;
+  std::vector<float> out(texel_bytes(texture, 1));
+  if (!out.empty()) texture.read(0, out.size() * 4, out.data());
+  return out;
+}
+
+std::vector<std::uint32_t> VisibilityMap::ids() const {
+  std::vector<std::uint32_t> out(texel_bytes(ids_, 1));
+  if (!out.empty()) ids_.read(0, out.size() * 4, out.data());
+  return out;
+}
+
+std::vector<std::uint32_t> VisibilityMap::triangles_at(int part, const glm::ivec2& texel) const {
+  const std::size_t at = (std::size_t(part) * layout_.size.y + texel.y) * layout_.size.x + texel.x;
+  std::vector<std::uint32_t> out;
+  if (technique_.detail == Detail::kLists) {
+    const auto ends = list_ends_.download<std::uint32_t>(2, at);
+    out = list_.download<std::uint32_t>(ends[1] - ends[0], ends[0]);
+  } else if (technique_.detail == Detail::kCoverage) {
+    out = list_.download<std::uint32_t>(shaders::kMaxLinks, at * shaders::kMaxLinks);
+  } else if (technique_.detail == Detail::kSubPixel) {
+    out = list_ends_.download<std::uint32_t>(1, at);
+  }
+  std::erase(out, shaders::kNoTriangle);
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+void VisibilityMap::bind() const {
+  info_.bind_uniform(1);
+  const gpu::TextureArray* units[] = {&first_, &second_, &ids_, &moments_};
+  for (unsigned i = 0; i < 4; ++i)
+    if (units[i]->id()) units[i]->bind(i);
+  if (triangles_.id()) triangles_.bind_storage(4);
+  if (list_ends_.id()) list_ends_.bind_storage(5);
+  if (list_.id()) list_.bind_storage(6);
+}
+
+std::vector<float> visible(gpu::Context& context, const VisibilityMap& map,
+                           std::span<const Sample> samples) {
+  if (samples.empty()) return {};
+  std::vector<shaders::Receiver> receivers;
+  receivers.reserve(samples.size());
+  for (const Sample& s : samples)
+    receivers.push_back({glm::vec4(s.position - map.origin_, 1),
+                         glm::vec4(s.normal, 0),
+                         glm::vec4(s.step_x, 0),
+                         glm::vec4(s.step_y, 0),
+                         {s.id, 0, 0, 0}});
+  const gpu::Buffer receiver_buffer = gpu::Buffer::of(receivers), fractions(samples.size() * 4);
+  map.bind();
+  receiver_buffer.bind_storage(0);
+  fractions.bind_storage(1);
+  map.test_->set("count", int(samples.size()));
+  map.test_->dispatch(context, "visibility_test_receivers", gpu::group_count(samples.size(), 64));
+  return fractions.download<float>(samples.size());
+}
+
+}  // namespace photohull::visibility
