@@ -5,9 +5,8 @@
 
 #include <cmath>
 
-#include "match_scene.h"
 #include "support/gl_context.h"
-#include "volume/analytic_volumes.h"
+#include "wall_scene.h"
 
 namespace photohull::refine {
 namespace {
@@ -17,41 +16,22 @@ using glm::dvec3;
 using glm::ivec3;
 using glm::vec3;
 
-constexpr double kWall = 12;  // voxels below are body
 const dvec3 kBall(24, 24, 30);
 constexpr double kRadius = 7;
 
-class LookThrough : public ::testing::Test {
+class LookThrough : public WallScene {
  protected:
-  LookThrough() {
-    // Cameras in a row, which look down at the wall.
-    for (int i = 0; i < 7; ++i) {
-      const double tilt = glm::radians(-36.0 + 12 * i);
-      const dvec3 target = test::kGrid.world({24, 24, kWall});
-      View view;
-      view.camera = test::look_at(target + 10.0 * dvec3(std::sin(tilt), 0, std::cos(tilt)), target,
-                                  200, test::kImageEdge, test::kImageEdge, {0, 1, 0});
-      views_.push_back(view);
-    }
-    photograph(false);
-  }
+  LookThrough() { photograph(false); }
 
   /// The wall alone, or with the ball before it, both textured.
   void photograph(bool ball) {
-    const double z = test::kGrid.world({0, 0, kWall}).z;
     const dvec3 middle = test::kGrid.world(kBall);
     const double radius = kRadius * test::kGrid.voxel_size;
-    for (View& view : views_)
-      view.image = test::ray_cast(
-          view.camera,
-          [&](const dvec3& eye, const dvec3& ray) {
-            dvec3 at = eye + (z - eye.z) / ray.z * ray;
-            const double b = glm::dot(ray, eye - middle);
-            const double under = b * b - glm::dot(eye - middle, eye - middle) + radius * radius;
-            if (ball && under > 0) at = eye + (-b - std::sqrt(under)) * ray;
-            return test::noise_colour(at, 0.15);
-          },
-          4);
+    WallScene::photograph(0.15, [&](const dvec3& eye, const dvec3& ray) {
+      const double b = glm::dot(ray, eye - middle);
+      const double under = b * b - glm::dot(eye - middle, eye - middle) + radius * radius;
+      return ball && under > 0 ? -b - std::sqrt(under) : kNever;
+    });
   }
 
   static SparseVolume body(bool ball) {
@@ -90,7 +70,6 @@ class LookThrough : public ::testing::Test {
     return free_sightlines(lines, known, projtex::cameras_of(views_), options_, volume);
   }
 
-  std::vector<View> views_;
   LookOptions options_;
 };
 

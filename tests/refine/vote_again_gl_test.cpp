@@ -3,10 +3,9 @@
 
 #include <cmath>
 
-#include "match_scene.h"
 #include "refine/vote.h"
 #include "support/gl_context.h"
-#include "volume/analytic_volumes.h"
+#include "wall_scene.h"
 
 namespace photohull::refine {
 namespace {
@@ -15,39 +14,21 @@ using glm::dvec2;
 using glm::dvec3;
 using glm::ivec3;
 
-constexpr double kWall = 12;  // voxels below are body
-const dvec2 kRod(22, 26);     // x and z of its axis, along y
+const dvec2 kRod(22, 26);  // x and z of its axis, along y
 constexpr double kRadius = 1.3;
 
-class VoteAgain : public ::testing::Test {
+class VoteAgain : public WallScene {
  protected:
-  VoteAgain() {
-    for (int i = 0; i < 7; ++i) {
-      const double tilt = glm::radians(-36.0 + 12 * i);
-      const dvec3 target = test::kGrid.world({24, 24, kWall});
-      View view;
-      view.camera = test::look_at(target + 10.0 * dvec3(std::sin(tilt), 0, std::cos(tilt)), target,
-                                  200, test::kImageEdge, test::kImageEdge, {0, 1, 0});
-      views_.push_back(view);
-    }
-  }
-
+  /// The wall alone, or with the rod before it.
   void photograph(bool rod) {
-    const double z = test::kGrid.world({0, 0, kWall}).z;
     const dvec3 axis = test::kGrid.world({kRod.x, 0, kRod.y});
     const double radius = kRadius * test::kGrid.voxel_size;
-    for (View& view : views_)
-      view.image = test::ray_cast(
-          view.camera,
-          [&](const dvec3& eye, const dvec3& ray) {
-            dvec3 at = eye + (z - eye.z) / ray.z * ray;
-            const dvec2 o(eye.x - axis.x, eye.z - axis.z), d(ray.x, ray.z);
-            const double a = glm::dot(d, d), b = glm::dot(o, d);
-            const double under = b * b - a * (glm::dot(o, o) - radius * radius);
-            if (rod && under > 0) at = eye + (-b - std::sqrt(under)) / a * ray;
-            return test::noise_colour(at, 0.12);
-          },
-          4);
+    WallScene::photograph(0.12, [&](const dvec3& eye, const dvec3& ray) {
+      const dvec2 o(eye.x - axis.x, eye.z - axis.z), d(ray.x, ray.z);
+      const double a = glm::dot(d, d), b = glm::dot(o, d);
+      const double under = b * b - a * (glm::dot(o, o) - radius * radius);
+      return rod && under > 0 ? (-b - std::sqrt(under)) / a : kNever;
+    });
   }
 
   static double rod(const dvec3& p) { return std::hypot(p.x - kRod.x, p.z - kRod.y) - kRadius; }
@@ -72,8 +53,6 @@ class VoteAgain : public ::testing::Test {
     return vote_again(context, volume, hull, projtex::ImageSet(views_), projtex::cameras_of(views_),
                       0.01, options);
   }
-
-  std::vector<View> views_;
 };
 
 double nothing(const dvec3&) { return 100; }
