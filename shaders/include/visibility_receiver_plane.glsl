@@ -20,6 +20,14 @@ MapPlane plane_of(vec3 normal, MapPoint m) {
 
 float texel_width(float z) { return map_info.bias.w * z; }
 
+// Change of the plane's depth from a texel's middle to its corner; edge-on, as much as is credible.
+float change_within_texel(vec3 normal, MapPoint m) {
+  MapPlane plane = plane_of(normal, m);
+  float change = m.z * m.w * 0.5 * (abs(plane.slope.x) + abs(plane.slope.y));
+  float most = 0.5 * kSteepest * texel_width(m.z);
+  return plane.usable ? min(change, most) : most;
+}
+
 // A depth that was carried from the receiver to another position, kept within what is credible.
 float limited_depth(MapPoint m, float z, vec2 at) {
   vec2 d = abs(at - m.at);

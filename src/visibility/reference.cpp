@@ -179,22 +179,24 @@ double Map::map_depth(const Sample& s, const Place& place, const Texel& texel) c
       return z1 + 0.5 * (z2 - z1);
     case Bias::kDualDepth:
       return z1 + std::min(0.5 * (z2 - z1), z_max_);
-    case Bias::kReceiverPlane: {
-      const double most = 0.5 * kSteepest * layout_.texel_width * place.z;
-      double change = 0;  // by small steps along each axis of the map
-      for (const dvec2& step : {dvec2(1e-4, 0), dvec2(0, 1e-4)}) {
-        const Sight line = sight(place.part, place.at + step);
-        const Place here = place;
-        const double w = glm::dot(s.normal, s.position - origin_ - line.origin) /
-                         glm::dot(s.normal, line.direction);
-        change += 0.5 * std::abs(w / here.w - 1) * here.z / 1e-4;
-      }
-      return z1 + bias_ + (change < most ? change : most);
-    }
+    case Bias::kReceiverPlane:
+      return z1 + bias_ + change_within_texel(s, place);
     case Bias::kIds:
       break;
   }
   return z1;
+}
+
+double Map::change_within_texel(const Sample& s, const Place& place) const {
+  double change = 0;  // by small steps along each axis of the map
+  for (const dvec2& step : {dvec2(1e-4, 0), dvec2(0, 1e-4)}) {
+    const Sight line = sight(place.part, place.at + step);
+    const double w =
+        glm::dot(s.normal, s.position - origin_ - line.origin) / glm::dot(s.normal, line.direction);
+    change += 0.5 * std::abs(w / place.w - 1) * place.z / 1e-4;
+  }
+  const double most = 0.5 * kSteepest * layout_.texel_width * place.z;
+  return change < most ? change : most;
 }
 
 bool Map::lit(const Sample& s, const Place& place, const dvec2& at) const {

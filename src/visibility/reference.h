@@ -65,6 +65,7 @@ class Map {
   void draw_texel(int part, const glm::ivec2& at, Texel& texel) const;
   double receiver_depth(const Sample& s, const Place& place, const glm::dvec2& at) const;
   double map_depth(const Sample& s, const Place& place, const Texel& texel) const;
+  double change_within_texel(const Sample& s, const Place& place) const;
   bool lit(const Sample& s, const Place& place, const glm::dvec2& at) const;
   double pcf(const Sample& s, const Place& place) const;
   double variance(const Place& place) const;
@@ -72,9 +73,10 @@ class Map {
   double depth_of(int part, std::uint32_t triangle, const glm::dvec2& at) const;
   std::uint32_t kept(int part, const glm::ivec2& texel) const;
   bool holds_place(int part, std::uint32_t triangle, const glm::dvec2& at) const;
-  bool surely_hidden(const Sample& s, const Place& place) const;
-  bool hides(const Sample& s, const Place& place, std::uint32_t triangle,
-             const glm::dvec2& at) const;
+  bool surrounded(const Sample& s, const Place& place) const;
+  bool hides(const Sample& s, const Place& place, std::uint32_t triangle, const glm::dvec2& at,
+             double slack) const;
+  double slack_beside(const Sample& s, const Place& place) const;
   bool in_gap(const Sample& s, const Place& place) const;
   double sub_pixel(const Sample& s, const Place& place) const;
   double coverage(const Sample& s, const Place& place) const;

@@ -81,44 +81,47 @@ bool Map::holds_place(int part, std::uint32_t triangle, const dvec2& at) const {
   return c.inside() && c.w > 0;
 }
 
-bool Map::surely_hidden(const Sample& s, const Place& place) const {
-  const ivec2 centre = clamped(ivec2(glm::floor(place.at)));
-  for (int y = -1; y <= 1; ++y)
-    for (int x = -1; x <= 1; ++x) {
-      const ivec2 texel = clamped(centre + ivec2(x, y));
+double Map::slack_beside(const Sample& s, const Place& place) const {
+  return 2 * change_within_texel(s, place) + layout_.texel_width * place.z;
+}
+
+bool Map::surrounded(const Sample& s, const Place& place) const {
+  const ivec2 first(glm::floor(place.at - 0.5));
+  const double slack = slack_beside(s, place);
+  for (int y = 0; y <= 1; ++y)
+    for (int x = 0; x <= 1; ++x) {
+      const ivec2 texel = clamped(first + ivec2(x, y));
       const std::uint32_t i = kept(place.part, texel);
       if (i == shaders::kNoTriangle || i == s.id) return false;
       for (const dvec2& corner : {dvec2(0, 0), dvec2(1, 0), dvec2(0, 1), dvec2(1, 1)})
-        if (depth_of(place.part, i, dvec2(texel) + corner) >= place.z - bias_) return false;
+        if (depth_of(place.part, i, dvec2(texel) + corner) >= place.z - slack) return false;
     }
   return true;
 }
 
-bool Map::hides(const Sample& s, const Place& place, std::uint32_t triangle,
-                const dvec2& at) const {
+bool Map::hides(const Sample& s, const Place& place, std::uint32_t triangle, const dvec2& at,
+                double slack) const {
   return triangle != s.id && holds_place(place.part, triangle, at) &&
-         depth_of(place.part, triangle, at) < place.z - bias_;
+         depth_of(place.part, triangle, at) < place.z - slack;
 }
 
 double Map::sub_pixel(const Sample& s, const Place& place) const {
   const ivec2 centre = clamped(ivec2(glm::floor(place.at)));
-  bool known = false;
   for (int y = -1; y <= 1; ++y)
     for (int x = -1; x <= 1; ++x) {
       const std::uint32_t i = kept(place.part, clamped(centre + ivec2(x, y)));
-      if (i == shaders::kNoTriangle) continue;
-      if (hides(s, place, i, place.at)) return 0;
-      known = known || holds_place(place.part, i, place.at);
+      if (i != shaders::kNoTriangle && hides(s, place, i, place.at, bias_)) return 0;
     }
-  return known || !surely_hidden(s, place) ? 1 : 0;
+  return surrounded(s, place) ? 0 : 1;
 }
 
 bool Map::in_gap(const Sample& s, const Place& place) const {
   const ivec2 texel = clamped(ivec2(glm::floor(place.at)));
+  const double slack = slack_beside(s, place);
   double least = kWidestGap;
   dvec2 outward(0.0);
   for (const std::uint32_t i : links_of(place.part, texel)) {
-    if (i == s.id || depth_of(place.part, i, place.at) >= place.z - bias_) continue;
+    if (i == s.id || depth_of(place.part, i, place.at) >= place.z - slack) continue;
     // Distances to the sides' lines, by the corners' projections (all lie before the viewpoint).
     dvec2 corner[3];
     for (int k = 0; k < 3; ++k) corner[k] = locate(place.part, triangles_[i][k]).at;
@@ -136,19 +139,15 @@ bool Map::in_gap(const Sample& s, const Place& place) const {
   for (const double step : {0.5 * kWidestGap, kWidestGap}) {
     const dvec2 at = place.at + step * outward;
     for (const std::uint32_t i : links_of(place.part, clamped(ivec2(glm::floor(at)))))
-      if (hides(s, place, i, at)) return true;
+      if (hides(s, place, i, at, slack)) return true;
   }
   return false;
 }
 
 double Map::coverage(const Sample& s, const Place& place) const {
-  bool known = false;
-  for (const std::uint32_t i : links_of(place.part, clamped(ivec2(glm::floor(place.at))))) {
-    if (hides(s, place, i, place.at)) return 0;
-    known = known || holds_place(place.part, i, place.at);
-  }
-  if (known) return 1;
-  return in_gap(s, place) || surely_hidden(s, place) ? 0 : 1;
+  for (const std::uint32_t i : links_of(place.part, clamped(ivec2(glm::floor(place.at)))))
+    if (hides(s, place, i, place.at, bias_)) return 0;
+  return in_gap(s, place) || surrounded(s, place) ? 0 : 1;
 }
 
 std::vector<dvec2> Map::clipped(int part, std::size_t triangle, const ivec2& texel) const {
