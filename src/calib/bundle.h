@@ -1,0 +1,34 @@
+// The Ceres problem behind refine_cameras. Internal to calib.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "calib/frontier.h"
+#include "calib/triangulate.h"
+
+namespace photohull {
+
+struct BundleInput {
+  std::span<const Track> tracks;
+  std::span<const FrontierPair> tangents;
+  std::vector<glm::dvec3> points;  ///< where each track starts
+  double track_sigma = 1;          ///< pixels: spread of the tracks' residuals
+  double tangent_sigma = 1;        ///< pixels: that of the tangents'
+  bool intrinsics = false;
+  glm::dvec3 middle{0.0};  ///< of the object; cameras turn about it
+};
+
+/// Cameras that minimise the residuals from `start`, held to `prior` by springs of ten pixels.
+/// Residuals of three times the spread and more lose their weight (Cauchy). Sets `shared` to the
+/// focal factor and the principal point's offset, relative to `start`.
+std::vector<Camera> adjust_bundle(const BundleInput& input, std::span<const Camera> start,
+                                  std::span<const Camera> prior, std::array<double, 3>& shared);
+
+/// The similarity that brings `from` nearest to `to` [Umeyama91], applied to the world of cameras.
+std::vector<Camera> with_world_moved(std::span<const Camera> cameras,
+                                     std::span<const glm::dvec3> from,
+                                     std::span<const glm::dvec3> to);
+
+}  // namespace photohull

@@ -1,0 +1,259 @@
+// Based on: D. Lowe, "Distinctive image features from scale-invariant keypoints", 2004 [Lowe04];
+// A. Gruen, "Adaptive least squares correlation", 1985 [Gruen85].
+#include "calib/feature_tracks.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <opencv2/core.hpp>
+#include <opencv2/features2d.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "calib/align_patch.h"
+#include "calib/triangulate.h"
+
+namespace photohull {
+namespace {
+
+struct Features {
+  std::vector<glm::dvec2> pixels;
+  cv::Mat descriptors;  ///< a row each
+  GreyImage grey;
+};
+
+struct Match {
+  int view_a, feature_a, view_b, feature_b;
+};
+
+cv::Mat grey_of(const ColourImage& image) {
+  cv::Mat grey(image.height, image.width, CV_32F);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      glm::vec3 c;
+      if (image.encoding == ColourImage::Encoding::kSrgb8) {
+        const std::uint8_t* p = &image.bytes[(std::size_t(y) * image.width + x) * 4];
+        c = glm::vec3(p[0], p[1], p[2]);
+      } else {
+        const glm::vec4 linear = image.linear(x, y);
+        for (int i = 0; i < 3; ++i)
+          c[i] = float(255 * srgb_from_linear(std::clamp(double(linear[i]), 0.0, 1.0)));
+      }
+      grey.at<float>(y, x) = 0.299f * c.r + 0.587f * c.g + 0.114f * c.b;
+    }
+  return grey;
+}
+
+Features detect(const View& view, const TrackOptions& options) {
+  // Its image is doubled first, which in this version of OpenCV moves it by a quarter pixel.
+  constexpr double kShift = 0.25;
+  constexpr double kContrast = 0.01;  // low, for plain surfaces: matches are checked in many ways
+  constexpr double kBlur = 0.7;       // pixels: bilinear interpolation errs less on smooth images
+  Features features;
+  const cv::Mat grey = grey_of(view.image);
+  cv::Mat bytes, mask;
+  grey.convertTo(bytes, CV_8U);
+  if (!view.mask.empty()) {
+    const cv::Mat coverage(view.mask.height, view.mask.width, CV_8U,
+                           const_cast<std::uint8_t*>(view.mask.coverage.data()));
+    mask = coverage >= 128;
+  }
+  std::vector<cv::KeyPoint> points;
+  cv::SIFT::create(options.features, 3, kContrast)
+      ->detectAndCompute(bytes, mask, points, features.descriptors);
+  for (const cv::KeyPoint& p : points)
+    features.pixels.emplace_back(p.pt.x - kShift, p.pt.y - kShift);
+  cv::Mat smooth;
+  cv::GaussianBlur(grey, smooth, {}, kBlur);
+  features.grey = {smooth.cols, smooth.rows, {}};
+  features.grey.values.assign(smooth.ptr<float>(), smooth.ptr<float>() + smooth.total());
+  return features;
+}
+
+/// Pairs of views that see about the same: each view with those of the most similar direction.
+std::vector<std::pair<int, int>> neighbour_pairs(std::span<const View> views,
+                                                 const TrackOptions& options) {
+  const double least = std::cos(options.largest_angle * std::numbers::pi / 180);
+  std::vector<std::pair<int, int>> pairs;
+  for (int i = 0; i < int(views.size()); ++i) {
+    std::vector<std::pair<double, int>> others;
+    for (int j = 0; j < int(views.size()); ++j) {
+      const double cosine = glm::dot(views[i].camera.forward(), views[j].camera.forward());
+      if (j != i && cosine > least) others.emplace_back(-cosine, j);
+    }
+    std::sort(others.begin(), others.end());
+    others.resize(std::min(others.size(), std::size_t(options.neighbours)));
+    for (const auto& [order, j] : others) pairs.emplace_back(std::min(i, j), std::max(i, j));
+  }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  return pairs;
+}
+
+/// Line a x + b y + c = 0 with a^2 + b^2 = 1 in image b of what pixel p of image a may show.
+class EpipolarLines {
+ public:
+  EpipolarLines(const Camera& a, const Camera& b) : a_(a), b_(b) {
+    inverse_k_ = glm::transpose(glm::inverse(b.intrinsics.k()));
+  }
+  glm::dvec3 operator()(const glm::dvec2& p) const {
+    const glm::dvec3 ray = b_.cam_from_world.rotation * a_.ray(p);
+    const glm::dvec3 base = b_.to_camera(a_.center());
+    const glm::dvec3 line = inverse_k_ * glm::cross(base, ray);
+    return line / std::max(glm::length(glm::dvec2(line)), 1e-300);
+  }
+
+ private:
+  const Camera &a_, &b_;
+  glm::dmat3 inverse_k_;
+};
+
+/// For every feature of a the one of b near its epipolar line whose descriptor is clearly nearest;
+/// -1 where there is none.
+std::vector<int> best_matches(const Features& a, const Features& b, const Camera& camera_a,
+                              const Camera& camera_b, const TrackOptions& options) {
+  constexpr double kSamePlace = 3;  // pixels: features so near each other do not compete
+  const EpipolarLines lines(camera_a, camera_b);
+  std::vector<int> best(a.pixels.size(), -1);
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+    const glm::dvec3 line = lines(a.pixels[i]);
+    std::vector<std::pair<float, int>> found;
+    for (std::size_t j = 0; j < b.pixels.size(); ++j) {
+      const glm::dvec2& q = b.pixels[j];
+      if (std::abs(line.x * q.x + line.y * q.y + line.z) > options.epipolar) continue;
+      found.emplace_back(
+          float(cv::norm(a.descriptors.row(int(i)), b.descriptors.row(int(j)), cv::NORM_L2)),
+          int(j));
+    }
+    std::sort(found.begin(), found.end());
+    const auto rival = std::find_if(found.begin(), found.end(), [&](const auto& f) {
+      return glm::distance(b.pixels[f.second], b.pixels[found[0].second]) > kSamePlace;
+    });
+    constexpr float kFarthest = 350;  // of descriptors: what nobody competes with must be near too
+    if (found.empty() || found[0].first > kFarthest) continue;
+    if (rival == found.end() || found[0].first < options.ratio * rival->first)
+      best[i] = found[0].second;
+  }
+  return best;
+}
+
+/// Features joined by matches, without those that hold two features of a view.
+std::vector<Track> join(const std::vector<Features>& features, const std::vector<Match>& matches) {
+  std::vector<int> first(features.size() + 1, 0);
+  for (std::size_t i = 0; i < features.size(); ++i)
+    first[i + 1] = first[i] + int(features[i].pixels.size());
+  std::vector<int> parent(std::size_t(first.back()));
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  for (const Match& m : matches) {
+    const int a = root(first[m.view_a] + m.feature_a), b = root(first[m.view_b] + m.feature_b);
+    parent[std::max(a, b)] = std::min(a, b);
+  }
+  std::vector<Track> by_root(parent.size());
+  for (std::size_t v = 0; v < features.size(); ++v)
+    for (std::size_t f = 0; f < features[v].pixels.size(); ++f)
+      by_root[root(first[v] + int(f))].observations.push_back({int(v), features[v].pixels[f]});
+  std::vector<Track> tracks;
+  for (Track& track : by_root) {
+    const auto& o = track.observations;  // in the order of views
+    const auto twice = std::adjacent_find(
+        o.begin(), o.end(), [](const auto& x, const auto& y) { return x.view == y.view; });
+    if (o.size() >= 2 && twice == o.end()) tracks.push_back(std::move(track));
+  }
+  return tracks;
+}
+
+/// Where the patch around a pixel of camera a lies in camera b, if the surface at `point` faces
+/// between them.
+std::optional<PatchPlace> place_in(const Camera& a, const glm::dvec2& pixel, const Camera& b,
+                                   const glm::dvec3& point) {
+  const glm::dvec3 normal =
+      glm::normalize(glm::normalize(a.center() - point) + glm::normalize(b.center() - point));
+  const auto seen = [&](const glm::dvec2& p) -> std::optional<glm::dvec2> {
+    const glm::dvec3 ray = a.ray(p);
+    const double depth = glm::dot(point - a.center(), normal) / glm::dot(ray, normal);
+    return b.project(a.center() + depth * ray);
+  };
+  const auto center = b.project(point);
+  const auto middle = seen(pixel), x = seen(pixel + glm::dvec2(1, 0)),
+             y = seen(pixel + glm::dvec2(0, 1));
+  if (!center || !middle || !x || !y) return std::nullopt;
+  return PatchPlace{*center, glm::dmat2(*x - *middle, *y - *middle)};
+}
+
+/// Aligns the other views' patches to that of the view in the middle; those that do not agree go.
+void polish(std::span<const View> views, std::span<const Camera> cameras,
+            const std::vector<Features>& features, const TrackOptions& options, Track& track) {
+  constexpr double kFarthest = 3;  // pixels from the feature found
+  std::vector<Observation>& o = track.observations;
+  const auto point = triangulate(cameras, track);
+  std::vector<Observation> kept;
+  if (point) {
+    glm::dvec3 mean(0.0);
+    for (const Observation& x : o) mean += glm::normalize(views[x.view].camera.center() - *point);
+    const auto middle = std::max_element(o.begin(), o.end(), [&](const auto& a, const auto& b) {
+      return glm::dot(glm::normalize(cameras[a.view].center() - *point), mean) <
+             glm::dot(glm::normalize(cameras[b.view].center() - *point), mean);
+    });
+    for (const Observation& x : o) {
+      if (x.view == middle->view) {
+        kept.push_back(x);
+        continue;
+      }
+      auto start = place_in(cameras[middle->view], middle->pixel, cameras[x.view], *point);
+      if (!start || !(glm::determinant(start->shape) > 0.1)) continue;
+      start->center = x.pixel;
+      const auto found =
+          align_patch(features[middle->view].grey, middle->pixel, features[x.view].grey, *start,
+                      options.patch_radius, kFarthest);
+      if (found && found->agreement >= options.least_agreement)
+        kept.push_back({x.view, found->place.center});
+    }
+  }
+  o = std::move(kept);
+}
+
+}  // namespace
+
+std::vector<Track> find_tracks(std::span<const View> views, const TrackOptions& options,
+                               Progress& progress) {
+  std::vector<Features> features(views.size());
+  tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
+    if (!cancellation_requested()) features[i] = detect(views[i], options);
+  });
+  progress.check_cancelled();
+  progress.update(0.3);
+  const std::vector<std::pair<int, int>> pairs = neighbour_pairs(views, options);
+  std::vector<std::vector<Match>> found(pairs.size());
+  tbb::parallel_for(std::size_t(0), pairs.size(), [&](std::size_t p) {
+    if (cancellation_requested()) return;
+    const auto [i, j] = pairs[p];
+    const std::vector<int> there =
+        best_matches(features[i], features[j], views[i].camera, views[j].camera, options);
+    const std::vector<int> back =
+        best_matches(features[j], features[i], views[j].camera, views[i].camera, options);
+    for (int f = 0; f < int(there.size()); ++f)
+      if (there[f] >= 0 && back[there[f]] == f) found[p].push_back({i, f, j, there[f]});
+  });
+  progress.check_cancelled();
+  progress.update(0.8);
+  std::vector<Match> matches;
+  for (const std::vector<Match>& part : found)
+    matches.insert(matches.end(), part.begin(), part.end());
+  std::vector<Track> tracks = join(features, matches);
+  std::vector<Camera> cameras;
+  for (const View& view : views) cameras.push_back(view.camera);
+  tbb::parallel_for(std::size_t(0), tracks.size(), [&](std::size_t t) {
+    if (!cancellation_requested()) polish(views, cameras, features, options, tracks[t]);
+  });
+  progress.check_cancelled();
+  std::erase_if(tracks, [](const Track& t) { return t.observations.size() < 2; });
+  return tracks;
+}
+
+}  // namespace photohull

@@ -1,0 +1,39 @@
+// Points of the object's surface found again in several photographs.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/image.h"
+#include "core/progress.h"
+
+namespace photohull {
+
+struct Observation {
+  int view = 0;
+  glm::dvec2 pixel{0.0};  ///< of the view's (undistorted) camera
+};
+
+/// One surface point's positions, at most one a view, two or more.
+struct Track {
+  std::vector<Observation> observations;
+};
+
+struct TrackOptions {
+  int features = 4000;        ///< a view at most
+  int neighbours = 6;         ///< views that each one is matched with
+  double largest_angle = 45;  ///< degrees between the views' directions
+  double epipolar = 10;       ///< pixels: matches may lie so far from where the cameras have them
+  double ratio = 0.8;         ///< of the best to the second-best descriptor's distance [Lowe04]
+  int patch_radius = 7;       ///< pixels
+  double least_agreement = 0.8;  ///< normalised cross-correlation of patches once they are aligned
+};
+
+/// SIFT features [Lowe04] on the object (where views have masks), matched between neighbouring
+/// views near the epipolar lines of the given cameras, and then aligned to the patch of one view by
+/// least squares over affine warps, gain and offset [Gruen85], to hundredths of a pixel. Same
+/// result whatever the number of threads. Throws Cancelled.
+std::vector<Track> find_tracks(std::span<const View> views, const TrackOptions& options,
+                               Progress& progress);
+
+}  // namespace photohull

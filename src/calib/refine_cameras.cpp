@@ -1,0 +1,270 @@
+#include "calib/refine_cameras.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/bundle.h"
+#include "calib/frontier.h"
+#include "core/error.h"
+
+namespace photohull {
+namespace {
+
+constexpr int kFewestTracks = 30;     // for the similarity that fixes the gauge
+constexpr double kOutlier = 4;        // spreads
+constexpr double kLeastSigma = 0.03;  // pixels: nothing is measured better
+
+using Cameras = std::vector<Camera>;
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + long(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Standard deviation of one coordinate, were the residuals' lengths those of two normal ones.
+double spread_of_lengths(std::vector<double> lengths) {
+  return median(std::move(lengths)) / 1.1774;
+}
+double spread_of_distances(std::vector<double> d) { return 1.4826 * median(std::move(d)); }
+
+/// Points of tracks by the cameras, NaN where there is none, and the tracks' residuals.
+struct Triangulated {
+  std::vector<glm::dvec3> points;
+  std::vector<double> rms;
+};
+
+Triangulated triangulate_all(const Cameras& cameras, std::span<const Track> tracks) {
+  Triangulated result{std::vector<glm::dvec3>(tracks.size()), std::vector<double>(tracks.size())};
+  tbb::parallel_for(std::size_t(0), tracks.size(), [&](std::size_t i) {
+    const auto point = triangulate(cameras, tracks[i]);
+    result.points[i] = point.value_or(glm::dvec3(NAN));
+    result.rms[i] = point ? reprojection_rms(cameras, tracks[i], *point) : INFINITY;
+  });
+  return result;
+}
+
+std::vector<double> tangent_distances(const Cameras& cameras,
+                                      std::span<const FrontierPair> tangents) {
+  std::vector<double> distances;
+  for (const FrontierPair& t : tangents) {
+    const glm::dvec2 d = epipolar_distances(cameras[t.view_a], cameras[t.view_b], t);
+    distances.push_back(std::abs(d.x));
+    distances.push_back(std::abs(d.y));
+  }
+  return distances;
+}
+
+/// Mean of log(1 + r^2 / (2 sigma^2)): what grows with every residual, and with none without bound.
+double robust_cost(const std::vector<double>& residuals, double sigma) {
+  if (residuals.empty()) return 0;
+  double sum = 0;
+  for (const double r : residuals)
+    sum += std::isfinite(r) ? std::log1p(r * r / (2 * sigma * sigma)) : std::log1p(1e6);
+  return sum / double(residuals.size());
+}
+
+/// Spread evenly over any list, the same every time.
+bool is_held_out(std::size_t index, double share) {
+  return std::fmod(double(index + 1) * 0.6180339887498949, 1.0) < share;
+}
+
+class Refiner {
+ public:
+  Refiner(std::span<const View> views, const RefineCamerasOptions& options, Progress& progress)
+      : options_(options), progress_(progress) {
+    for (const View& view : views) {
+      given_.push_back(view.camera);
+      outlines_.push_back(view.mask.empty() ? Outline() : outline_of(view.mask));
+    }
+    std::vector<Track> tracks = find_tracks(views, options.tracks, progress);
+    for (std::size_t i = 0; i < tracks.size(); ++i)
+      (is_held_out(i, options.held_out) ? judging_ : adjusting_).push_back(std::move(tracks[i]));
+  }
+
+  CameraRefinement run() {
+    Cameras cameras = given_;
+    middle_ = find_middle();
+    CameraRefinement result;
+    bool with_intrinsics = false;
+    for (int round = 0; round < options_.rounds; ++round) {
+      progress_.check_cancelled();
+      progress_.update(0.9 + 0.1 * round / options_.rounds);
+      std::array<double, 3> shared;
+      const Judgement before = judge(cameras, nullptr);
+      Cameras better = adjust(cameras, with_intrinsics, shared);
+      const Judgement after = judge(better, &before);
+      const bool improved = after.cost < before.cost * (1 - 1e-9);
+      if (improved) {
+        ++result.rounds;
+        result.changed = true;
+        cameras = std::move(better);
+        result.focal_factor *= shared[0];
+        result.principal += glm::dvec2(shared[1], shared[2]);
+      }
+      const bool settled = !improved || after.cost > 0.999 * before.cost;
+      if (!settled) continue;
+      // Poses come first; what all views share follows once they have settled.
+      if (with_intrinsics || !options_.intrinsics) break;
+      with_intrinsics = true;
+    }
+    if (result.changed) cameras = fix_gauge(cameras);
+    result.tracks = int(adjusting_.size() + judging_.size());
+    report(cameras, result);
+    result.cameras = std::move(cameras);
+    return result;
+  }
+
+ private:
+  struct Judgement {
+    double track_sigma = 1, tangent_sigma = 1, cost = 0;
+    std::vector<FrontierPair> tangents;
+  };
+
+  /// Where the optical axes pass nearest: around there is the object.
+  glm::dvec3 find_middle() const {
+    glm::dmat3 normal(0.0);
+    glm::dvec3 right(0.0);
+    for (const Camera& camera : given_) {
+      const glm::dvec3 d = camera.forward();
+      const glm::dmat3 across = glm::dmat3(1.0) - glm::outerProduct(d, d);
+      normal += across;
+      right += across * camera.center();
+    }
+    const double n = double(given_.size());
+    if (glm::determinant(normal) > 1e-6 * n * n * n) return glm::inverse(normal) * right;
+    std::vector<glm::dvec3> points;
+    for (const glm::dvec3& p : triangulate_all(given_, adjusting_).points)
+      if (!std::isnan(p.x)) points.push_back(p);
+    glm::dvec3 sum(0.0);
+    for (const glm::dvec3& p : points) sum += p;
+    return points.empty() ? given_[0].center() + given_[0].forward() : sum / double(points.size());
+  }
+
+  std::vector<FrontierPair> tangents(const Cameras& cameras, bool held_out) const {
+    std::vector<FrontierPair> chosen;
+    for (const FrontierPair& pair : frontier_pairs(cameras, outlines_)) {
+      // By the pair of views, so that the choice stays when tangents are found anew.
+      const std::size_t index = std::size_t(pair.view_a) * given_.size() + std::size_t(pair.view_b);
+      if (is_held_out(index, options_.held_out) == held_out) chosen.push_back(pair);
+    }
+    return chosen;
+  }
+
+  /// Held-out residuals, against their spread before (`reference`) where there is one.
+  Judgement judge(const Cameras& cameras, const Judgement* reference) const {
+    Judgement j;
+    std::vector<double> lengths = triangulate_all(cameras, judging_).rms;
+    const std::vector<double> distances = tangent_distances(cameras, tangents(cameras, true));
+    j.track_sigma = std::max(kLeastSigma, spread_of_lengths(lengths));
+    j.tangent_sigma = std::max(kLeastSigma, spread_of_distances(distances));
+    const Judgement& scale = reference ? *reference : j;
+    const double n = double(lengths.size()), m = double(distances.size());
+    if (n + m > 0)
+      j.cost = (n * robust_cost(lengths, scale.track_sigma) +
+                m * robust_cost(distances, scale.tangent_sigma)) /
+               (n + m);
+    return j;
+  }
+
+  Cameras adjust(const Cameras& cameras, bool intrinsics, std::array<double, 3>& shared) const {
+    const Triangulated all = triangulate_all(cameras, adjusting_);
+    BundleInput input;
+    input.track_sigma = std::max(kLeastSigma, spread_of_lengths(all.rms));
+    std::vector<Track> kept;
+    for (std::size_t i = 0; i < adjusting_.size(); ++i)
+      if (all.rms[i] < kOutlier * 1.5 * input.track_sigma) {
+        kept.push_back(adjusting_[i]);
+        input.points.push_back(all.points[i]);
+      }
+    const std::vector<FrontierPair> pairs = tangents(cameras, false);
+    input.tangent_sigma =
+        std::max(kLeastSigma, spread_of_distances(tangent_distances(cameras, pairs)));
+    input.tracks = kept;
+    input.tangents = pairs;
+    input.intrinsics = intrinsics;
+    input.middle = middle_;
+    return adjust_bundle(input, cameras, given_, shared);
+  }
+
+  /// Moved, turned and scaled to where the given cameras have the points, or, where there are few,
+  /// to the given cameras.
+  Cameras fix_gauge(const Cameras& cameras) const {
+    const Triangulated now = triangulate_all(cameras, adjusting_);
+    const Triangulated before = triangulate_all(given_, adjusting_);
+    const double limit = kOutlier * spread_of_lengths(now.rms);
+    std::vector<glm::dvec3> from, to;
+    for (std::size_t i = 0; i < adjusting_.size(); ++i)
+      if (now.rms[i] < limit && std::isfinite(before.rms[i])) {
+        from.push_back(now.points[i]);
+        to.push_back(before.points[i]);
+      }
+    if (from.size() < std::size_t(kFewestTracks)) {
+      from.clear(), to.clear();
+      for (std::size_t i = 0; i < cameras.size(); ++i) {
+        from.push_back(cameras[i].center());
+        to.push_back(given_[i].center());
+      }
+    }
+    return with_world_moved(cameras, from, to);
+  }
+
+  void report(const Cameras& cameras, CameraRefinement& result) const {
+    result.views.resize(cameras.size());
+    const Triangulated before = triangulate_all(given_, judging_);
+    const Triangulated after = triangulate_all(cameras, judging_);
+    const double limit = kOutlier * spread_of_lengths(after.rms);
+    double moved = 0;
+    for (std::size_t i = 0; i < judging_.size(); ++i) {
+      if (!(after.rms[i] < limit) || !std::isfinite(before.rms[i])) continue;
+      for (const Observation& o : judging_[i].observations) {
+        const auto b = given_[o.view].project(before.points[i]),
+                   a = cameras[o.view].project(after.points[i]);
+        const auto same = given_[o.view].project(after.points[i]);
+        if (!a || !b || !same) continue;
+        for (ViewAgreement* v : {&result.views[o.view], &result.all}) {
+          v->before += glm::dot(*b - o.pixel, *b - o.pixel);
+          v->after += glm::dot(*a - o.pixel, *a - o.pixel);
+          ++v->observations;
+        }
+        moved += glm::dot(*a - *same, *a - *same);
+      }
+    }
+    result.moved = result.all.observations ? std::sqrt(moved / result.all.observations) : 0;
+    for (ViewAgreement& v : result.views) finish(v);
+    finish(result.all);
+    result.tangents = int(frontier_pairs(cameras, outlines_).size());
+    result.tangents_before = median(tangent_distances(given_, tangents(given_, true)));
+    result.tangents_after = median(tangent_distances(cameras, tangents(cameras, true)));
+  }
+
+  static void finish(ViewAgreement& v) {
+    if (v.observations == 0) return;
+    v.before = std::sqrt(v.before / v.observations);
+    v.after = std::sqrt(v.after / v.observations);
+  }
+
+  RefineCamerasOptions options_;
+  Progress& progress_;
+  Cameras given_;
+  std::vector<Outline> outlines_;
+  std::vector<Track> adjusting_, judging_;
+  glm::dvec3 middle_{0.0};
+};
+
+}  // namespace
+
+CameraRefinement refine_cameras(std::span<const View> views, const RefineCamerasOptions& options,
+                                Progress& progress) {
+  if (views.size() < 3)
+    throw Error(
+        concat("cameras are refined against each other, which needs three views or more; "
+               "there are ",
+               views.size()));
+  return Refiner(views, options, progress).run();
+}
+
+}  // namespace photohull

@@ -1,0 +1,26 @@
+// Cameras of a scene refined against its photographs, and what is reported of it.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "calib/refine_cameras.h"
+#include "core/scene.h"
+
+namespace photohull::pipeline {
+
+enum class RefineCameras { kOff, kAuto, kPoses, kPosesAndIntrinsics };
+
+const char* to_string(RefineCameras refine);
+
+/// Carries what a refinement of the undistorted views' cameras changed over to the scene's own.
+void apply(const CameraRefinement& refinement, Scene& scene);
+
+/// Does the gain pay? The held-out residual must have fallen by a fifth, and to begin with be more
+/// than what matching leaves.
+bool pays(const CameraRefinement& refinement);
+
+/// JSON: what changed, and each view's residual before and after, pixels.
+std::string to_json(const CameraRefinement& refinement, const Scene& scene);
+
+}  // namespace photohull::pipeline
