@@ -15,12 +15,17 @@ bool hides(Receiver r, MapPoint m, uint triangle, vec2 at, float slack) {
   return contains(t, at) && triangle_depth(t, m.part, at) < m.z - slack;
 }
 
-// Where no known triangle lies at the receiver's position, which is so where triangles are smaller than
-// texels: hidden if the nearest triangles of the four texels whose middles surround it are nearer than it.
+const float kLargeTriangle = 4.0;  // texels: beyond, a triangle is found wherever it lies
+
+// Where no known triangle lies at the receiver's position: not hidden if its texel's triangle is large,
+// for then those beside it would be known. Else hidden if the nearest triangles of the four texels whose
+// middles surround it are nearer than it.
 // Touched texels reach half a texel beyond a silhouette, and asking four of them takes that back.
 bool surrounded(Receiver r, MapPoint m) {
   ivec2 first = ivec2(floor(m.at - 0.5));
   float slack = slack_beside(r, m);
+  uint own = nearest_triangles[index_of(m.part, texel_at(m, m.at).xy)];
+  if (own == kNoTriangle || least_height(triangle_of(m.part, own)) >= kLargeTriangle) return false;
   for (int k = 0; k < 4; ++k) {
     ivec2 texel = clamp(first + ivec2(k & 1, k >> 1), ivec2(0), map_info.size.xy - 1);
     uint triangle = nearest_triangles[index_of(m.part, texel)];

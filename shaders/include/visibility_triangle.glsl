@@ -47,3 +47,9 @@ float distance_outside(MapTriangle t, vec2 at, out vec2 outward) {
   }
   return farthest;
 }
+
+// The triangle's least height, in texels, as near the viewpoint as its anchor.
+float least_height(MapTriangle t) {
+  vec2 side0 = t.slopes.xy - t.slopes.zw - t.edge2.xy;
+  return t.anchor.z / max(max(length(side0), length(t.slopes.zw)), max(length(t.edge2.xy), 1e-30));
+}

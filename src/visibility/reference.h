@@ -73,6 +73,7 @@ class Map {
   double depth_of(int part, std::uint32_t triangle, const glm::dvec2& at) const;
   std::uint32_t kept(int part, const glm::ivec2& texel) const;
   bool holds_place(int part, std::uint32_t triangle, const glm::dvec2& at) const;
+  double least_height(int part, std::uint32_t triangle, const glm::dvec2& at) const;
   bool surrounded(const Sample& s, const Place& place) const;
   bool hides(const Sample& s, const Place& place, std::uint32_t triangle, const glm::dvec2& at,
              double slack) const;

@@ -15,6 +15,7 @@ using glm::ivec2;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kWidestGap = 1;  // texels
+constexpr double kLargeTriangle = 4;  // texels
 
 }  // namespace
 
@@ -85,9 +86,28 @@ double Map::slack_beside(const Sample& s, const Place& place) const {
   return 2 * change_within_texel(s, place) + layout_.texel_width * place.z;
 }
 
+double Map::least_height(int part, std::uint32_t triangle, const dvec2& at) const {
+  double farthest = 0;
+  for (const dvec3& v : triangles_[triangle])
+    farthest = std::max(farthest, glm::dot(layout_.parts[part].row_w, dvec4(v, 1)));
+  // Barycentric coordinates over w are linear on the map.
+  const double step = 1e-2;
+  const auto over_w = [&](const dvec2& p) {
+    const Crossing c = cross(sight(part, p), triangle);
+    return dvec3(c.b0, c.b1, c.b2) / c.w;
+  };
+  const dvec3 dx = (over_w(at + dvec2(step, 0)) - over_w(at)) / step;
+  const dvec3 dy = (over_w(at + dvec2(0, step)) - over_w(at)) / step;
+  double steepest = 0;
+  for (int i = 0; i < 3; ++i) steepest = std::max(steepest, std::hypot(dx[i], dy[i]));
+  return 1 / (farthest * steepest);
+}
+
 bool Map::surrounded(const Sample& s, const Place& place) const {
   const ivec2 first(glm::floor(place.at - 0.5));
   const double slack = slack_beside(s, place);
+  const std::uint32_t own = kept(place.part, clamped(ivec2(glm::floor(place.at))));
+  if (own == shaders::kNoTriangle || least_height(place.part, own, place.at) >= kLargeTriangle) return false;
   for (int y = 0; y <= 1; ++y)
     for (int x = 0; x <= 1; ++x) {
       const ivec2 texel = clamped(first + ivec2(x, y));
