@@ -14,7 +14,8 @@ namespace {
 
 struct Arguments {
   SceneArguments scene;
-  std::string out, quality = "normal", device = "auto", mesh_error = "0", unseen = "closed";
+  std::string out, quality = "normal", device = "auto", mesh_error = "0", unseen = "closed",
+                   refine_cameras = "off";
   std::optional<std::string> method, sampler, consistency;
   std::optional<int> resolution, supersample;
   std::optional<double> voxel_size;
@@ -45,6 +46,11 @@ pipeline::ReconstructOptions to_options(const Arguments& a) {
   o.mesh_error = pipeline::parse_mesh_error(a.mesh_error);
   o.unseen = parse_name("--unseen", a.unseen,
                         std::array{pipeline::Unseen::kOpen, pipeline::Unseen::kClosed});
+  using pipeline::RefineCameras;
+  o.refine_cameras =
+      parse_name("--refine-cameras", a.refine_cameras,
+                 std::array{RefineCameras::kOff, RefineCameras::kAuto, RefineCameras::kPoses,
+                            RefineCameras::kPosesAndIntrinsics});
   o.device = a.device;
   o.threads = a.threads;
   o.evidence = a.evidence;
@@ -108,6 +114,10 @@ void add_reconstruct(CLI::App& app) {
        "a u in world units (0: uniform)")
       ->capture_default_str();
   c->add_option("--unseen", a->unseen, "surface that no camera sees: closed, or open (left out)")
+      ->capture_default_str();
+  c->add_option("--refine-cameras", a->refine_cameras,
+                "off, auto (where it pays), poses or poses+intrinsics: cameras made to agree with "
+                "the photographs first")
       ->capture_default_str();
   c->add_option("--device", a->device, "auto, software, or an index from 'photohull devices'")
       ->capture_default_str();

@@ -66,7 +66,7 @@ void run(const Arguments& a) {
   progress.finish();
   pipeline::apply(refinement, scene);
   io::write_scene(scene, format, a.out);
-  const std::string report = pipeline::to_json(refinement, scene);
+  const std::string report = pipeline::to_json(refinement, scene, refinement.changed);
   write_atomically(fs::path(a.out) / "refinement.json", report);
   if (a.json)
     std::fputs(report.c_str(), stdout);

@@ -9,8 +9,6 @@
 namespace photohull {
 namespace {
 
-constexpr double kPrior = 10;  // pixels
-
 /// A camera's change: a turn about the object's middle and a move, both in its own frame, in units
 /// that move the object by about a pixel each.
 struct Motion {
@@ -146,11 +144,11 @@ struct TangentResidual {
 
 /// Holds a camera near where it was given, by springs in pixels.
 struct PriorResidual {
-  Eigen::Matrix<double, 6, 1> target;
+  double sigma;  ///< pixels, about
 
   template <typename T>
   bool operator()(const T* pose, T* residual) const {
-    for (int i = 0; i < 6; ++i) residual[i] = (pose[i] - target[i]) / kPrior;
+    for (int i = 0; i < 6; ++i) residual[i] = pose[i] / sigma;
     return true;
   }
 };
@@ -199,9 +197,9 @@ std::vector<Camera> adjust_bundle(const BundleInput& input, std::span<const Came
         new ceres::CauchyLoss(kTail), poses[pair.view_a].data(), poses[pair.view_b].data(),
         shared.data());
   for (auto& pose : poses) {
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PriorResidual, 6, 6>(
-                                 new PriorResidual{Eigen::Matrix<double, 6, 1>::Zero()}),
-                             nullptr, pose.data());
+    problem.AddResidualBlock(
+        new ceres::AutoDiffCostFunction<PriorResidual, 6, 6>(new PriorResidual{input.prior_sigma}),
+        nullptr, pose.data());
     ordering->AddElementToGroup(pose.data(), 1);
   }
   if (problem.HasParameterBlock(shared.data())) {

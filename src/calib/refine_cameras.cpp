@@ -12,9 +12,10 @@
 namespace photohull {
 namespace {
 
-constexpr int kFewestTracks = 30;     // for the similarity that fixes the gauge
-constexpr double kOutlier = 4;        // spreads
-constexpr double kLeastSigma = 0.03;  // pixels: nothing is measured better
+constexpr int kFewestTracks = 30;            // for the similarity that fixes the gauge
+constexpr double kOutlier = 4;               // spreads
+constexpr double kLeastSigma = 0.03;         // pixels: nothing is measured better
+constexpr double kLeastTangentSigma = 0.15;  // pixels: contours err alike where they touch
 
 using Cameras = std::vector<Camera>;
 
@@ -88,6 +89,9 @@ class Refiner {
   CameraRefinement run() {
     Cameras cameras = given_;
     middle_ = find_middle();
+    const Judgement first = judge(given_, nullptr);
+    first_spread_ = std::max(judging_.size() < std::size_t(kFewestTracks) ? 0 : first.track_sigma,
+                             first.tangent_sigma);
     CameraRefinement result;
     bool with_intrinsics = false;
     for (int round = 0; round < options_.rounds; ++round) {
@@ -160,7 +164,7 @@ class Refiner {
     std::vector<double> lengths = triangulate_all(cameras, judging_).rms;
     const std::vector<double> distances = tangent_distances(cameras, tangents(cameras, true));
     j.track_sigma = std::max(kLeastSigma, spread_of_lengths(lengths));
-    j.tangent_sigma = std::max(kLeastSigma, spread_of_distances(distances));
+    j.tangent_sigma = std::max(kLeastTangentSigma, spread_of_distances(distances));
     const Judgement& scale = reference ? *reference : j;
     const double n = double(lengths.size()), m = double(distances.size());
     if (n + m > 0)
@@ -182,11 +186,13 @@ class Refiner {
       }
     const std::vector<FrontierPair> pairs = tangents(cameras, false);
     input.tangent_sigma =
-        std::max(kLeastSigma, spread_of_distances(tangent_distances(cameras, pairs)));
+        std::max(kLeastTangentSigma, spread_of_distances(tangent_distances(cameras, pairs)));
     input.tracks = kept;
     input.tangents = pairs;
     input.intrinsics = intrinsics;
     input.middle = middle_;
+    // What neither tracks nor tangents determine stays as it was given.
+    input.prior_sigma = std::max(1.0, 2 * first_spread_);
     return adjust_bundle(input, cameras, given_, shared);
   }
 
@@ -253,6 +259,7 @@ class Refiner {
   std::vector<Outline> outlines_;
   std::vector<Track> adjusting_, judging_;
   glm::dvec3 middle_{0.0};
+  double first_spread_ = 1;  ///< pixels: of the residuals by the given cameras
 };
 
 }  // namespace

@@ -59,9 +59,9 @@ constexpr double kBoxSlack = 0.5;              // voxels that the surface may st
 /// Shares of a job's time: tenths of a wall second of templeRing's stages on two cores (`photohull
 /// reconstruct templeRing --json`). They only drive the progress bar's time left.
 struct Weights {
-  static constexpr double kScene = 0.1, kViews = 3, kDevice = 0.5, kHull = 3.5, kImages = 2,
-                          kPhoto = 110, kRefine = 50, kClean = 0.2, kMesh = 0.6, kColour = 2,
-                          kSimplify = 15, kPreview = 2.7, kFiles = 2;
+  static constexpr double kScene = 0.1, kViews = 3, kCameras = 100, kDevice = 0.5, kHull = 3.5,
+                          kImages = 2, kPhoto = 110, kRefine = 50, kClean = 0.2, kMesh = 0.6,
+                          kColour = 2, kSimplify = 15, kPreview = 2.7, kFiles = 2;
 };
 
 double voxel_size_of(const ReconstructOptions& options, const Box& box,
@@ -112,6 +112,9 @@ class Job {
     report_.files = files.names();
     clock_.run("device", Weights::kDevice, [&] { open_device(); });
     clock_.run("views", Weights::kViews, [&] { prepare(); });
+    if (options_.refine_cameras != RefineCameras::kOff)
+      clock_.run("cameras", Weights::kCameras, [&] { refine_cameras(); });
+    crop();
     const bool refining = options_.effective_method() == Method::kRefine;
     SparseVolume volume = clock_.run("hull", Weights::kHull, [&] {
       measure_silhouettes();
@@ -188,11 +191,26 @@ class Job {
     PreparedViews prepared = prepare_views(scene_, loader, prepare_options, progress_);
     views_ = std::move(prepared.views);
     report_.noise_sigma = median_noise(views_);
-    for (View& view : views_) crop_to_box(scene_.box.value(), kCropMargin, view);
-    cameras_ = projtex::cameras_of(views_);
+    for (const std::string& text : prepared.warnings) warn(text);
     report_.mask_source = prepared.mask_source;
     report_.mask_confidence = prepared.mask_confidence;
-    for (const std::string& text : prepared.warnings) warn(text);
+  }
+
+  void refine_cameras() {
+    RefineCamerasOptions o;
+    o.intrinsics = options_.refine_cameras == RefineCameras::kPosesAndIntrinsics;
+    const CameraRefinement found = photohull::refine_cameras(views_, o, progress_);
+    const bool use =
+        found.changed && (options_.refine_cameras != RefineCameras::kAuto || pays(found));
+    report_.camera_refinement = to_json(found, scene_, use);
+    if (!use) return;
+    apply(found, scene_);
+    for (std::size_t i = 0; i < views_.size(); ++i) views_[i].camera = found.cameras[i];
+  }
+
+  void crop() {
+    for (View& view : views_) crop_to_box(scene_.box.value(), kCropMargin, view);
+    cameras_ = projtex::cameras_of(views_);
   }
 
   void open_device() {
@@ -462,7 +480,9 @@ class Job {
 
 double total_weight(const ReconstructOptions& options) {
   const Method method = options.effective_method();
-  return Weights::kScene + Weights::kViews + Weights::kDevice + Weights::kHull + Weights::kImages +
+  return Weights::kScene + Weights::kViews +
+         (options.refine_cameras != RefineCameras::kOff ? Weights::kCameras : 0) +
+         Weights::kDevice + Weights::kHull + Weights::kImages +
          (method == Method::kHull     ? 0
           : method == Method::kRefine ? Weights::kRefine
                                       : Weights::kPhoto) +

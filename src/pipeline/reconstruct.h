@@ -10,6 +10,7 @@
 #include "carving/statistic.h"
 #include "core/progress.h"
 #include "io/load_scene.h"
+#include "pipeline/refine_cameras.h"
 #include "pipeline/report.h"
 #include "projtex/sampler.h"
 
@@ -42,6 +43,7 @@ struct ReconstructOptions {
   std::optional<double> voxel_size;  ///< world units, > 0; excludes `resolution`
   Quality quality = Quality::kNormal;
   std::optional<Method> method;  ///< default: hull for draft, refine otherwise
+  RefineCameras refine_cameras = RefineCameras::kOff;
   MeshError mesh_error;
   Unseen unseen = Unseen::kClosed;
   /// How the sweep resamples photographs and what decides there; voxel coloring and space carving

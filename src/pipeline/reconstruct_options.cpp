@@ -20,6 +20,7 @@ void check_sweep_options(const ReconstructOptions& o) {
   const char* given = o.sampler       ? "--sampler"
                       : o.supersample ? "--supersample"
                       : o.consistency ? "--consistency"
+                      : o.visibility  ? "--visibility"
                                       : nullptr;
   if (given)
     throw UsageError(concat(given, ": --method ", to_string(method),
@@ -154,6 +155,8 @@ NamedValues named_options(const ReconstructOptions& options) {
                     number(options.mesh_error.value) + (options.mesh_error.world_units ? "u" : ""));
   list.emplace_back("unseen", to_string(options.unseen));
   list.emplace_back("masks", mask_option(options.load));
+  if (options.refine_cameras != RefineCameras::kOff)
+    list.emplace_back("refine_cameras", to_string(options.refine_cameras));
   if (options.load.pixel_center)
     list.emplace_back("pixel_center", number(*options.load.pixel_center));
   std::string tuning;

@@ -40,9 +40,10 @@ bool pays(const CameraRefinement& r) {
   return r.changed && (r.all.observations > 0 ? tracks : tangents);
 }
 
-std::string to_json(const CameraRefinement& r, const Scene& scene) {
+std::string to_json(const CameraRefinement& r, const Scene& scene, bool used) {
   nlohmann::ordered_json j;
   j["changed"] = r.changed;
+  j["used"] = used;
   j["tracks"] = r.tracks;
   j["tangents"] = r.tangents;
   j["rounds"] = r.rounds;

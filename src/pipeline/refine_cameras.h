@@ -20,7 +20,7 @@ void apply(const CameraRefinement& refinement, Scene& scene);
 /// than what matching leaves.
 bool pays(const CameraRefinement& refinement);
 
-/// JSON: what changed, and each view's residual before and after, pixels.
-std::string to_json(const CameraRefinement& refinement, const Scene& scene);
+/// JSON: what changed, whether it is used, and each view's residual before and after, pixels.
+std::string to_json(const CameraRefinement& refinement, const Scene& scene, bool used);
 
 }  // namespace photohull::pipeline

@@ -29,6 +29,7 @@ std::string Report::to_json() const {
                {"voxel_size", grid.voxel_size},
                {"voxels", to_json_array(grid.voxels())},
                {"bricks_stored", bricks_stored}};
+  if (!camera_refinement.empty()) j["camera_refinement"] = ordered_json::parse(camera_refinement);
   j["stages"] = ordered_json::array();
   for (const StageReport& s : stages)
     j["stages"].push_back({{"name", s.name},

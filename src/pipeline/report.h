@@ -65,7 +65,8 @@ struct Report {
   std::string box_source;
   std::string mask_source;
   double mask_confidence = 0;
-  double noise_sigma = 0;  ///< square-root-encoded units of full scale
+  std::string camera_refinement;  ///< JSON (pipeline/refine_cameras.h); empty: not asked for
+  double noise_sigma = 0;         ///< square-root-encoded units of full scale
   GridSpec grid;
   std::vector<StageReport> stages;
   std::int64_t nodes_tested = 0, bricks_evaluated = 0;
