@@ -16,7 +16,7 @@ struct Arguments {
   SceneArguments scene;
   std::string out, quality = "normal", device = "auto", mesh_error = "0", unseen = "closed",
                    refine_cameras = "off";
-  std::optional<std::string> method, sampler, consistency;
+  std::optional<std::string> method, sampler, consistency, visibility;
   std::optional<int> resolution, supersample;
   std::optional<double> voxel_size;
   std::vector<std::string> tune;
@@ -40,6 +40,7 @@ pipeline::ReconstructOptions to_options(const Arguments& a) {
   if (a.sampler) o.sampler = parse_name("--sampler", *a.sampler, projtex::kSamplers);
   if (a.consistency)
     o.consistency = parse_name("--consistency", *a.consistency, carving::kStatistics);
+  if (a.visibility) o.visibility = visibility::parse_sweep_test("--visibility", *a.visibility);
   o.supersample = a.supersample;
   o.resolution = a.resolution;
   o.voxel_size = a.voxel_size;
@@ -108,6 +109,10 @@ void add_reconstruct(CLI::App& app) {
   c->add_option("--consistency", a->consistency,
                 "sweeps: zncc, gain-variance, adaptive-variance, robust-variance, histogram or "
                 "census (default: zncc)");
+  c->add_option(
+      "--visibility", a->visibility,
+      "sweeps: who sees a voxel: plain, receiver-plane, virtual-normal, pcf3, pcf3-virtual "
+      "or rays (default: plain)");
   c->add_option(
        "--mesh-error", a->mesh_error,
        "fewer triangles: how far mesh.ply may be from the uniform mesh, in voxels, or with "

@@ -6,7 +6,7 @@
 // column. References: those of the statistics.
 #include "include/projection.glsl"
 #include "include/layer.glsl"
-#include "include/depth_map.glsl"
+#include "include/sweep_visibility.glsl"
 #include "include/selection.glsl"
 #include "include/patch_views.glsl"
 
@@ -25,7 +25,7 @@
 #endif
 
 layout(local_size_x = 64) in;
-// Per selected column: x: score in [-1, 1]; y: views used; z: confidence; w: views that see it
+// Per selected column: x: score in [-1, 1]; y: views used; z: confidence; w: views that see it, by their shares
 layout(std430, binding = 7) writeonly buffer Scores { vec4 scores[]; };
 
 void main() {
@@ -36,13 +36,16 @@ void main() {
   int view_count = items[selection.item].brick.w;
 
   bool seen[kViews];
+  float sum = 0.0;  // of the views' shares
   for (int i = 0; i < kViews; ++i) {
     uint v = items[selection.item].views[i >> 2][i & 3];
     vec3 p = project(views[v], voxel);
-    seen[i] = i < view_count && visible(v, p.xy / p.z, p.z, parameters.thresholds.w);
+    view_weights[i] = i < view_count ? sweep_visible(v, voxel, p, parameters.thresholds.w) : 0.0;
+    seen[i] = view_weights[i] > 0.0;
   }
   uint base = (selection.entry - uint(parameters.chunk.x)) * uint(kViews * kApronArea) +
               (selection.column >> 3u) * uint(kApronEdge) + (selection.column & 7u);
   Consistency c = consistency(base, seen);
-  scores[index] = vec4(c.score, float(c.used), c.confidence, float(count_of(seen)));
+  for (int i = 0; i < kViews; ++i) sum += seen[i] ? view_weights[i] : 0.0;
+  scores[index] = vec4(c.score, float(c.used), c.confidence, sum);
 }

@@ -7,7 +7,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(std430, binding = 5) readonly buffer Nearest { uint nearest[]; };
-layout(std430, binding = 6) writeonly buffer Links { uvec4 links[]; };
+layout(rgba32ui, binding = 0) writeonly uniform uimage2DArray links;
 
 uint nearest_at(int part, ivec2 texel) {
   if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, map_info.size.xy))) return kNoTriangle;
@@ -31,5 +31,5 @@ void main() {
     if (triangle == kNoTriangle || any(equal(found, uvec4(triangle)))) continue;
     if (holds_corner(triangle_of(part, triangle), texel)) found[count++] = triangle;
   }
-  links[(part * map_info.size.y + texel.y) * map_info.size.x + texel.x] = found;
+  imageStore(links, ivec3(texel, part), found);
 }

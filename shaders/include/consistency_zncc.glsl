@@ -71,9 +71,14 @@ Consistency consistency(uint base, inout bool seen[kViews]) {
     used += kept[i] ? 1 : 0;
   }
   float score = 0.0;
+  float pairs = 0.0;
   for (int i = 1; i < kViews; ++i)
-    for (int j = 0; j < i; ++j) score += kept[i] && kept[j] ? products[i * (i - 1) / 2 + j] : 0.0;
-  score = used >= 2 ? score / float(used * (used - 1) / 2) : -1.0;
+    for (int j = 0; j < i; ++j) {
+      float weight = kept[i] && kept[j] ? view_weights[i] * view_weights[j] : 0.0;
+      score += weight * products[i * (i - 1) / 2 + j];
+      pairs += weight;
+    }
+  score = used >= 2 ? score / pairs : -1.0;
 #ifdef SAMPLE_COVERAGE
   if (bitCount(taps) < kLeastTaps) texture_variance = 0.0;
 #endif

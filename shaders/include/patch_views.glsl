@@ -8,6 +8,9 @@ const int kPatchEdge = 2 * kPatchRadius + 1;
 const int kPatchTaps = kPatchEdge * kPatchEdge;
 const int kLeastTaps = (kPatchTaps + 1) / 2;
 
+// How much of the voxel each view sees, which weighs pairs of views; 1 unless visibility is filtered.
+float view_weights[kViews];
+
 struct Consistency {
   float score;       // at most 1; from thresholds.x on the views agree; -1 below two views
   float confidence;  // evidence behind it; below noise.y there is too little to say anything

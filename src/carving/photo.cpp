@@ -65,8 +65,10 @@ class Sweeper {
         bits_(to_bits(hull)),
         select_(Program::compute("carving_select_columns.comp.glsl")),
         score_(Program::compute("carving_score_columns.comp.glsl",
-                                statistic_defines(options.statistic, resampling_.coverage))),
-        update_(Program::compute("carving_update_columns.comp.glsl")) {
+                                statistic_defines(options.statistic, resampling_.coverage) +
+                                    visibility::sweep_test_defines(options.visibility))),
+        update_(Program::compute("carving_update_columns.comp.glsl")),
+        mark_(Program::compute("carving_mark_passed.comp.glsl")) {
     for (const Camera& camera : cameras) cameras_.push_back(projtex::to_grid(camera, hull.grid));
     std::vector<shaders::GpuView> views;
     for (const auto& camera : cameras_)
@@ -75,6 +77,7 @@ class Sweeper {
     maps_ = std::make_unique<visibility::DepthMaps>(cameras_, hull.grid);
     table_ = Buffer::of(bits_.table);
     occupancy_ = Buffer::of(bits_.words);
+    passed_ = Buffer(std::max<std::size_t>(bits_.words.size(), 4) * 4);
     std::vector<std::uint32_t> active(hull.table.size());
     for (std::size_t i = 0; i < active.size(); ++i)
       active[i] = hull.table[i] < SparseVolume::kInside;
@@ -107,6 +110,7 @@ class Sweeper {
     const shaders::Column fresh{{-1, -1, 0, 0}, {0, 0, 0, 0}};
     columns_ = Buffer::of(std::vector<shaders::Column>(std::size_t(grid[u]) * grid[v] * 64, fresh));
     maps_->clear();
+    passed_.fill(0);
     std::vector<shaders::Decision> decisions;
     for (int slab = 0; slab < grid[direction.axis]; ++slab) {
       progress.check_cancelled();
@@ -219,6 +223,7 @@ class Sweeper {
     active_.bind_storage(10);
     decided.buffer.bind_storage(11);
     packed_.bind_storage(12);
+    passed_.bind_storage(13);
   }
 
   void sweep_layer(int layer, std::size_t items, DeviceList& selected, DeviceList& occluders,
@@ -245,7 +250,10 @@ class Sweeper {
     bind(0, 0, selected, occluders.buffer, scores, decided, columns_of_layer_.size());
     update_.dispatch(context_, "carving_update_columns",
                      gpu::group_count(columns_of_layer_.size(), 64));
-    maps_->splat(context_, occluders.buffer, occluders.count());
+    if (options_.visibility == visibility::SweepTest::kRays)
+      mark_.dispatch(context_, "carving_mark_passed", gpu::group_count(occluders.count(), 64));
+    else
+      maps_->splat(context_, occluders.buffer, occluders.count());
   }
 
   /// Puts the selected bricks in the order of their items, so that a run never depends on the
@@ -270,9 +278,10 @@ class Sweeper {
   PhotoOptions options_;
   BitVolume bits_;
   std::vector<projtex::GridCamera> cameras_;
-  Program select_, score_, update_;
+  Program select_, score_, update_, mark_;
   std::unique_ptr<visibility::DepthMaps> maps_;
   Buffer views_, table_, occupancy_, active_, samples_, columns_, items_, packed_;
+  Buffer passed_;  ///< bits of the voxels that hide what the sweep comes to, for rays
   Buffer uniforms_{sizeof(shaders::SweepParameters)};
   std::vector<std::uint32_t> columns_of_layer_;
   Direction direction_{};

@@ -12,6 +12,7 @@
 #include "projtex/gpu_views.h"
 #include "projtex/image_set.h"
 #include "projtex/sample_images.h"
+#include "visibility/sweep_test.h"
 
 namespace photohull::carving {
 
@@ -38,6 +39,8 @@ struct PhotoOptions {
   int supersample = 1;
   /// Reference planes through the voxels' front faces instead of their centres.
   bool front_face = false;
+  /// Who sees a voxel.
+  visibility::SweepTest visibility = visibility::kDefaultSweepTest;
   /// Constant bias of the visibility test, voxels (>= 0).
   double depth_bias = 2.5;
   /// Layers behind an inconsistent voxel that are searched for a better explanation (>= 1).

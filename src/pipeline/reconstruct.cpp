@@ -328,6 +328,7 @@ class Job {
     photo.noise_sigma = report_.noise_sigma;
     photo.supersample = options_.supersample.value_or(photo.supersample);
     photo.statistic = options_.consistency.value_or(photo.statistic);
+    photo.visibility = options_.visibility.value_or(photo.visibility);
     tune(options_.tune, photo);
     carving::PhotoReport counts;
     SparseVolume volume = sweep(hull, photo, counts);
@@ -353,7 +354,8 @@ class Job {
   SparseVolume sweep(const SparseVolume& hull, const carving::PhotoOptions& photo,
                      carving::PhotoReport& counts) {
     report_.sampling = {projtex::to_string(sampler()), photo.supersample,
-                        carving::to_string(photo.statistic)};
+                        carving::to_string(photo.statistic),
+                        visibility::to_string(photo.visibility)};
     if (sampler() == projtex::Sampler::kMipmap)
       return carving::carve_photo(*context_, hull, *images_, cameras_, photo, progress_, &counts);
     const projtex::SampleImages images(views_, sampler());

@@ -13,6 +13,7 @@
 #include "pipeline/refine_cameras.h"
 #include "pipeline/report.h"
 #include "projtex/sampler.h"
+#include "visibility/sweep_test.h"
 
 namespace photohull::pipeline {
 
@@ -51,6 +52,7 @@ struct ReconstructOptions {
   std::optional<projtex::Sampler> sampler;
   std::optional<int> supersample;  ///< n x n samples a voxel, 1 to projtex::kMaxSupersample
   std::optional<carving::Statistic> consistency;
+  std::optional<visibility::SweepTest> visibility;
   bool fresh = false;     ///< do not go on from where an interrupted run of the same job came to
   bool evidence = false;  ///< write evidence.ply too: what confidence is computed from
   std::string device = "auto";    ///< auto, software or an index

@@ -46,6 +46,7 @@ std::string Report::to_json() const {
     j["photo"]["sampler"] = sampling->sampler;
     j["photo"]["supersample"] = sampling->supersample;
     j["photo"]["consistency"] = sampling->consistency;
+    j["photo"]["visibility"] = sampling->visibility;
   }
   j["resumed_levels"] = resumed_levels;
   j["refine"] = ordered_json::array();

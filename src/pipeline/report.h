@@ -54,6 +54,7 @@ struct SamplingReport {
   std::string sampler;
   int supersample = 0;
   std::string consistency;
+  std::string visibility;
 };
 
 struct Report {

@@ -26,7 +26,7 @@ class DetailRenderer {
     map_.triangles_ = gpu::Buffer(std::max<std::size_t>(1, geometry_.triangles() * parts_) *
                                   sizeof(shaders::MapTriangle));
     large_ = gpu::Buffer((geometry_.triangles() + 1) * 4);
-    check_size(texels_ * (map_.technique_.detail == Detail::kCoverage ? 16 : 4));
+    check_size(texels_ * 4);
     depths_ = gpu::Buffer(texels_ * 4);
     depths_.fill(std::bit_cast<unsigned>(std::numeric_limits<float>::infinity()));
     if (map_.technique_.detail == Detail::kLists)
@@ -88,9 +88,9 @@ class DetailRenderer {
       cover("ID", part, large);
     }
     if (map_.technique_.detail != Detail::kCoverage) return;
-    map_.list_ = gpu::Buffer(texels_ * 16);
-    bind(map_.list_ends_);
     const glm::ivec2 size = map_.layout_.size;
+    map_.links_ = gpu::TextureArray(gpu::TextureFormat::kRgba32ui, size.x, size.y, int(parts_));
+    map_.links_.bind_image(0, 0, true);
     gpu::Program::shared_compute(context_, "visibility_link_triangles.comp.glsl")
         ->dispatch(context_, "visibility_link_triangles", gpu::group_count(std::size_t(size.x), 8),
                    gpu::group_count(std::size_t(size.y), 8), parts_);

@@ -14,7 +14,7 @@ using glm::dvec4;
 using glm::ivec2;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kWidestGap = 1;  // texels
+constexpr double kWidestGap = 1;      // texels
 constexpr double kLargeTriangle = 4;  // texels
 
 }  // namespace
@@ -107,7 +107,8 @@ bool Map::surrounded(const Sample& s, const Place& place) const {
   const ivec2 first(glm::floor(place.at - 0.5));
   const double slack = slack_beside(s, place);
   const std::uint32_t own = kept(place.part, clamped(ivec2(glm::floor(place.at))));
-  if (own == shaders::kNoTriangle || least_height(place.part, own, place.at) >= kLargeTriangle) return false;
+  if (own == shaders::kNoTriangle || least_height(place.part, own, place.at) >= kLargeTriangle)
+    return false;
   for (int y = 0; y <= 1; ++y)
     for (int x = 0; x <= 1; ++x) {
       const ivec2 texel = clamped(first + ivec2(x, y));

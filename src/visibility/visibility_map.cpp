@@ -14,7 +14,8 @@ std::size_t texel_bytes(const gpu::TextureArray& texture, std::size_t each) {
 
 std::size_t VisibilityMap::bytes() const {
   return texel_bytes(first_, 4) + texel_bytes(second_, 4) + texel_bytes(ids_, 4) +
-         texel_bytes(moments_, 8) + triangles_.bytes() + list_ends_.bytes() + list_.bytes();
+         texel_bytes(moments_, 8) + texel_bytes(links_, 16) + triangles_.bytes() +
+         list_ends_.bytes() + list_.bytes();
 }
 
 std::vector<float> VisibilityMap::depths(bool second) const {
@@ -37,7 +38,8 @@ std::vector<std::uint32_t> VisibilityMap::triangles_at(int part, const glm::ivec
     const auto ends = list_ends_.download<std::uint32_t>(2, at);
     out = list_.download<std::uint32_t>(ends[1] - ends[0], ends[0]);
   } else if (technique_.detail == Detail::kCoverage) {
-    out = list_.download<std::uint32_t>(shaders::kMaxLinks, at * shaders::kMaxLinks);
+    out.resize(shaders::kMaxLinks);
+    links_.read_texel(texel.x, texel.y, part, out.size() * 4, out.data());
   } else if (technique_.detail == Detail::kSubPixel) {
     out = list_ends_.download<std::uint32_t>(1, at);
   }
@@ -48,8 +50,8 @@ std::vector<std::uint32_t> VisibilityMap::triangles_at(int part, const glm::ivec
 
 void VisibilityMap::bind() const {
   info_.bind_uniform(1);
-  const gpu::TextureArray* units[] = {&first_, &second_, &ids_, &moments_};
-  for (unsigned i = 0; i < 4; ++i)
+  const gpu::TextureArray* units[] = {&first_, &second_, &ids_, &moments_, &links_};
+  for (unsigned i = 0; i < 5; ++i)
     if (units[i]->id()) units[i]->bind(i);
   if (triangles_.id()) triangles_.bind_storage(4);
   if (list_ends_.id()) list_ends_.bind_storage(5);

@@ -41,7 +41,7 @@ class VisibilityMap {
   /// Detail::kLists: length of all lists together.
   std::size_t linked() const { return linked_; }
 
-  /// Binds what include/visibility_test.glsl reads: uniform block 1, textures 0 to 3, storage 4 to
+  /// Binds what include/visibility_test.glsl reads: uniform block 1, textures 0 to 4, storage 4 to
   /// 6.
   void bind() const;
 
@@ -53,10 +53,10 @@ class VisibilityMap {
   MapLayout layout_;
   glm::dvec3 origin_{0.0};
   gpu::Buffer info_{sizeof(shaders::MapInfo)};
-  gpu::TextureArray first_, second_, ids_, moments_;
+  gpu::TextureArray first_, second_, ids_, moments_, links_;
   gpu::Buffer triangles_;  ///< sub-pixel maps
   gpu::Buffer list_ends_;  ///< a texel: where its list begins, or its nearest triangle
-  gpu::Buffer list_;       ///< lists, or four links a texel
+  gpu::Buffer list_;       ///< of all texels, one after another
   std::size_t linked_ = 0;
   std::shared_ptr<const gpu::Program> test_;
 };
