@@ -1,7 +1,7 @@
 #version 450 core
 #extension GL_GOOGLE_include_directive : require
 // Marks the voxels that a layer leaves behind as hiding what comes, for exact rays. One thread a voxel of
-// the list. Reference: carving::reference::sweep_visible takes such a set of voxels.
+// the list. Reference: visibility::reference::sweep_visible takes such a set of voxels.
 #include "include/layer.glsl"
 
 layout(local_size_x = 64) in;

@@ -1,6 +1,6 @@
 // How much of a voxel's part of a layer a view sees among what the sweep has passed, by the test that
 // SWEEP_... chooses (visibility/sweep_test.h); a constant bias in voxels with all of them.
-// Reference: carving::reference::sweep_visible.
+// Reference: visibility::reference::sweep_visible.
 #include "include/depth_map.glsl"
 
 #if defined(SWEEP_RAYS)

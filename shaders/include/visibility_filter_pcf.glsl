@@ -1,6 +1,6 @@
 // Percentage-closer filtering [Reeves87]: the weighted share of FILTER_SIZE^2 tests that pass. Kernels
 // on texels, or with PCF_ON_PIXELS on the receiver's neighbours; regular, jittered or circular
-// (equation 10 of [ShadowsCad07]); PCF_GAUSSIAN weights; PCF_ADAPTIVE takes the outer tests first and is
+// (equation 10 of [BarrosoCeles07]); PCF_GAUSSIAN weights; PCF_ADAPTIVE takes the outer tests first and is
 // done where they agree [Uralsky05]. Reference: visibility::reference::Map::pcf.
 #if !defined(FILTER_SIZE)
 #define FILTER_SIZE 3

@@ -1,5 +1,5 @@
 // Virtual samples from the derivatives of the map's coordinates alone (equations 2 to 6 of
-// [ShadowsCad07]); linear depth takes p's place. Edge-on planes keep the receiver's own depth.
+// [BarrosoCeles07]); linear depth takes p's place. Edge-on planes keep the receiver's own depth.
 // Reference: visibility::reference::Map::receiver_depth.
 
 vec2 prepare(Receiver r, MapPoint m) {

@@ -36,8 +36,14 @@ std::optional<AlignedPatch> align_patch(const GreyImage& image, const glm::dvec2
       }
     const double variance = (n * ss - s * s) * (n * tt - t * t);
     agreement = variance > 0 ? (n * st - s * t) / std::sqrt(variance) : 0;
+    // The weaker of the gradient's two directions must stand out of 8-bit rounding.
+    constexpr double kLeastGradient = 0.3;  // levels a pixel
+    const double trace = normal(0, 0) + normal(1, 1);
+    const double determinant = normal(0, 0) * normal(1, 1) - normal(0, 1) * normal(0, 1);
+    const double weaker = 0.5 * (trace - std::sqrt(std::max(0.0, trace * trace - 4 * determinant)));
+    if (!(weaker > n * kLeastGradient * kLeastGradient)) return std::nullopt;
     const Eigen::LDLT<Eigen::Matrix<double, 8, 8>> solver(normal);
-    if (solver.info() != Eigen::Success || !(solver.rcond() > 1e-12)) return std::nullopt;
+    if (solver.info() != Eigen::Success) return std::nullopt;
     const Vector d = solver.solve(right);
     if (!d.allFinite()) return std::nullopt;
     place.center += glm::dvec2(d[0], d[1]);

@@ -7,7 +7,7 @@
 
 namespace photohull::visibility {
 
-/// What is added to a map's depth before the test, z_map = z1 + z_bias(z1, z2) [ShadowsCad07].
+/// What is added to a map's depth before the test, z_map = z1 + z_bias(z1, z2) [BarrosoCeles07].
 enum class Bias {
   kConstant,
   kSlope,          ///< constant, and the depth's greatest change from texel to texel

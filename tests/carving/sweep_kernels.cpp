@@ -34,17 +34,20 @@ SweepKernels::SweepKernels(gpu::Context& context, const BitVolume& bits,
       select_(gpu::Program::compute("carving_select_columns.comp.glsl")),
       score_(gpu::Program::compute("carving_score_columns.comp.glsl", score_defines)),
       update_(gpu::Program::compute("carving_update_columns.comp.glsl")),
+      mark_(gpu::Program::compute("carving_mark_passed.comp.glsl")),
       maps_(cameras, bits.grid),
       views_(Buffer::of(to_gpu(cameras))),
       table_(Buffer::of(bits.table)),
       occupancy_(Buffer::of(bits.words)),
       active_(bits.table.size() * 4),
+      passed_(bits.words.size() * 4),
       uniforms_(sizeof parameters) {
   const std::size_t columns =
       std::size_t(frame.voxels[frame.u()]) * std::size_t(frame.voxels[frame.v()]);
   columns_ = Buffer::of(std::vector<shaders::Column>(columns, {{-1, -1, 0, 0}, glm::vec4(0)}));
   decisions_ = list_of(columns * std::size_t(frame.voxels[frame.axis]), sizeof(shaders::Decision));
   active_.fill(0);
+  passed_.fill(0);
   parameters.axes = {frame.u(), frame.v(), frame.axis, frame.sign};
 }
 
@@ -65,6 +68,7 @@ void SweepKernels::bind(const Buffer& block6) {
   active_.bind_storage(10);
   decisions_.bind_storage(11);
   packed_.bind_storage(12);
+  passed_.bind_storage(13);
 }
 
 SelectedLayer SweepKernels::select(int layer) {
@@ -105,6 +109,11 @@ SelectedLayer SweepKernels::select(int layer) {
   packed_ = Buffer::of(judged_);
   scores_ = Buffer(judged_.size() * 16);
   return out;
+}
+
+void SweepKernels::mark(const Buffer& voxels, std::size_t count) {
+  bind(voxels);
+  mark_.dispatch(context_, "carving_mark_passed", gpu::group_count(count, 64));
 }
 
 std::vector<glm::vec4> SweepKernels::score(const std::vector<glm::vec4>& samples) {

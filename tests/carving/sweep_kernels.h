@@ -32,6 +32,8 @@ class SweepKernels {
   shaders::SweepParameters parameters{};
 
   SelectedLayer select(int layer);
+  /// Marks voxels (a list with a header of 16 bytes) as passed, for exact rays.
+  void mark(const gpu::Buffer& voxels, std::size_t count);
   /// Scores of the selected columns: score, views used, texture variance, views that see.
   /// `samples`: (selected brick, view, apron) as the projection writes them.
   std::vector<glm::vec4> score(const std::vector<glm::vec4>& samples);
@@ -57,9 +59,9 @@ class SweepKernels {
   reference::SweepFrame frame_;
   glm::ivec3 bricks_;
   int view_count_;
-  gpu::Program select_, score_, update_;
+  gpu::Program select_, score_, update_, mark_;
   visibility::DepthMaps maps_;
-  gpu::Buffer views_, table_, occupancy_, columns_, active_, uniforms_;
+  gpu::Buffer views_, table_, occupancy_, columns_, active_, passed_, uniforms_;
   gpu::Buffer items_, selected_, occluders_, packed_, scores_, decisions_;
   std::vector<glm::uvec4> entries_;    ///< selected bricks of the layer
   std::vector<std::uint32_t> judged_;  ///< entry * 64 + column

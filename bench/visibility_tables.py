@@ -1,0 +1,199 @@
+#!/usr/bin/env python3
+"""What 'photohull bench visibility' measured, as Markdown tables in the papers' structure.
+
+    build/release/photohull bench visibility --json bench/results/visibility.json
+    bench/visibility_tables.py bench/results/visibility.json
+
+Several files, one a scene say, are joined; --merge writes them as one.
+"""
+import argparse
+import json
+
+PIXELS = 800 * 600  # of the pictures in [BarrosoCeles07], to which receivers are scaled
+SHOWN = 1024
+
+
+def join(files):
+    joined = {}
+    for name in files:
+        with open(name, encoding="utf-8") as file:
+            one = json.load(file)
+        for key, value in one.items():
+            if isinstance(value, list) and key not in ("angles", "volumes"):
+                joined.setdefault(key, []).extend(value)
+            else:
+                joined.setdefault(key, value)
+    return joined
+
+
+def table(head, rows):
+    print("| " + " | ".join(head) + " |")
+    print("|" + "---|" * len(head))
+    for row in rows:
+        print("| " + " | ".join(str(cell) for cell in row) + " |")
+    print()
+
+
+class Results:
+    def __init__(self, data):
+        self.data = data
+        self.scenes = {s["name"]: s for s in data["scenes"]}
+        self.cells = {(c["scene"], c["technique"], c["resolution"]): c for c in data["cells"]}
+        self.techniques = list(dict.fromkeys(c["technique"] for c in data["cells"]))
+        self.resolutions = sorted({c["resolution"] for c in data["cells"]})
+
+    def total(self, cell):
+        return cell["false_occlusion_percent"] + cell["false_visibility_percent"]
+
+    def errors(self):
+        print(f"### Errors at {SHOWN} texels: falsely hidden + falsely visible, % (silhouette, texels)\n")
+        rows = []
+        for technique in self.techniques:
+            row = [f"`{technique}`"]
+            for scene in self.scenes:
+                cell = self.cells.get((scene, technique, SHOWN))
+                row.append(f"{cell['false_occlusion_percent']:.2f} + {cell['false_visibility_percent']:.2f} "
+                           f"({cell['silhouette_texels']:.2f})" if cell else "-")
+            rows.append(row)
+        table(["technique"] + list(self.scenes), rows)
+
+    def means(self):
+        print("### Mean over the scenes: total error in %, map ms + test ms, MiB\n")
+        rows = []
+        for technique in self.techniques:
+            row = [f"`{technique}`"]
+            for resolution in self.resolutions:
+                found = [self.cells[s, technique, resolution] for s in self.scenes
+                         if (s, technique, resolution) in self.cells]
+                if not found:
+                    row.append("-")
+                    continue
+                mean = lambda value: sum(value(c) for c in found) / len(found)
+                row.append(f"{mean(self.total):.3f}; {mean(lambda c: c['map_ms']):.0f} + "
+                           f"{mean(lambda c: c['test_ms']):.1f}; {mean(lambda c: c['bytes']) / 2**20:.0f}")
+            rows.append(row)
+        table(["technique"] + [f"{r}" for r in self.resolutions], rows)
+
+    def biases(self):
+        print("### Constant bias: falsely hidden + falsely visible, %, at 1024 texels\n")
+        widths = sorted({b["bias_texels"] for b in self.data["biases"]})
+        rows = []
+        for scene in self.scenes:
+            found = {b["bias_texels"]: b for b in self.data["biases"] if b["scene"] == scene}
+            rows.append([scene] + [f"{found[w]['false_occlusion_percent']:.2f} + "
+                                   f"{found[w]['false_visibility_percent']:.2f}" for w in widths])
+        table(["texels of bias"] + [f"{w:g}" for w in widths], rows)
+
+    def angles(self):
+        print("### Total error in % (silhouette, texels) by the angle between the two cameras, 1024 texels\n")
+        degrees = sorted({a["degrees"] for a in self.data["angles"]})
+        techniques = list(dict.fromkeys(a["technique"] for a in self.data["angles"]))
+        found = {(a["technique"], a["degrees"]): a for a in self.data["angles"]}
+        table(["map"] + [f"{d:g}" for d in degrees],
+              [[f"`{t}`"] + [f"{self.total(found[t, d]):.2f} ({found[t, d]['silhouette_texels']:.2f})"
+                             for d in degrees] for t in techniques])
+
+    def detection(self):
+        print("### Triangles seen in a texel, and share of them that maps know, %\n")
+        rows = []
+        for scene in self.scenes:
+            for r in self.resolutions:
+                found = {d["technique"]: d for d in self.data["detection"]
+                         if d["scene"] == scene and d["resolution"] == r}
+                if found:
+                    rows.append([scene, r, f"{found['lists']['triangles_per_texel']:.2f}"] +
+                                [f"{found[t]['found_percent']:.1f}" for t in ("sub-pixel", "coverage", "lists")])
+        table(["scene", "texels", "triangles", "sub-pixel", "coverage", "lists"], rows)
+
+    def volumes(self):
+        print("### A volume of 256^3 voxels: map ms, falsely hidden + falsely visible, %\n")
+        table(["way"] + [str(r) for r in self.resolutions],
+              [[way] + [f"{v['map_ms']:.0f}; {v['false_occlusion_percent']:.2f} + {v['false_visibility_percent']:.2f}"
+                        for v in self.data["volumes"] if v["way"] == way] for way in ("faces", "march")])
+
+    def ms(self, scene, technique, resolution):
+        cell = self.cells[scene, technique, resolution]
+        return cell["map_ms"] + cell["test_ms"]
+
+    def li17(self):
+        print("### [Li17] Table 1: ms by resolution, dense mesh (paper: Dragon)\n")
+        paper = {512: (16.9, 25.7), 1024: (32.8, 42.8), 2048: (34.4, 44.1), 4096: (67.3, 78.4)}
+        rows = []
+        for r in self.resolutions:
+            if ("dense", "coverage", r) not in self.cells:
+                continue
+            plain, ours, lists = (self.ms("dense", t, r) for t in ("plain", "coverage", "lists"))
+            p = paper[r]
+            rows.append([f"{r}", f"{plain:.0f}", f"{ours:.0f}", f"{100 * (ours / plain - 1):.0f} %",
+                         f"{100 * (lists / plain - 1):.0f} %",
+                         f"{p[0]}, {p[1]}: {100 * (p[1] / p[0] - 1):.0f} %"])
+        table(["map", "plain", "coverage", "increase", "increase of `lists`", "paper"], rows)
+        print("### [Li17] Table 2: ms by model\n")
+        paper = {"dense": "Dragon: 32.8 34.4, 42.5 43.6, 42.8 44.1", "wires": "Butterfly: 15.7 17.1, 24.6 26.3, 25.4 27.3",
+                 "leaves": "Tree: 11.1 16.9, 16.9 18.5, 17.2 18.9", "ball": "Ball: 7.6 9.4, 10.7 12.6, 10.9 13.3"}
+        rows = []
+        for scene, theirs in paper.items():
+            if scene in self.scenes:
+                s = self.scenes[scene]
+                rows.append([scene, s["vertices"], s["triangles"]] +
+                            [f"{self.ms(scene, t, r):.0f}" for t in ("plain", "sub-pixel", "coverage", "lists")
+                             for r in (1024, 2048)] + [theirs])
+        table(["model", "vertices", "polygons"] + [f"{t} {r}" for t in ("plain", "SPSM", "coverage", "lists")
+                                                    for r in (1024, 2048)] + ["paper: SM, SPSM, theirs"], rows)
+
+    def frames(self, scene, technique, lights, dynamic, close):
+        """Per second: a pass of the picture, one more a light with its test, and dynamic lights' maps."""
+        view = next(v["ms"] for v in self.data["views"] if v["scene"] == scene and v["close"] == close)
+        if not lights:
+            return 1000 / view
+        cell = self.cells[scene, technique, 2048]
+        test = cell["test_ms"] * PIXELS / self.scenes[scene]["receivers"]
+        return 1000 / (view + lights * (view + test + (cell["map_ms"] if dynamic else 0)))
+
+    def cad07(self, scene="assembly_250k"):
+        if scene not in self.scenes:
+            return
+        f = lambda *a: f"{self.frames(scene, *a):.1f}"
+        print(f"### [BarrosoCeles07] Table 2: frames a second, {scene}, maps of 2048\n")
+        rows = [("no shadows", 0, False, 60, 300), ("1 static light", 1, False, 37, 230),
+                ("2 static lights", 2, False, 25, 160), ("1 dynamic light", 1, True, 22, 45),
+                ("2 dynamic lights", 2, True, 13, 25)]
+        table(["plain map", "whole scene", "near view", "paper"],
+              [[n, f("plain", l, d, False), f("plain", l, d, True), f"{a}, {b}"] for n, l, d, a, b in rows])
+        print("### Table 3: against acne\n")
+        table(["dynamic lights", "constant: whole", "near", "second-depth: whole", "near", "dual-depth: whole", "near",
+               "paper: constant, midpoint"],
+              [[l] + [f(t, l, True, c) for t in ("plain", "second-depth", "dual-depth") for c in (False, True)] + [p]
+               for l, p in ((1, "22 45, 16 27"), (2, "13 25, 9 14"))])
+        print("### Table 4: filters, near view\n")
+        table(["lights", "PCF 3x3", "PCF 5x5", "PCF 5x5 adaptive", "VSM 5x5", "paper: PCF 3x3, 5x5 adaptive; VSM 5x5"],
+              [[n] + [f(t, l, d, True) for t in ("pcf3", "pcf5", "pcf5-adaptive", "variance")] + [p]
+               for n, l, d, p in (("1 static", 1, False, "84, 84; 194"), ("2 static", 2, False, "56, 56; 116"),
+                                  ("1 dynamic", 1, True, "43, 43; 46"), ("2 dynamic", 2, True, "22, 21; 25"))])
+        print("### Table 5: warp and partitions\n")
+        table(["dynamic lights", "ZP_1: whole", "near", "ZP_2: whole", "near", "paper"],
+              [[l] + [f(t, l, True, c) for t in ("general-lispsm", "zp2") for c in (False, True)] + [p]
+               for l, p in ((1, "21-22, 44-88; 16-20, 31-66"), (2, "13, 30-49; 9-12, 22-38"))])
+        print("### Tables 6 and 7: all that is recommended, near view\n")
+        table(["dynamic lights", "plain", "recommended", "paper: 8800 GTS", "paper: 6800 GT"],
+              [[l, f("plain", l, True, True), f("recommended", l, True, True), a, b]
+               for l, a, b in ((1, "45, 29-59", "33, 9-12"), (2, "25, 18-30", "18, 5-7"))])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("results", nargs="+", help="visibility.json")
+    parser.add_argument("--merge", help="file to write the joined results to")
+    options = parser.parse_args()
+    data = join(options.results)
+    if options.merge:
+        with open(options.merge, "w", encoding="utf-8") as file:
+            json.dump(data, file, indent=1)
+            file.write("\n")
+    results = Results(data)
+    for part in ("errors", "means", "biases", "angles", "detection", "volumes", "li17", "cad07"):
+        getattr(results, part)()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,232 @@
+#include "calib/refine_cameras.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "calib/align_patch.h"
+#include "calib/frontier.h"
+#include "calib/prepare_views.h"
+#include "calib/triangulate.h"
+#include "core/error.h"
+#include "io/image_file.h"
+#include "io/load_scene.h"
+#include "pictures.h"
+#include "support/scratch_folder.h"
+#include "synth/synthesize.h"
+
+namespace photohull {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Cameras on a circle of radius 5 around the origin, looking at it, z up.
+std::vector<Camera> ring(int count) {
+  std::vector<Camera> cameras;
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2 * std::numbers::pi * i / count;
+    Camera camera;
+    camera.intrinsics = {200, 150, 180, 175, 0.5, 98, 76};
+    const glm::dvec3 center(5 * std::cos(angle), 5 * std::sin(angle), 0.7 + 0.3 * (i % 3));
+    const glm::dvec3 z = -glm::normalize(center), x = glm::normalize(glm::cross(z, {0, 0, 1})),
+                     y = glm::cross(z, x);
+    camera.cam_from_world.rotation = glm::transpose(glm::dmat3(x, y, z));
+    camera.cam_from_world.translation = -(camera.cam_from_world.rotation * center);
+    cameras.push_back(camera);
+  }
+  return cameras;
+}
+
+Track track_of(std::span<const Camera> cameras, const glm::dvec3& point) {
+  Track track;
+  for (int i = 0; i < int(cameras.size()); ++i)
+    track.observations.push_back({i, *cameras[i].project(point)});
+  return track;
+}
+
+/// How far, in pixels, cameras are from consistent with the true ones, whatever world each has:
+/// points near the origin are seen by the true ones and triangulated by the others.
+double inconsistency(std::span<const Camera> cameras, std::span<const Camera> truth, double size) {
+  double sum = 0;
+  for (int i = 0; i < 8; ++i) {
+    const glm::dvec3 point = size * glm::dvec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
+    const Track track = track_of(truth, point);
+    const auto found = triangulate(cameras, track);
+    sum += found ? std::pow(reprojection_rms(cameras, track, *found), 2) : 1e9;
+  }
+  return std::sqrt(sum / 8);
+}
+
+TEST(Triangulate, FindsThePointThatItsPixelsShow) {
+  const std::vector<Camera> cameras = ring(4);
+  const glm::dvec3 point(0.3, -0.2, 0.5);
+  const Track track = track_of(cameras, point);
+  const auto found = triangulate(cameras, track);
+  ASSERT_TRUE(found);
+  EXPECT_LT(glm::distance(*found, point), 1e-9);
+  EXPECT_LT(reprojection_rms(cameras, track, *found), 1e-9);
+}
+
+TEST(Triangulate, RefusesParallelRays) {
+  std::vector<Camera> cameras = {ring(4)[0], ring(4)[0]};
+  EXPECT_FALSE(triangulate(cameras, track_of(cameras, {0.1, 0.2, 0})));
+}
+
+GreyImage waves(double dx, double dy, double gain) {
+  GreyImage image{60, 50, {}};
+  for (int y = 0; y < 50; ++y)
+    for (int x = 0; x < 60; ++x) {
+      const double u = x - dx, v = 1.02 * (y - dy);
+      image.values.push_back(
+          float(gain * (100 + 30 * std::sin(0.5 * u) + 25 * std::sin(0.4 * v + 0.2 * u)) + 5));
+    }
+  return image;
+}
+
+TEST(AlignPatch, FindsShiftsBelowAPixelUnderGainAndOffset) {
+  const GreyImage a = waves(0, 0, 1), b = waves(0.37, -0.21, 1.3);
+  const glm::dvec2 source(30, 24);
+  const auto found = align_patch(a, source, b, {{30, 24}, glm::dmat2(1)}, 7, 3);
+  ASSERT_TRUE(found);
+  // The second image is squeezed along y: 1.02 (y + 0.21) = 1.02 * 24.
+  EXPECT_NEAR(found->place.center.x, 30.37, 0.02);
+  EXPECT_NEAR(found->place.center.y, 24 - 0.21, 0.02);
+  EXPECT_GT(found->agreement, 0.99);
+}
+
+TEST(AlignPatch, RefusesPatchesWithoutStructureAndBeyondTheFrame) {
+  GreyImage plain{60, 50, std::vector<float>(3000, 80.0f)};
+  EXPECT_FALSE(align_patch(plain, {30, 24}, plain, {{30, 24}, glm::dmat2(1)}, 7, 3));
+  const GreyImage image = waves(0, 0, 1);
+  EXPECT_FALSE(align_patch(image, {5, 24}, image, {{5, 24}, glm::dmat2(1)}, 7, 3));
+}
+
+/// The silhouette of a sphere around the origin, exact to rounding of coverage.
+Mask sphere_mask(const Camera& camera, double radius) {
+  const glm::dvec3 c = camera.center();
+  return paint_mask(camera.intrinsics.width, camera.intrinsics.height, [&](double x, double y) {
+    double inside = 0;
+    for (int i = 0; i < 64; ++i) {
+      const glm::dvec3 d = camera.ray({x + (i % 8 - 3.5) / 8, y + (i / 8 - 3.5) / 8});
+      inside += glm::length(glm::cross(c, d)) < radius;
+    }
+    return inside / 64;
+  });
+}
+
+TEST(Frontier, TangentsOfASphereLieOnEachOthersEpipolarLines) {
+  std::vector<Camera> cameras = ring(6);
+  std::vector<Outline> outlines;
+  for (const Camera& camera : cameras) outlines.push_back(outline_of(sphere_mask(camera, 1.2)));
+  const std::vector<FrontierPair> pairs = frontier_pairs(cameras, outlines);
+  // Opposite views have each other's epipole within the outline, but for two that are so high that
+  // the line between them passes above the sphere.
+  ASSERT_EQ(pairs.size(), 2u * (15 - 2));
+  double sum = 0;
+  for (const FrontierPair& pair : pairs) {
+    const glm::dvec2 d = epipolar_distances(cameras[pair.view_a], cameras[pair.view_b], pair);
+    sum += glm::dot(d, d);
+  }
+  EXPECT_LT(std::sqrt(sum / (2 * double(pairs.size()))), 0.1);
+  // A camera that is off by pixels shows.
+  cameras[0].intrinsics.cy += 3;
+  const auto off = epipolar_distances(cameras[0], cameras[1], frontier_pairs(cameras, outlines)[0]);
+  EXPECT_GT(glm::length(off), 1.5);
+}
+
+class RefineCameras : public testing::Test {
+ protected:
+  /// A block photographed from two rings, its cameras put off as `degradations` says.
+  void synthesize(const std::string& material, const std::string& degradations) {
+    synth::Spec spec =
+        synth::parse_spec(R"({"geometry": {"shape": "block"}, "material": )" + material +
+                              R"(, "cameras": {"rings": [{"count": 9, "elevation": 5},
+                {"count": 9, "elevation": 35, "phase": 0.5}]}, "degradations": )" +
+                              degradations + "}",
+                          "test", "");
+    spec.image = {320, 240, 3};
+    spec.truth_samples = 200;
+    synth::synthesize(spec, folder_ / "scene", progress_);
+    scene_ = io::load_scene(folder_ / "scene/transforms.json");
+    const fs::path exact = folder_ / "scene/true_cameras/transforms.json";
+    truth_ = cameras_of(fs::exists(exact) ? io::load_scene(exact) : scene_);
+    const ViewLoader loader{[](const fs::path& file) { return io::read_image(file); },
+                            [](const fs::path& file) { return io::read_mask(file); }};
+    views_ = prepare_views(scene_, loader, {}, progress_).views;
+  }
+
+  static std::vector<Camera> cameras_of(const Scene& scene) {
+    std::vector<Camera> cameras;
+    for (const SourceView& view : scene.views) cameras.push_back(view.camera);
+    return cameras;
+  }
+
+  double error(std::span<const Camera> cameras) const {
+    return inconsistency(cameras, truth_, 0.5);
+  }
+
+  ScratchFolder folder_;
+  Progress progress_;
+  Scene scene_;
+  std::vector<View> views_;
+  std::vector<Camera> truth_;
+};
+
+constexpr const char* kTextured = R"({"faces": true, "contrast": 0.6})";
+constexpr const char* kPlain = R"({"contrast": 0, "chroma": 0})";
+
+TEST_F(RefineCameras, PosesThatAreTwoPixelsOffBecomeConsistent) {
+  synthesize(kTextured, R"({"pose_error": 2})");
+  ASSERT_GT(error(cameras_of(scene_)), 1);
+  const CameraRefinement found = refine_cameras(views_, {}, progress_);
+  EXPECT_TRUE(found.changed);
+  EXPECT_LT(error(found.cameras), 0.1);
+  EXPECT_GT(found.all.before, 0.5);
+  EXPECT_LT(found.all.after, 0.15);
+  ASSERT_EQ(found.views.size(), scene_.views.size());
+  for (const ViewAgreement& view : found.views)
+    if (view.observations > 5) {
+      EXPECT_LT(view.after, view.before + 0.1);
+    }
+  // The gauge is that of the given cameras: points stay where they were, but for the noise's mean.
+  const glm::dvec3 point(0.1, 0.2, 0.3);
+  double shift = 0;
+  for (std::size_t i = 0; i < truth_.size(); ++i)
+    shift += glm::distance(*found.cameras[i].project(point), *truth_[i].project(point));
+  EXPECT_LT(shift / double(truth_.size()), 1.5);
+}
+
+TEST_F(RefineCameras, ExactCamerasStayAlmostAsTheyAre) {
+  synthesize(kTextured, "{}");
+  EXPECT_LT(error(refine_cameras(views_, {}, progress_).cameras), 0.06);
+}
+
+TEST_F(RefineCameras, SilhouettesServeWhereThereIsNoTexture) {
+  synthesize(kPlain, R"({"pose_error": 2})");
+  const double before = error(cameras_of(scene_));
+  const CameraRefinement found = refine_cameras(views_, {}, progress_);
+  EXPECT_TRUE(found.changed);
+  EXPECT_LT(error(found.cameras), 0.6 * before);
+  EXPECT_LT(found.tangents_after, 0.3 * found.tangents_before);
+}
+
+TEST_F(RefineCameras, FocalLengthAndPrincipalPointOnDemand) {
+  synthesize(kTextured, R"({"intrinsics_error": 3})");
+  const double before = error(cameras_of(scene_));
+  RefineCamerasOptions options;
+  options.intrinsics = true;
+  const CameraRefinement found = refine_cameras(views_, options, progress_);
+  EXPECT_LT(error(found.cameras), 0.25 * before);
+  EXPECT_NE(found.focal_factor, 1);
+  EXPECT_EQ(refine_cameras(views_, {}, progress_).focal_factor, 1);
+}
+
+TEST_F(RefineCameras, NeedsThreeViews) {
+  synthesize(kTextured, "{}");
+  EXPECT_THROW(refine_cameras(std::span(views_).first(2), {}, progress_), Error);
+}
+
+}  // namespace
+}  // namespace photohull
