@@ -9,6 +9,7 @@ void add_reconstruct(CLI::App& app);
 void add_evaluate(CLI::App& app);
 void add_convert(CLI::App& app);
 void add_refine_cameras(CLI::App& app);
+void add_calibrate(CLI::App& app);
 void add_info(CLI::App& app);
 void add_synthesize(CLI::App& app);
 void add_chart(CLI::App& app);

@@ -40,6 +40,7 @@ int run(int argc, char** argv) {
   photohull::cli::add_reconstruct(app);
   photohull::cli::add_info(app);
   photohull::cli::add_convert(app);
+  photohull::cli::add_calibrate(app);
   photohull::cli::add_refine_cameras(app);
   photohull::cli::add_synthesize(app);
   photohull::cli::add_evaluate(app);
@@ -50,7 +51,8 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
     if (app.get_subcommands().empty())
       throw photohull::UsageError(
-          "a command is missing: reconstruct, evaluate, synthesize, convert, refine-cameras, "
+          "a command is missing: reconstruct, evaluate, synthesize, convert, calibrate, "
+          "refine-cameras, "
           "chart, bench, info or "
           "devices; "
           "see "
