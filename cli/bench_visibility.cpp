@@ -83,6 +83,11 @@ ordered_json to_json(const Study& study, const Arguments& a, const std::string& 
     put(cell, c.errors);
     j["volumes"].push_back(cell);
   }
+  for (const auto& c : study.left_out)
+    j["left_out"].push_back({{"scene", c.scene},
+                             {"technique", c.technique},
+                             {"resolution", c.resolution},
+                             {"why", c.why}});
   for (const auto& c : study.views)
     j["views"].push_back({{"scene", c.scene}, {"close", c.close}, {"ms", rounded(c.ms)}});
   return j;
@@ -96,6 +101,9 @@ void print_table(const Study& study) {
                 c.technique.c_str(), c.resolution, c.errors.false_occlusion,
                 c.errors.false_visibility, c.silhouette_texels, c.map_ms, c.test_ms,
                 double(c.bytes) / (1 << 20));
+  for (const auto& c : study.left_out)
+    std::printf("left out: %s, %s, %d: %s\n", c.scene.c_str(), c.technique.c_str(), c.resolution,
+                c.why.c_str());
   std::printf("occlusion, visible: falsely hidden and falsely visible share of the receivers\n");
 }
 

@@ -208,13 +208,22 @@ Study study_visibility(gpu::Context& context, const StudyOptions& options, Progr
     for (const int resolution : options.resolutions)
       for (const Technique& technique : techniques) {
         progress.check_cancelled();
-        study.cells.push_back(one.measure(technique, resolution));
-        progress.update(double(study.cells.size()) / cells);
+        try {
+          study.cells.push_back(one.measure(technique, resolution));
+        } catch (const Error& error) {
+          study.left_out.push_back({name, technique.name, resolution, error.what()});
+        }
+        progress.update(double(study.cells.size() + study.left_out.size()) / cells);
       }
     for (const BiasCell& cell : one.sweep_bias()) study.biases.push_back(cell);
     for (const ViewCell& cell : one.time_views()) study.views.push_back(cell);
-    for (const int resolution : options.resolutions)
-      for (const DetectionCell& cell : one.detect(resolution)) study.detection.push_back(cell);
+    for (const int resolution : options.resolutions) {
+      try {
+        for (const DetectionCell& cell : one.detect(resolution)) study.detection.push_back(cell);
+      } catch (const Error& error) {
+        study.left_out.push_back({name, "detection", resolution, error.what()});
+      }
+    }
     // A viewpoint that turns, on the first scene only.
     if (&name == &options.scenes.front()) study.angles = one.turn_viewpoint(progress);
     context.release_deleted();

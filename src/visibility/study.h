@@ -91,6 +91,13 @@ struct SceneInfo {
   double visible_percent = 0;  ///< of the receivers that face the viewpoint
 };
 
+/// What the device cannot hold.
+struct LeftOut {
+  std::string scene, technique;
+  int resolution = 0;
+  std::string why;
+};
+
 struct Study {
   std::vector<SceneInfo> scenes;
   std::vector<StudyCell> cells;
@@ -99,6 +106,7 @@ struct Study {
   std::vector<DetectionCell> detection;
   std::vector<VolumeCell> volumes;
   std::vector<ViewCell> views;
+  std::vector<LeftOut> left_out;
 };
 
 /// Deterministic but for times.
