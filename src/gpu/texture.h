@@ -7,7 +7,18 @@
 namespace photohull::gpu {
 
 /// Internal formats that the program uses.
-enum class TextureFormat { kSrgb8Alpha8, kRgba8, kRgba16f, kRg8, kR8, kR16f, kR32f, kRg32f, kR32ui, kRgba32ui };
+enum class TextureFormat {
+  kSrgb8Alpha8,
+  kRgba8,
+  kRgba16f,
+  kRg8,
+  kR8,
+  kR16f,
+  kR32f,
+  kRg32f,
+  kR32ui,
+  kRgba32ui
+};
 
 /// A move-only 2D array texture with immutable storage.
 class TextureArray {
