@@ -12,6 +12,19 @@ namespace {
 
 constexpr int kSupersample = 2;  // samples along each side of a pixel
 constexpr float kClayGrey = 0.45f;
+const glm::dvec3 kSideLight(-0.66, -0.56, -0.5);  // towards it, camera axes; render_mesh.frag.glsl
+constexpr double kLightDistance = 6;              // radii of the mesh's bounding sphere
+
+/// Of the side light: soft to about two texels.
+visibility::Technique shadows() {
+  visibility::Technique out;
+  out.name = "side light";
+  out.resolution = 640;
+  out.bias_texels = 2;
+  out.virtual_samples = visibility::VirtualSamples::kNormal;
+  out.filter = visibility::Filter::kPcf;
+  return out;
+}
 
 /// Colour (two attachments) and depth to draw into.
 class Target {
@@ -110,15 +123,13 @@ std::vector<std::array<std::uint8_t, 4>> encode_colours(const TriMesh& mesh) {
 
 Rasterizer::Rasterizer(gpu::Context& context, const TriMesh& mesh)
     : context_(context),
-      origin_(mesh.origin),
-      indices_(mesh.triangles.size() * 3),
-      positions_(gpu::Buffer::of(mesh.positions)),
+      geometry_(visibility::Geometry::of_mesh(mesh)),
       normals_(gpu::Buffer::of(mesh.normals)),
       colours_(gpu::Buffer::of(encode_colours(mesh))),
-      triangles_(gpu::Buffer::of(mesh.triangles)),
-      program_(gpu::Program::raster("render_mesh.vert.glsl", "render_mesh.frag.glsl")) {
+      program_(gpu::Program::raster("render_mesh.vert.glsl", "render_mesh.frag.glsl",
+                                    visibility::technique_defines(shadows()))) {
   glCreateVertexArrays(1, &vertex_array_);
-  glVertexArrayVertexBuffer(vertex_array_, 0, positions_.id(), 0, sizeof(glm::vec3));
+  glVertexArrayVertexBuffer(vertex_array_, 0, geometry_.positions().id(), 0, sizeof(glm::vec3));
   glVertexArrayVertexBuffer(vertex_array_, 1, normals_.id(), 0, sizeof(glm::vec3));
   glVertexArrayVertexBuffer(vertex_array_, 2, colours_.id(), 0, 4);
   glVertexArrayAttribFormat(vertex_array_, 0, 3, GL_FLOAT, GL_FALSE, 0);
@@ -128,23 +139,44 @@ Rasterizer::Rasterizer(gpu::Context& context, const TriMesh& mesh)
     glVertexArrayAttribBinding(vertex_array_, i, i);
     glEnableVertexArrayAttrib(vertex_array_, i);
   }
-  glVertexArrayElementBuffer(vertex_array_, triangles_.id());
+  glVertexArrayElementBuffer(vertex_array_, geometry_.indices().id());
 }
 
 Rasterizer::~Rasterizer() { glDeleteVertexArrays(1, &vertex_array_); }
 
+visibility::VisibilityMap Rasterizer::side_light(const Camera& camera) const {
+  const double radius =
+      std::max(0.5 * glm::length(geometry_.bounds().max - geometry_.bounds().min), 1e-9);
+  const int texels = shadows().resolution;
+  Camera light;
+  light.intrinsics.width = light.intrinsics.height = texels;
+  light.intrinsics.fx = light.intrinsics.fy =
+      0.48 * texels * std::sqrt(kLightDistance * kLightDistance - 1);
+  light.intrinsics.cx = light.intrinsics.cy = 0.5 * (texels - 1);
+  const glm::dmat3 world_from_camera = glm::transpose(camera.cam_from_world.rotation);
+  const glm::dvec3 towards = world_from_camera * glm::normalize(kSideLight);
+  const glm::dvec3 x = glm::normalize(glm::cross(world_from_camera[1], -towards));
+  light.cam_from_world.rotation = glm::transpose(glm::dmat3(x, glm::cross(-towards, x), -towards));
+  light.cam_from_world.translation =
+      -(light.cam_from_world.rotation *
+        (geometry_.bounds().center() + kLightDistance * radius * towards));
+  return visibility::render_map(context_, light, geometry_, shadows());
+}
+
 Rendering Rasterizer::draw(const Camera& camera, const Window& window, int width, int height) {
+  const visibility::VisibilityMap light = side_light(camera);
   const Target target(width * kSupersample, height * kSupersample);
-  program_.set("clip_from_mesh", clip_from_mesh(camera, origin_, window));
+  program_.set("clip_from_mesh", clip_from_mesh(camera, geometry_.origin(), window));
   program_.set("camera_from_mesh", glm::mat4(glm::dmat4(camera.cam_from_world.rotation)));
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_CULL_FACE);
   glFrontFace(GL_CW);
   program_.use();
+  light.bind();
   glBindVertexArray(vertex_array_);
   {
     gpu::Launch launch(context_, "render_mesh");
-    glDrawElements(GL_TRIANGLES, GLsizei(indices_), GL_UNSIGNED_INT, nullptr);
+    glDrawElements(GL_TRIANGLES, GLsizei(3 * geometry_.triangles()), GL_UNSIGNED_INT, nullptr);
   }
   glDisable(GL_CULL_FACE);
   glDisable(GL_DEPTH_TEST);

@@ -7,6 +7,7 @@
 #include "gpu/program.h"
 #include "render/choose_views.h"
 #include "render/preview.h"
+#include "visibility/visibility_map.h"
 
 namespace photohull::render {
 
@@ -15,7 +16,7 @@ inline constexpr std::uint8_t kBackground = 96;
 
 struct Rendering {
   PreviewImage coloured;  ///< the vertices' colours as they are, unshaded
-  PreviewImage clay;
+  PreviewImage clay;      ///< under a headlight and a side light, which casts shadows
 };
 
 /// A mesh on the device, drawn from any camera.
@@ -32,10 +33,11 @@ class Rasterizer {
   Rendering draw(const Camera& camera, const Window& window, int width, int height);
 
  private:
+  visibility::VisibilityMap side_light(const Camera& camera) const;
+
   gpu::Context& context_;
-  glm::dvec3 origin_;
-  std::size_t indices_;
-  gpu::Buffer positions_, normals_, colours_, triangles_;
+  visibility::Geometry geometry_;
+  gpu::Buffer normals_, colours_;
   gpu::Program program_;
   unsigned vertex_array_ = 0;
 };

@@ -73,6 +73,38 @@ TEST(Rasterizer, SilhouetteOfASphereIsItsProjection) {
   }
 }
 
+TEST(Rasterizer, SideLightCastsShadowsOntoClay) {
+  const glm::dvec3 light = glm::normalize(glm::dvec3(-0.66, -0.56, -0.5));
+  const glm::dvec3 normal = glm::normalize(light - glm::dvec3(0, 0, 1));
+  Camera camera;  // axes as the world's
+  camera.intrinsics = {200, 200, 300, 300, 0, 99.5, 99.5};
+  camera.cam_from_world.translation = glm::dvec3(0, 0, 6) - kCentre;
+  render::Window window = whole(camera);
+  window.near = 3, window.far = 9;
+  const TriMesh ball = test::sphere_mesh(kCentre, kRadius, 100);
+  TriMesh both = ball;
+  const glm::dvec3 above = kRadius * normal + 0.5 * light;
+  const TriMesh small = test::sphere_mesh(kCentre, 0.12, 30);
+  const auto first = std::uint32_t(both.positions.size());
+  for (const glm::vec3& p : small.positions) both.positions.push_back(p + glm::vec3(above));
+  both.normals.insert(both.normals.end(), small.normals.begin(), small.normals.end());
+  for (const auto& t : small.triangles)
+    both.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  const auto clay = [&](const TriMesh& mesh, const glm::dvec3& at) {
+    const auto drawn =
+        render::Rasterizer(test::gl_context(), mesh).draw(camera, window, 200, 200).clay;
+    const glm::dvec3 h = camera.projection() * glm::dvec4(at, 1);
+    const auto x = std::size_t(h.x / h.z + 0.5), y = std::size_t(h.y / h.z + 0.5);
+    return double(drawn.rgb[3 * (200 * y + x)]);
+  };
+  const glm::dvec3 shaded = kCentre + kRadius * normal;
+  EXPECT_LT(clay(both, shaded), 0.8 * clay(ball, shaded));
+  const glm::dvec3 beside =
+      kCentre + kRadius * glm::normalize(normal + 0.4 * glm::normalize(glm::cross(light, normal)));
+  EXPECT_NEAR(clay(both, beside), clay(ball, beside), 2);
+  EXPECT_GT(clay(ball, shaded), 150) << "a body does not shade itself where it faces the light";
+}
+
 /// Root mean square of the difference in bytes between a rendering and a photograph that is moved
 /// by `dx` pixels, well inside the sphere.
 double difference(const PreviewImage& rendering, const View& view, int dx) {
