@@ -12,6 +12,7 @@ namespace photohull::io {
 namespace {
 
 namespace fs = std::filesystem;
+using namespace std::string_literals;
 using testing::HasSubstr;
 
 constexpr double kTolerance = 1e-6;  // pixels
@@ -180,7 +181,7 @@ TEST_P(EveryFormat, DamagedFilesGiveASceneOrAnError) {
   round_trip();
   std::mt19937 random(20240 + unsigned(GetParam()));
   const auto below = [&](std::size_t n) { return n ? random() % n : 0; };
-  const std::string palette("\0\xff\x80-+.eE019nanif\"[]{}<>/,: \n\r#\\&;%*!", 40);
+  const std::string palette = "\0\xff\x80-+.eE019nanif\"[]{}<>/,: \n\r#\\&;%*!"s;
   for (const fs::path& file : written_files()) {
     const std::string whole = contents(file);
     for (int round = 0; round < kRounds; ++round) {
