@@ -123,7 +123,8 @@ TEST_F(Usage, BenchNamesWhatItMeasures) {
   fail(2, {"bench", "sampling", "--device", "99"}, {"--device 99"});
   fail(2, {"bench", "visibility", "--scenes", "moon"}, {"--scenes moon"});
   fail(2, {"bench", "visibility", "--resolutions", "8"}, {"--resolutions 8", "16 to 8192"});
-  fail(2, {"bench", "visibility", "--techniques", "sun"}, {"--techniques sun", "plain, slope-bias"});
+  fail(2, {"bench", "visibility", "--techniques", "sun"},
+       {"--techniques sun", "plain, slope-bias"});
   EXPECT_THAT(succeed({"bench", "sampling", "--help"}).out,
               HasSubstr("Examples:\n  photohull bench"));
 }
