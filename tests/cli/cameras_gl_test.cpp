@@ -1,0 +1,98 @@
+// convert, refine-cameras and calibrate, from the command line.
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "io/load_scene.h"
+#include "sphere_scene.h"
+
+namespace photohull::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+class CamerasCommand : public SphereScene {
+ protected:
+  /// Cameras and box of a scene as the program writes it.
+  static Scene load(const std::string& folder) { return io::load_scene(folder, {}); }
+
+  /// Greatest distance in pixels between where two scenes' cameras see points about the sphere.
+  static double apart(const Scene& a, const Scene& b) {
+    double worst = 0;
+    for (std::size_t v = 0; v < a.views.size(); ++v)
+      for (int i = 0; i < 8; ++i) {
+        const glm::dvec3 p =
+            kCentre + 0.7 * kRadius * glm::dvec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
+        const glm::dvec3 s = a.views[v].camera.projection() * glm::dvec4(p, 1);
+        const glm::dvec3 t = b.views[v].camera.projection() * glm::dvec4(p, 1);
+        worst = std::max(worst, glm::distance(glm::dvec2(s) / s.z, glm::dvec2(t) / t.z));
+      }
+    return worst;
+  }
+};
+
+TEST_F(CamerasCommand, ConvertedScenesAreUnderstood) {
+  for (const char* format : {"colmap-text", "colmap-binary", "transforms", "openmvg", "bundler"}) {
+    const std::string folder = path(format);
+    const Finished run =
+        succeed({"convert", scene(), "--to", format, "--out", folder, "--undistort"});
+    EXPECT_THAT(run.out, HasSubstr(std::string("16 views from middlebury to ") + format));
+    EXPECT_THAT(succeed({"info", folder}).out,
+                HasSubstr(std::string("16 (") + format + " format)"));
+    EXPECT_EQ(load(folder).views.size(), std::size_t(kViews));
+  }
+}
+
+TEST_F(CamerasCommand, ConvertKeepsWhatCamerasSee) {
+  succeed({"convert", scene(), "--to", "transforms", "--out", path("nerf")});
+  EXPECT_LT(apart(scene_, load(path("nerf"))), 1e-6);
+}
+
+TEST_F(CamerasCommand, ConvertRefuses) {
+  fail(2, {"convert", scene(), "--to", "polaroid", "--out", out()},
+       {"--to polaroid", "transforms"});
+  fail(2, {"convert", scene(), "--to", "nvm", "--out", ""}, {"--out is empty"});
+  fail(1, {"convert", path("nowhere"), "--to", "nvm", "--out", out()}, {"nowhere"});
+}
+
+TEST_F(CamerasCommand, CamerasThatAreRightStayWhereTheyAre) {
+  const Finished run =
+      succeed({"refine-cameras", scene(), "--masks", path("cutouts"), "--out", out(), "--json"});
+  const json report = json::parse(run.out);
+  EXPECT_EQ(report["views"].size(), std::size_t(kViews));
+  EXPECT_LT(apart(scene_, load(out())), 0.3);
+}
+
+TEST_F(CamerasCommand, CamerasThatAreWrongComeNearer) {
+  Scene wrong = scene_;
+  for (std::size_t v = 0; v < wrong.views.size(); ++v) {
+    glm::dvec3& t = wrong.views[v].camera.cam_from_world.translation;
+    t += 0.02 * glm::dvec3(std::sin(3.0 * double(v)), std::cos(5.0 * double(v)), 0);
+  }
+  std::swap(wrong, scene_);
+  write_scene_file();
+  const double before = apart(wrong, scene_);
+  succeed({"refine-cameras", scene(), "--masks", path("cutouts"), "--out", out()});
+  ASSERT_GT(before, 0.5);
+  EXPECT_LT(apart(wrong, load(out())), 0.7 * before);
+}
+
+TEST_F(CamerasCommand, ReconstructRefinesThem) {
+  succeed(reconstruct({"--refine-cameras", "poses"}));
+  EXPECT_TRUE(json::parse(read_bytes(out() + "/report.json")).contains("camera_refinement"));
+  fail(2, reconstruct({"--refine-cameras", "perhaps"}),
+       {"--refine-cameras perhaps", "poses+intrinsics"});
+}
+
+TEST_F(CamerasCommand, CalibrateSaysThatThereIsNoBoard) {
+  const std::string file = path("calib.json");
+  fail(1, {"calibrate", path("images"), "--out", file}, {"0 of 16 pictures", "--columns"});
+  EXPECT_FALSE(std::filesystem::exists(file));
+  fail(1, {"calibrate", path("nowhere"), "--out", file}, {"nowhere"});
+  fail(2, {"calibrate", path("images"), "--board", "hex", "--out", file},
+       {"--board hex", "charuco"});
+}
+
+}  // namespace
+}  // namespace photohull::test
