@@ -34,7 +34,7 @@ int run(int argc, char** argv) {
   app.footer(
       "Examples:\n"
       "  photohull info datasets/templeSparseRing\n"
-      "  photohull reconstruct datasets/templeSparseRing --out out/temple\n"
+      "  photohull reconstruct datasets/templeSparseRing --out out/temple --refine-cameras auto\n"
       "  photohull reconstruct scan/transforms.json --out out/scan --quality draft\n\n"
       "Exit codes: 0 done, 1 failed, 2 wrong usage, 130 cancelled.");
   photohull::cli::add_reconstruct(app);
