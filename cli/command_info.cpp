@@ -1,17 +1,23 @@
+#include <cmath>
 #include <cstdio>
+#include <exception>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "calib/diagnose.h"
+#include "calib/prepare_views.h"
 #include "commands.h"
+#include "io/image_file.h"
 #include "pipeline/inspect.h"
 #include "scene_arguments.h"
+#include "terminal_progress.h"
 
 namespace photohull::cli {
 namespace {
 
 struct Arguments {
   SceneArguments scene;
-  bool json = false;
+  bool json = false, cameras = false;
 };
 
 struct Range {
@@ -59,7 +65,110 @@ void print_text(const pipeline::Inspection& info) {
   for (const std::string& text : info.warnings) std::printf("warning: %s\n", text.c_str());
 }
 
-void print_json(const pipeline::Inspection& info) {
+void print_readings(const CameraDiagnosis& d) {
+  if (d.readings.empty()) return;
+  const auto print = [](const char* name, const PoseReading& r) {
+    std::printf("%-14s %s: explains %.0f %% of the matches", name, to_string(r).c_str(),
+                100 * r.explained);
+    if (std::isfinite(r.residual))
+      std::printf(", median %.2f px from the epipolar lines", r.residual);
+    std::printf("\n");
+  };
+  std::printf("matches        %d features in %d pairs of views\n", d.matches, d.pairs);
+  print("poses", d.given);
+  print(d.misread ? "better" : "next best", d.readings[d.readings[0].as_given() ? 1 : 0]);
+}
+
+void print_diagnosis(const CameraDiagnosis& d, const Scene& scene) {
+  print_readings(d);
+  if (!d.views.empty()) {
+    std::size_t worst = 0;
+    for (std::size_t i = 0; i < d.views.size(); ++i)
+      if (d.views[i].residual > d.views[worst].residual) worst = i;
+    std::printf("agreement      %.2f px (median view), %.2f px at worst (%s)\n", d.usual_residual,
+                d.views[worst].residual, scene.views[worst].name.c_str());
+  }
+  if (d.pixel_centre) {
+    const PixelCentreFit& f = *d.pixel_centre;
+    std::printf("pixel centre   ");
+    if (f.tells)
+      std::printf("%s fits", f.best == 0 ? "as given" : f.best > 0 ? "+0.5 px" : "-0.5 px");
+    else
+      std::printf("not told");
+    if (std::isfinite(f.sigma)) std::printf(": best shift %+.3f +- %.3f px", f.shift, f.sigma);
+    std::printf("\n");
+    const auto print = [](const char* name, const std::array<double, 3>& rms, int count) {
+      if (count > 0)
+        std::printf("  %-12s %.3f, %.3f, %.3f px rms for -0.5, 0, +0.5 px (%d)\n", name, rms[0],
+                    rms[1], rms[2], count);
+    };
+    print("tracks", f.tracks, f.track_count);
+    print("silhouettes", f.tangents, f.tangent_count);
+  }
+  if (d.box && d.box->points > 0)
+    std::printf("box holds      %.0f %% of %d matched points; diagonal %.3g, theirs %.3g\n",
+                100 * d.box->points_inside, d.box->points, d.box->diagonal, d.box->points_diagonal);
+  for (const std::string& text : d.notes) std::printf("note: %s\n", text.c_str());
+  for (const std::string& text : d.faults) std::printf("fault: %s\n", text.c_str());
+  if (d.faults.empty()) std::printf("cameras        no fault found\n");
+}
+
+/// Infinite and undefined numbers become null.
+nlohmann::ordered_json diagnosis_json(const CameraDiagnosis& d, const Scene& scene) {
+  nlohmann::ordered_json j = {{"pairs", d.pairs}, {"matches", d.matches}, {"misread", d.misread}};
+  for (const PoseReading& r : d.readings)
+    j["readings"].push_back({{"reading", to_string(r)},
+                             {"inverted", r.inverted},
+                             {"flipped", r.flipped},
+                             {"explained", r.explained},
+                             {"residual", r.residual}});
+  for (std::size_t i = 0; i < d.views.size(); ++i)
+    j["views"].push_back({{"name", scene.views[i].name},
+                          {"residual", d.views[i].residual},
+                          {"pairs", d.views[i].pairs},
+                          {"by", d.views[i].by_silhouettes ? "silhouettes" : "features"},
+                          {"disagrees", d.views[i].disagrees}});
+  if (d.pixel_centre) {
+    const PixelCentreFit& f = *d.pixel_centre;
+    j["pixel_centre"] = {{"tells", f.tells},
+                         {"best", f.best},
+                         {"shift", f.shift},
+                         {"sigma", f.sigma},
+                         {"shifts", PixelCentreFit::kShifts},
+                         {"tracks_rms", f.tracks},
+                         {"tracks", f.track_count},
+                         {"tangents_rms", f.tangents},
+                         {"tangents", f.tangent_count}};
+  }
+  if (d.box)
+    j["box"] = {{"seen_by", d.box->seen_by},
+                {"cameras_inside", d.box->cameras_inside},
+                {"diagonal", d.box->diagonal},
+                {"distance", d.box->distance},
+                {"points", d.box->points},
+                {"points_inside", d.box->points_inside},
+                {"points_diagonal", d.box->points_diagonal},
+                {"points_distance", d.box->points_distance}};
+  j["faults"] = d.faults;
+  j["notes"] = d.notes;
+  return j;
+}
+
+CameraDiagnosis diagnose(const Scene& scene, const SceneArguments& arguments) {
+  const ViewLoader loader{[](const std::filesystem::path& path) { return io::read_image(path); },
+                          [](const std::filesystem::path& path) { return io::read_mask(path); }};
+  PrepareOptions prepare;
+  if (arguments.masks == "none") prepare.masks = MaskPolicy::kNone;
+  TerminalProgress progress(4);
+  progress.stage("views", 1);
+  const PreparedViews prepared = prepare_views(scene, loader, prepare, progress);
+  progress.stage("cameras", 3);
+  CameraDiagnosis diagnosis = diagnose_cameras(prepared.views, scene.box, progress);
+  progress.finish();
+  return diagnosis;
+}
+
+void print_json(const pipeline::Inspection& info, const CameraDiagnosis* diagnosis) {
   nlohmann::ordered_json j;
   j["format"] = to_string(info.scene.format);
   for (const SourceView& v : info.scene.views) {
@@ -88,9 +197,35 @@ void print_json(const pipeline::Inspection& info) {
     j["memory_bytes"] = info.memory_bytes;
     j["cpu_seconds"] = info.cpu_seconds;
   }
+  if (diagnosis) j["cameras"] = diagnosis_json(*diagnosis, info.scene);
   j["warnings"] = info.warnings;
   std::printf("%s\n",
               j.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
+}
+
+void run(const Arguments& a) {
+  const Scene scene = io::load_scene(a.scene.scene, a.scene.options());
+  std::optional<CameraDiagnosis> diagnosis;
+  if (a.cameras) diagnosis = diagnose(scene, a.scene);
+  pipeline::Inspection info;
+  std::exception_ptr failure;
+  try {
+    info = pipeline::inspect(scene);
+  } catch (...) {
+    // What is wrong with the cameras may be why: it is said first.
+    if (!diagnosis) throw;
+    failure = std::current_exception();
+    info.scene = scene;
+    info.scene.box.reset();
+  }
+  if (a.json) {
+    print_json(info, diagnosis ? &*diagnosis : nullptr);
+  } else {
+    print_text(info);
+    if (diagnosis) print_diagnosis(*diagnosis, scene);
+  }
+  std::fflush(stdout);
+  if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace
@@ -100,14 +235,19 @@ void add_info(CLI::App& app) {
   CLI::App* c = app.add_subcommand("info", "tell what was understood of a scene");
   a->scene.add_to(*c);
   c->add_flag("--json", a->json, "print JSON");
+  c->add_flag("--cameras", a->cameras,
+              "look for faults of the cameras in the photographs, too; takes about half a second "
+              "a view");
   c->footer(
+      "With --cameras, features are matched without the poses and tell how these must be read "
+      "(inverse, axes flipped), which views disagree with the rest, whether the principal points "
+      "are half a pixel off, and whether the box is where the cameras look. Faults are named and "
+      "do not change the exit code.\n\n"
       "Examples:\n"
       "  photohull info datasets/templeSparseRing\n"
+      "  photohull info datasets/templeSparseRing --cameras\n"
       "  photohull info colmap/sparse/0 --box \"-1 -1 0 1 1 2\" --json");
-  c->callback([a] {
-    const auto info = pipeline::inspect(io::load_scene(a->scene.scene, a->scene.options()));
-    a->json ? print_json(info) : print_text(info);
-  });
+  c->callback([a] { run(*a); });
 }
 
 }  // namespace photohull::cli
