@@ -31,6 +31,15 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+/// The smaller of the two in the middle: of two pairs the one that may be the other view's fault
+/// does not count.
+double lower_median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + long((values.size() - 1) / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 std::string number(double value, int digits) {
   char text[48];
   std::snprintf(text, sizeof text, "%.*f", digits, value);
@@ -104,7 +113,7 @@ std::vector<double> match_residuals(const Cameras& cameras,
 /// All readings, the best first.
 std::vector<PoseReading> try_readings(const Cameras& given,
                                       const std::vector<PairMatches>& matches) {
-  constexpr double kLeastTolerance = 1.5, kMostTolerance = 8;  // pixels
+  constexpr double kLeastTolerance = 0.5, kMostTolerance = 8;  // pixels
   std::vector<PoseReading> readings;
   std::vector<std::vector<double>> residuals;
   double best = INFINITY;
@@ -148,7 +157,7 @@ void find_disagreeing(std::vector<Evidence> evidence, bool by_silhouettes,
       }
     std::vector<double> residuals(n, 0), known;
     for (std::size_t i = 0; i < n; ++i) {
-      residuals[i] = median(of_view[i]);
+      residuals[i] = lower_median(of_view[i]);
       if (!named[i] && of_view[i].size() >= 2) known.push_back(residuals[i]);
     }
     usual = median(known);
