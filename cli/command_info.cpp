@@ -85,8 +85,11 @@ void print_diagnosis(const CameraDiagnosis& d, const Scene& scene) {
     std::size_t worst = 0;
     for (std::size_t i = 0; i < d.views.size(); ++i)
       if (d.views[i].residual > d.views[worst].residual) worst = i;
-    std::printf("agreement      %.2f px (median view), %.2f px at worst (%s)\n", d.usual_residual,
-                d.views[worst].residual, scene.views[worst].name.c_str());
+    std::printf("agreement     ");
+    if (d.usual_residual > 0)
+      std::printf(" matches %.2f px from the epipolar lines (median view);", d.usual_residual);
+    std::printf(" at worst %s, %.2f px\n", scene.views[worst].name.c_str(),
+                d.views[worst].residual);
   }
   if (d.pixel_centre) {
     const PixelCentreFit& f = *d.pixel_centre;
@@ -94,7 +97,7 @@ void print_diagnosis(const CameraDiagnosis& d, const Scene& scene) {
     if (f.tells)
       std::printf("%s fits", f.best == 0 ? "as given" : f.best > 0 ? "+0.5 px" : "-0.5 px");
     else
-      std::printf("not told");
+      std::printf("none clearly fits");
     if (std::isfinite(f.sigma)) std::printf(": best shift %+.3f +- %.3f px", f.shift, f.sigma);
     std::printf("\n");
     const auto print = [](const char* name, const std::array<double, 3>& rms, int count) {
@@ -113,6 +116,18 @@ void print_diagnosis(const CameraDiagnosis& d, const Scene& scene) {
   if (d.faults.empty()) std::printf("cameras        no fault found\n");
 }
 
+const char* to_string(ViewFit::By by) {
+  switch (by) {
+    case ViewFit::By::kMatches:
+      return "matches";
+    case ViewFit::By::kSilhouettes:
+      return "silhouettes";
+    case ViewFit::By::kTracks:
+      return "tracks";
+  }
+  return "unknown";
+}
+
 /// Infinite and undefined numbers become null.
 nlohmann::ordered_json diagnosis_json(const CameraDiagnosis& d, const Scene& scene) {
   nlohmann::ordered_json j = {{"pairs", d.pairs}, {"matches", d.matches}, {"misread", d.misread}};
@@ -125,8 +140,9 @@ nlohmann::ordered_json diagnosis_json(const CameraDiagnosis& d, const Scene& sce
   for (std::size_t i = 0; i < d.views.size(); ++i)
     j["views"].push_back({{"name", scene.views[i].name},
                           {"residual", d.views[i].residual},
-                          {"pairs", d.views[i].pairs},
-                          {"by", d.views[i].by_silhouettes ? "silhouettes" : "features"},
+                          {"others", d.views[i].others},
+                          {"count", d.views[i].count},
+                          {"by", to_string(d.views[i].by)},
                           {"disagrees", d.views[i].disagrees}});
   if (d.pixel_centre) {
     const PixelCentreFit& f = *d.pixel_centre;

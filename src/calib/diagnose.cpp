@@ -142,44 +142,98 @@ struct Evidence {
 };
 
 /// Names the views whose pairs are worse than the others', the worst first: without its pairs the
-/// rest is judged anew.
-void find_disagreeing(std::vector<Evidence> evidence, bool by_silhouettes,
-                      std::vector<ViewFit>& fits, double& usual) {
-  constexpr double kLeast = 1, kFactor = 4;  // pixels; times what is usual
+/// rest is judged anew. Views that another kind of evidence has judged stay as they are. Returns
+/// the residual that is usual.
+double find_disagreeing(const std::vector<Evidence>& evidence, ViewFit::By by,
+                        std::vector<ViewFit>& fits) {
+  constexpr double kLeast = 1.5, kFactor = 4;  // pixels; times what is usual
+  constexpr std::size_t kFewestOfView = 2, kFewestViews = 4;
   const std::size_t n = fits.size();
   std::vector<bool> named(n, false);
-  for (bool more = true; more;) {
+  for (;;) {
     std::vector<std::vector<double>> of_view(n);
-    for (const Evidence& e : evidence)
-      for (const int v : {e.a, e.b}) {
-        const int other = v == e.a ? e.b : e.a;
-        if (!named[std::size_t(other)]) of_view[std::size_t(v)].push_back(e.residual);
-      }
-    std::vector<double> residuals(n, 0), known;
-    for (std::size_t i = 0; i < n; ++i) {
-      residuals[i] = lower_median(of_view[i]);
-      if (!named[i] && of_view[i].size() >= 2) known.push_back(residuals[i]);
+    for (const Evidence& e : evidence) {
+      if (!named[std::size_t(e.b)]) of_view[std::size_t(e.a)].push_back(e.residual);
+      if (!named[std::size_t(e.a)]) of_view[std::size_t(e.b)].push_back(e.residual);
     }
-    usual = median(known);
-    more = false;
+    std::vector<double> known;
+    for (std::size_t i = 0; i < n; ++i)
+      if (!named[i] && of_view[i].size() >= kFewestOfView)
+        known.push_back(lower_median(of_view[i]));
+    const double usual = median(known);
     std::size_t worst = n;
     for (std::size_t i = 0; i < n; ++i) {
-      if (of_view[i].size() >= 2 &&
-          (fits[i].pairs == 0 || fits[i].by_silhouettes == by_silhouettes)) {
-        fits[i].residual = residuals[i];
-        fits[i].pairs = int(of_view[i].size());
-        fits[i].by_silhouettes = by_silhouettes;
-      } else {
-        continue;
-      }
-      if (!named[i] && residuals[i] > std::max(kLeast, kFactor * usual) &&
-          (worst == n || residuals[i] > residuals[worst]))
+      if (of_view[i].size() < kFewestOfView || (fits[i].count > 0 && fits[i].by != by)) continue;
+      fits[i] = {lower_median(of_view[i]), usual, int(of_view[i].size()), by, named[i]};
+      if (!named[i] && fits[i].residual > std::max(kLeast, kFactor * usual) &&
+          (worst == n || fits[i].residual > fits[worst].residual))
         worst = i;
     }
-    if (worst < n && known.size() > 3) {
-      named[worst] = fits[worst].disagrees = true;
-      more = true;
+    if (worst == n || known.size() < kFewestViews) return usual;
+    named[worst] = fits[worst].disagrees = true;
+  }
+}
+
+/// Triples of a track's observations, spread over all that there are.
+void add_triples(const Track& track, std::vector<Track>& triples) {
+  constexpr std::size_t kMost = 12;
+  const auto& o = track.observations;
+  const std::size_t n = o.size(), all = n * (n - 1) * (n - 2) / 6;
+  const std::size_t step = std::max<std::size_t>(1, all / kMost);
+  std::size_t index = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = i + 1; j < n; ++j)
+      for (std::size_t k = j + 1; k < n; ++k)
+        if (index++ % step == 0) triples.push_back({{o[i], o[j], o[k]}});
+}
+
+/// Names views by tracks of three views and more, which also see what lies along the epipolar
+/// lines: most triples of such a view are inconsistent, and the worst of them is in the most.
+void find_inconsistent(const Cameras& cameras, std::vector<Track> tracks,
+                       std::vector<ViewFit>& fits) {
+  constexpr double kLeast = 0.7, kFactor = 4;  // pixels, times what is usual
+  constexpr int kFewest = 8;                   // triples of a view
+  constexpr double kMost = 0.75;               // share of them
+  for (;;) {
+    for (Track& track : tracks)
+      std::erase_if(track.observations,
+                    [&](const Observation& o) { return fits[std::size_t(o.view)].disagrees; });
+    std::erase_if(tracks, [](const Track& t) { return t.observations.size() < 3; });
+    std::vector<Track> triples;
+    for (const Track& track : tracks) add_triples(track, triples);
+    std::vector<double> rms(triples.size());
+    tbb::parallel_for(std::size_t(0), triples.size(), [&](std::size_t t) {
+      const auto point = triangulate(cameras, triples[t]);
+      rms[t] = point ? reprojection_rms(cameras, triples[t], *point) : INFINITY;
+    });
+    const double usual = median(rms), limit = std::max(kLeast, kFactor * usual);
+    std::vector<int> all(fits.size(), 0), bad(fits.size(), 0);
+    for (std::size_t t = 0; t < triples.size(); ++t)
+      for (const Observation& o : triples[t].observations) {
+        ++all[std::size_t(o.view)];
+        bad[std::size_t(o.view)] += rms[t] > limit;
+      }
+    std::size_t worst = fits.size();
+    for (std::size_t i = 0; i < fits.size(); ++i)
+      if (all[i] >= kFewest && bad[i] >= kMost * all[i] &&
+          (worst == fits.size() || bad[i] > bad[worst]))
+        worst = i;
+    if (worst == fits.size()) return;
+    std::vector<double> distances;
+    for (const Track& track : tracks) {
+      Track rest;
+      std::optional<glm::dvec2> here;
+      for (const Observation& o : track.observations)
+        if (o.view == int(worst))
+          here = o.pixel;
+        else
+          rest.observations.push_back(o);
+      if (!here) continue;
+      const auto point = triangulate(cameras, rest);
+      const auto pixel = point ? cameras[worst].project(*point) : std::nullopt;
+      distances.push_back(pixel ? glm::distance(*pixel, *here) : INFINITY);
     }
+    fits[worst] = {median(distances), usual, int(distances.size()), ViewFit::By::kTracks, true};
   }
 }
 
@@ -238,7 +292,7 @@ double least_of(const std::array<double, 3>& cost) {
 PixelCentreFit fit_pixel_centre(std::span<const View> views, const std::vector<ViewFit>& fits,
                                 const std::vector<Track>& tracks,
                                 const std::vector<FrontierPair>& tangents) {
-  constexpr double kMostSigma = 0.1, kNear = 0.2;  // pixels
+  constexpr double kMostSigma = 0.1, kNear = 0.15;  // pixels
   PixelCentreFit fit;
   std::array<Cameras, 3> shifted;
   for (int s = 0; s < 3; ++s) {
@@ -369,16 +423,27 @@ void describe_readings(CameraDiagnosis& d) {
                               percent(best.explained), ": they are wrong in another way"));
 }
 
+std::string evidence_text(const ViewFit& fit) {
+  switch (fit.by) {
+    case ViewFit::By::kMatches:
+      return concat("px from the epipolar lines (median over ", fit.count, " pairs of views)");
+    case ViewFit::By::kSilhouettes:
+      return concat("px between the silhouettes' tangents (median of ", fit.count, ")");
+    case ViewFit::By::kTracks:
+      return concat("px from where the others put its points (median of ", fit.count, " tracks)");
+  }
+  return "";
+}
+
 void describe_views(std::span<const View> views, CameraDiagnosis& d) {
   int unknown = 0;
   for (std::size_t i = 0; i < views.size(); ++i) {
-    unknown += d.views[i].pairs == 0;
-    if (d.views[i].disagrees)
-      d.faults.push_back(
-          concat(views[i].name, " disagrees with the other views: ", number(d.views[i].residual, 2),
-                 " px from the ", d.views[i].by_silhouettes ? "silhouettes' tangent" : "epipolar",
-                 " lines (median over ", d.views[i].pairs, " pairs), the others ",
-                 number(d.usual_residual, 2), " px"));
+    const ViewFit& fit = d.views[i];
+    unknown += fit.count == 0;
+    if (fit.disagrees)
+      d.faults.push_back(concat(views[i].name,
+                                " disagrees with the other views: ", number(fit.residual, 2), " ",
+                                evidence_text(fit), ", the others ", number(fit.others, 2), " px"));
   }
   if (unknown > 0)
     d.notes.push_back(
@@ -394,9 +459,8 @@ void describe_pixel_centre(CameraDiagnosis& d) {
         " px they fit best; give a --pixel-center that is 0.5 ", fit.best > 0 ? "less" : "more"));
   else if (!fit.tells && std::isfinite(fit.sigma))
     d.notes.push_back(
-        concat("the pixel centre cannot be told: the best shift of the principal "
-               "points is ",
-               number(fit.shift, 2), " +- ", number(fit.sigma, 2), " px"));
+        concat("no pixel centre clearly fits: the best shift of the principal points is ",
+               number(fit.shift, 2), " +- ", number(fit.sigma, 2), " px, none of -0.5, 0 and 0.5"));
   else if (!fit.tells)
     d.notes.push_back("the pixel centre cannot be told: too few tracks and no silhouettes");
 }
@@ -484,18 +548,18 @@ CameraDiagnosis diagnose_cameras(std::span<const View> views, const std::optiona
     outlines.push_back(view.mask.empty() ? Outline() : outline_of(view.mask));
   const std::vector<FrontierPair> tangents = frontier_pairs(cameras, outlines);
   d.views.resize(views.size());
-  find_disagreeing(evidence_of(cameras, matches), false, d.views, d.usual_residual);
-  double usual_tangent = 0;
-  find_disagreeing(evidence_of(cameras, tangents), true, d.views, usual_tangent);
-  if (d.usual_residual == 0) d.usual_residual = usual_tangent;
-  describe_views(views, d);
+  d.usual_residual =
+      find_disagreeing(evidence_of(cameras, matches), ViewFit::By::kMatches, d.views);
+  find_disagreeing(evidence_of(cameras, tangents), ViewFit::By::kSilhouettes, d.views);
   if (views.size() >= 3) {
     TrackOptions options;
     options.features = 1500;
     const std::vector<Track> tracks = find_tracks(views, options, progress);
+    find_inconsistent(cameras, tracks, d.views);
     d.pixel_centre = fit_pixel_centre(views, d.views, tracks, tangents);
-    describe_pixel_centre(d);
   }
+  describe_views(views, d);
+  if (d.pixel_centre) describe_pixel_centre(d);
   if (box) {
     d.box = fit_box(cameras, matches, *box);
     describe_box(views.size(), d);

@@ -42,9 +42,16 @@ struct PixelCentreFit {
 
 /// A view against the others.
 struct ViewFit {
-  double residual = 0;  ///< pixels, median over its pairs of their median epipolar distances
-  int pairs = 0;        ///< 0: nothing is known of this view
-  bool by_silhouettes = false;  ///< of tangents, as the photographs had too few matches
+  enum class By {
+    kMatches,      ///< median over its pairs of views of their median epipolar distances
+    kSilhouettes,  ///< the same of the silhouettes' tangents, where there are too few matches
+    kTracks        ///< median distance from where two or more other views put its tracks' points
+  };
+
+  double residual = 0;  ///< pixels
+  double others = 0;    ///< pixels, what is usual with the other views
+  int count = 0;        ///< of pairs, tangents or tracks; 0: nothing is known of this view
+  By by = By::kMatches;
   bool disagrees = false;
 };
 
@@ -68,7 +75,7 @@ struct CameraDiagnosis {
   /// The rest is only known when the poses are right to some pixels: not when `misread`.
   std::optional<PixelCentreFit> pixel_centre;
   std::vector<ViewFit> views;
-  double usual_residual = 0;  ///< pixels, median over the views that agree
+  double usual_residual = 0;  ///< pixels, median over the views that agree, of matches
   std::optional<BoxFit> box;
   std::vector<std::string> faults;  ///< sentences, with numbers; empty for cameras in order
   std::vector<std::string> notes;   ///< what could not be told, and why
