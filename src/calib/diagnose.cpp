@@ -189,12 +189,13 @@ void add_triples(const Track& track, std::vector<Track>& triples) {
 
 /// Names views by tracks of three views and more, which also see what lies along the epipolar
 /// lines: most triples of such a view are inconsistent, and the worst of them is in the most.
-void find_inconsistent(const Cameras& cameras, std::vector<Track> tracks,
+/// Returns whether there are any.
+bool find_inconsistent(const Cameras& cameras, std::vector<Track> tracks,
                        std::vector<ViewFit>& fits) {
   constexpr double kLeast = 0.7, kFactor = 4;  // pixels, times what is usual
   constexpr int kFewest = 8;                   // triples of a view
   constexpr double kMost = 0.75;               // share of them
-  for (;;) {
+  for (bool named = false;; named = true) {
     for (Track& track : tracks)
       std::erase_if(track.observations,
                     [&](const Observation& o) { return fits[std::size_t(o.view)].disagrees; });
@@ -218,7 +219,7 @@ void find_inconsistent(const Cameras& cameras, std::vector<Track> tracks,
       if (all[i] >= kFewest && bad[i] >= kMost * all[i] &&
           (worst == fits.size() || bad[i] > bad[worst]))
         worst = i;
-    if (worst == fits.size()) return;
+    if (worst == fits.size()) return named;
     std::vector<double> distances;
     for (const Track& track : tracks) {
       Track rest;
@@ -555,8 +556,15 @@ CameraDiagnosis diagnose_cameras(std::span<const View> views, const std::optiona
     TrackOptions options;
     options.features = 1500;
     const std::vector<Track> tracks = find_tracks(views, options, progress);
-    find_inconsistent(cameras, tracks, d.views);
     d.pixel_centre = fit_pixel_centre(views, d.views, tracks, tangents);
+    // A principal point that is off in all views is no single view's fault.
+    Cameras centred = cameras;
+    for (Camera& camera : centred) {
+      camera.intrinsics.cx += d.pixel_centre->shift;
+      camera.intrinsics.cy += d.pixel_centre->shift;
+    }
+    if (find_inconsistent(centred, tracks, d.views))
+      d.pixel_centre = fit_pixel_centre(views, d.views, tracks, tangents);
   }
   describe_views(views, d);
   if (d.pixel_centre) describe_pixel_centre(d);

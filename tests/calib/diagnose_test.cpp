@@ -26,8 +26,8 @@ class Diagnose : public testing::Test {
   static void SetUpTestSuite() {
     synth::Spec spec = synth::parse_spec(
         R"({"geometry": {"shape": "block"}, "material": {"faces": true, "contrast": 0.6},
-            "cameras": {"rings": [{"count": 9, "elevation": 8},
-                                  {"count": 7, "elevation": 38, "phase": 0.5}]}})",
+            "cameras": {"rings": [{"count": 8, "elevation": 8},
+                                  {"count": 6, "elevation": 38, "phase": 0.5}]}})",
         "test", "");
     spec.image = {320, 240, 2};
     spec.truth_samples = 200;
