@@ -85,6 +85,24 @@ TEST_F(CamerasCommand, ReconstructRefinesThem) {
        {"--refine-cameras perhaps", "poses+intrinsics"});
 }
 
+TEST_F(CamerasCommand, InfoFindsNoFaultInCamerasThatAreRight) {
+  const Arguments command = {"info", scene(), "--masks", path("cutouts"), "--cameras"};
+  EXPECT_THAT(succeed(command).out, HasSubstr("cameras        no fault found"));
+  Arguments as_json = command;
+  as_json.emplace_back("--json");
+  const json cameras = json::parse(succeed(as_json).out)["cameras"];
+  EXPECT_TRUE(cameras["faults"].empty());
+  EXPECT_TRUE(cameras.contains("pixel_centre"));
+}
+
+TEST_F(CamerasCommand, InfoNamesAViewThatDisagrees) {
+  scene_.views[5].camera.cam_from_world.translation += glm::dvec3(0.25, 0.1, 0);
+  write_scene_file();
+  const Finished run = succeed({"info", scene(), "--masks", path("cutouts"), "--cameras"});
+  EXPECT_THAT(run.out, HasSubstr(scene_.views[5].name));
+  EXPECT_THAT(run.out, testing::Not(HasSubstr("no fault found")));
+}
+
 TEST_F(CamerasCommand, CalibrateSaysThatThereIsNoBoard) {
   const std::string file = path("calib.json");
   fail(1, {"calibrate", path("images"), "--out", file}, {"0 of 16 pictures", "--columns"});
