@@ -19,10 +19,11 @@ constexpr double kLightDistance = 6;              // radii of the mesh's boundin
 visibility::Technique shadows() {
   visibility::Technique out;
   out.name = "side light";
-  out.resolution = 640;
+  out.resolution = 512;
   out.bias_texels = 2;
   out.virtual_samples = visibility::VirtualSamples::kNormal;
   out.filter = visibility::Filter::kPcf;
+  out.filter_size = 2;
   return out;
 }
 
