@@ -40,7 +40,8 @@ pipeline::ReconstructOptions to_options(const Arguments& a) {
   if (a.sampler) o.sampler = parse_name("--sampler", *a.sampler, projtex::kSamplers);
   if (a.consistency)
     o.consistency = parse_name("--consistency", *a.consistency, carving::kStatistics);
-  if (a.visibility) o.visibility = visibility::parse_sweep_test("--visibility", *a.visibility);
+  if (a.visibility)
+    o.visibility = parse_name("--visibility", *a.visibility, visibility::kSweepTests);
   o.supersample = a.supersample;
   o.resolution = a.resolution;
   o.voxel_size = a.voxel_size;

@@ -10,6 +10,7 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "calib/median.h"
 #include "core/error.h"
 
 namespace photohull {
@@ -116,11 +117,6 @@ double view_rms(const BoardView& view, LensModel model, const Lens& lens, const 
     sum += std::pow(pixel[0] - view.pixels[i].x, 2) + std::pow(pixel[1] - view.pixels[i].y, 2);
   }
   return std::sqrt(sum / double(view.points.size()));
-}
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + long(values.size() / 2), values.end());
-  return values[values.size() / 2];
 }
 
 class Calibrator {

@@ -7,6 +7,7 @@
 
 #include "calib/bundle.h"
 #include "calib/frontier.h"
+#include "calib/median.h"
 #include "core/error.h"
 
 namespace photohull {
@@ -18,13 +19,6 @@ constexpr double kLeastSigma = 0.03;         // pixels: nothing is measured bett
 constexpr double kLeastTangentSigma = 0.15;  // pixels: contours err alike where they touch
 
 using Cameras = std::vector<Camera>;
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + long(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Standard deviation of one coordinate, were the residuals' lengths those of two normal ones.
 double spread_of_lengths(std::vector<double> lengths) {

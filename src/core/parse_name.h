@@ -12,7 +12,7 @@ namespace photohull {
 template <typename Values>
 auto parse_name(const std::string& option, const std::string& text, const Values& values) {
   std::string legal;
-  for (const auto value : values) {
+  for (const auto& value : values) {
     if (text == to_string(value)) return value;
     legal += (legal.empty() ? "" : ", ") + std::string(to_string(value));
   }

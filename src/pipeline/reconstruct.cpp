@@ -21,6 +21,7 @@
 #include "pipeline/job_identity.h"
 #include "pipeline/result_files.h"
 #include "pipeline/stage_clock.h"
+#include "pipeline/stage_weights.h"
 #include "pipeline/tuning.h"
 #include "projtex/image_set.h"
 #include "projtex/sample_images.h"
@@ -55,14 +56,6 @@ constexpr int kCropMargin = 24;           // pixels around the box's projection:
 constexpr double kDetail = 1.5;           // pixels: what refinement resolves, by its patches
 constexpr std::size_t kFewestThinVoxels = 32;  // a hull of fewer, all of them thin, is none
 constexpr double kBoxSlack = 0.5;              // voxels that the surface may stand out of the box
-
-/// Shares of a job's time: tenths of a wall second of templeRing's stages on two cores (`photohull
-/// reconstruct templeRing --json`). They only drive the progress bar's time left.
-struct Weights {
-  static constexpr double kScene = 0.1, kViews = 3, kCameras = 100, kDevice = 0.5, kHull = 3.5,
-                          kImages = 2, kPhoto = 110, kRefine = 50, kClean = 0.2, kMesh = 0.6,
-                          kColour = 2, kSimplify = 15, kPreview = 2.7, kFiles = 2;
-};
 
 double voxel_size_of(const ReconstructOptions& options, const Box& box,
                      std::span<const Camera> cameras) {
@@ -479,18 +472,6 @@ class Job {
 };
 
 }  // namespace
-
-double total_weight(const ReconstructOptions& options) {
-  const Method method = options.effective_method();
-  return Weights::kScene + Weights::kViews +
-         (options.refine_cameras != RefineCameras::kOff ? Weights::kCameras : 0) +
-         Weights::kDevice + Weights::kHull + Weights::kImages +
-         (method == Method::kHull     ? 0
-          : method == Method::kRefine ? Weights::kRefine
-                                      : Weights::kPhoto) +
-         (options.mesh_error.value > 0 ? Weights::kSimplify : 0) + Weights::kClean +
-         Weights::kMesh + Weights::kColour + Weights::kPreview + Weights::kFiles;
-}
 
 Report reconstruct(const ReconstructOptions& options, Progress& progress) {
   options.validate();

@@ -151,6 +151,8 @@ NamedValues named_options(const ReconstructOptions& options) {
   if (options.voxel_size) list.emplace_back("voxel_size", number(*options.voxel_size));
   if (!options.load.views.empty()) list.emplace_back("views", options.load.views);
   if (!options.load.hold_out.empty()) list.emplace_back("hold_out", options.load.hold_out);
+  if (options.refine_cameras != RefineCameras::kOff)
+    list.emplace_back("refine_cameras", to_string(options.refine_cameras));
   list.emplace_back("mesh_error",
                     number(options.mesh_error.value) + (options.mesh_error.world_units ? "u" : ""));
   list.emplace_back("unseen", to_string(options.unseen));

@@ -22,15 +22,6 @@ const char* to_string(SweepTest test) {
   check_failed(__FILE__, __LINE__, "sweep test");
 }
 
-SweepTest parse_sweep_test(std::string_view option, std::string_view name) {
-  std::string legal;
-  for (const SweepTest test : kSweepTests) {
-    if (name == to_string(test)) return test;
-    legal += std::string(legal.empty() ? "" : ", ") + to_string(test);
-  }
-  throw UsageError(concat(option, " ", name, ": expected one of ", legal));
-}
-
 std::string sweep_test_defines(SweepTest test) {
   switch (test) {
     case SweepTest::kPlain:

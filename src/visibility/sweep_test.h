@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 namespace photohull::visibility {
 
@@ -22,8 +21,6 @@ inline constexpr SweepTest kDefaultSweepTest = SweepTest::kPlain;
 
 /// Name on the command line: "plain", "receiver-plane", ...
 const char* to_string(SweepTest test);
-/// Throws UsageError naming `option` and the names.
-SweepTest parse_sweep_test(std::string_view option, std::string_view name);
 /// Line of "#define" for include/sweep_visibility.glsl.
 std::string sweep_test_defines(SweepTest test);
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <functional>
 
-#include "core/error.h"
+#include "core/parse_name.h"
 
 namespace photohull::visibility {
 namespace {
@@ -15,11 +15,21 @@ Technique made(const char* name, const std::function<void(Technique&)>& change) 
   return t;
 }
 
-void pcf(Technique& t, int size) {
-  t.filter = Filter::kPcf;
-  t.filter_size = size;
+void virtual_normal(Technique& t) {
   t.virtual_samples = VirtualSamples::kNormal;
   t.bias_texels = 0.25;
+}
+
+void pcf(Technique& t, int size) {
+  virtual_normal(t);
+  t.filter = Filter::kPcf;
+  t.filter_size = size;
+}
+
+void warp(Technique& t, Warp warp, int partitions = 1) {
+  virtual_normal(t);
+  t.warp = warp;
+  t.partitions = partitions;
 }
 
 std::vector<Technique> make_techniques() {
@@ -40,11 +50,7 @@ std::vector<Technique> make_techniques() {
              t.bias_texels = 0.1;
            }),
       made("ids", [](T& t) { t.bias = Bias::kIds; }),
-      made("virtual-normal",
-           [](T& t) {
-             t.virtual_samples = VirtualSamples::kNormal;
-             t.bias_texels = 0.25;
-           }),
+      made("virtual-normal", virtual_normal),
       made("virtual-derivatives",
            [](T& t) {
              t.virtual_samples = VirtualSamples::kDerivatives;
@@ -67,25 +73,9 @@ std::vector<Technique> make_techniques() {
              pcf(t, 5);
              t.kernel = Kernel::kCircularJittered;
            }),
-      made("lispsm",
-           [](T& t) {
-             t.warp = Warp::kLispsm;
-             t.virtual_samples = VirtualSamples::kNormal;
-             t.bias_texels = 0.25;
-           }),
-      made("general-lispsm",
-           [](T& t) {
-             t.warp = Warp::kGeneralLispsm;
-             t.virtual_samples = VirtualSamples::kNormal;
-             t.bias_texels = 0.25;
-           }),
-      made("zp2",
-           [](T& t) {
-             t.warp = Warp::kGeneralLispsm;
-             t.partitions = 2;
-             t.virtual_samples = VirtualSamples::kNormal;
-             t.bias_texels = 0.25;
-           }),
+      made("lispsm", [](T& t) { warp(t, Warp::kLispsm); }),
+      made("general-lispsm", [](T& t) { warp(t, Warp::kGeneralLispsm); }),
+      made("zp2", [](T& t) { warp(t, Warp::kGeneralLispsm, 2); }),
       made("recommended",
            [](T& t) {
              pcf(t, 5);
@@ -187,13 +177,8 @@ const std::vector<Technique>& named_techniques() {
   return all;
 }
 
-Technique parse_technique(std::string_view option, std::string_view name) {
-  std::string legal;
-  for (const Technique& t : named_techniques()) {
-    if (t.name == name) return t;
-    legal += (legal.empty() ? "" : ", ") + t.name;
-  }
-  throw UsageError(concat(option, " ", name, ": expected one of ", legal));
+Technique parse_technique(const std::string& option, const std::string& name) {
+  return parse_name(option, name, named_techniques());
 }
 
 std::string technique_defines(const Technique& t) {

@@ -72,8 +72,9 @@ struct Technique {
 
 /// The techniques that have names, with their default options.
 const std::vector<Technique>& named_techniques();
+inline const std::string& to_string(const Technique& technique) { return technique.name; }
 /// Throws UsageError naming `option` and listing the names.
-Technique parse_technique(std::string_view option, std::string_view name);
+Technique parse_technique(const std::string& option, const std::string& name);
 
 /// Lines of "#define" that make include/visibility_test.glsl this technique.
 std::string technique_defines(const Technique& technique);

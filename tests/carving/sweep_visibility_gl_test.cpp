@@ -6,7 +6,7 @@
 #include <set>
 
 #include "carving/sweep_kernels.h"
-#include "core/error.h"
+#include "core/parse_name.h"
 #include "support/cameras.h"
 #include "support/gl_context.h"
 #include "visibility/sweep_reference.h"
@@ -111,8 +111,9 @@ TEST_P(SweepVisibility, NothingPassedHidesNothing) {
 
 TEST(SweepTests, NamesAreReadBack) {
   for (const SweepTest test : visibility::kSweepTests)
-    EXPECT_EQ(visibility::parse_sweep_test("--visibility", visibility::to_string(test)), test);
-  EXPECT_THROW(visibility::parse_sweep_test("--visibility", "none"), UsageError);
+    EXPECT_EQ(parse_name("--visibility", visibility::to_string(test), visibility::kSweepTests),
+              test);
+  EXPECT_THROW(parse_name("--visibility", "none", visibility::kSweepTests), UsageError);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, SweepVisibility, ::testing::ValuesIn(visibility::kSweepTests),

@@ -80,7 +80,9 @@ TEST_F(CamerasCommand, CamerasThatAreWrongComeNearer) {
 
 TEST_F(CamerasCommand, ReconstructRefinesThem) {
   succeed(reconstruct({"--refine-cameras", "poses"}));
-  EXPECT_TRUE(json::parse(read_bytes(out() + "/report.json")).contains("camera_refinement"));
+  const json report = json::parse(read_bytes(out() + "/report.json"));
+  EXPECT_TRUE(report.contains("camera_refinement"));
+  EXPECT_EQ(report["options"]["refine_cameras"], "poses");
   fail(2, reconstruct({"--refine-cameras", "perhaps"}),
        {"--refine-cameras perhaps", "poses+intrinsics"});
 }

@@ -1,0 +1,17 @@
+// Private to module calib.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+namespace photohull {
+
+/// The greater of the two in the middle where there are two; 0 of nothing.
+inline double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + long(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace photohull

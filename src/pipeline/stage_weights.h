@@ -1,0 +1,14 @@
+// What the stages of a job take of its time, for the progress bar.
+#pragma once
+
+namespace photohull::pipeline {
+
+/// Shares of a job's time: tenths of a wall second of templeRing's stages on two cores (`photohull
+/// reconstruct templeRing --json`). They only drive the progress bar's time left.
+struct Weights {
+  static constexpr double kScene = 0.1, kViews = 3, kCameras = 100, kDevice = 0.5, kHull = 3.5,
+                          kImages = 2, kPhoto = 110, kRefine = 50, kClean = 0.2, kMesh = 0.6,
+                          kColour = 2, kSimplify = 15, kPreview = 2.7, kFiles = 2;
+};
+
+}  // namespace photohull::pipeline
