@@ -7,7 +7,7 @@ namespace photohull {
 
 std::optional<AlignedPatch> align_patch(const GreyImage& image, const glm::dvec2& source,
                                         const GreyImage& other, const PatchPlace& start, int radius,
-                                        double farthest) {
+                                        double farthest, double least_gradient) {
   constexpr int kSteps = 15;
   constexpr double kConverged = 0.003;  // pixels
   using Vector = Eigen::Matrix<double, 8, 1>;
@@ -37,11 +37,10 @@ std::optional<AlignedPatch> align_patch(const GreyImage& image, const glm::dvec2
     const double variance = (n * ss - s * s) * (n * tt - t * t);
     agreement = variance > 0 ? (n * st - s * t) / std::sqrt(variance) : 0;
     // The weaker of the gradient's two directions must stand out of 8-bit rounding.
-    constexpr double kLeastGradient = 0.3;  // levels a pixel
     const double trace = normal(0, 0) + normal(1, 1);
     const double determinant = normal(0, 0) * normal(1, 1) - normal(0, 1) * normal(0, 1);
     const double weaker = 0.5 * (trace - std::sqrt(std::max(0.0, trace * trace - 4 * determinant)));
-    if (!(weaker > n * kLeastGradient * kLeastGradient)) return std::nullopt;
+    if (!(weaker > n * least_gradient * least_gradient)) return std::nullopt;
     const Eigen::LDLT<Eigen::Matrix<double, 8, 8>> solver(normal);
     if (solver.info() != Eigen::Success) return std::nullopt;
     const Vector d = solver.solve(right);

@@ -1,4 +1,4 @@
-// Least-squares matching of patches [Gruen85]. Internal to calib.
+// Least-squares matching of patches [Gruen85].
 #pragma once
 
 #include <glm/glm.hpp>
@@ -37,9 +37,10 @@ struct AlignedPatch {
 
 /// Finds the patch of radius `radius` around `source` in `image`, from the place where `start` has
 /// it in `other`, over affine warps, gain and offset by Gauss-Newton. Nothing where it leaves the
-/// image, has no structure in two directions, or does not converge within `farthest` pixels.
+/// image, has less than `least_gradient` levels a pixel (root mean square) in the weaker of two
+/// directions, or does not converge within `farthest` pixels.
 std::optional<AlignedPatch> align_patch(const GreyImage& image, const glm::dvec2& source,
                                         const GreyImage& other, const PatchPlace& start, int radius,
-                                        double farthest);
+                                        double farthest, double least_gradient = 0.3);
 
 }  // namespace photohull

@@ -5,6 +5,7 @@
 
 #include "calib/background.h"
 #include "calib/background_cells.h"
+#include "calib/mask_evidence.h"
 
 namespace photohull {
 namespace {
@@ -70,8 +71,10 @@ void fill_holes(cv::Mat& object, double limit) {
             }).selected;
 }
 
+}  // namespace
+
 /// Along the contour light of both sides mixes: coverage grows with the distance there.
-void soften(const cv::Mat& distance, cv::Mat& object) {
+void soften_contour(const cv::Mat& distance, cv::Mat& object) {
   cv::Mat inner, brightest;
   cv::erode(object, inner, square(kMixed));
   cv::dilate(distance, brightest, square(kMixed + 1));
@@ -85,16 +88,20 @@ void soften(const cv::Mat& distance, cv::Mat& object) {
   }
 }
 
-}  // namespace
+MaskEvidence compare_with_model(const BackgroundModel& model, const ColourImage& image) {
+  return {distance_image(model, image), model.weak, model.strong, model.doubt};
+}
 
 Mask mask_from_background(const BackgroundModel& model, const ColourImage& image) {
-  Mask mask{image.width, image.height,
-            std::vector<std::uint8_t>(std::size_t(image.width) * image.height, 0)};
-  const double trust = std::clamp(model.doubt / kFullDoubt, kLeastTrust, 1.0);
-  const int reach =
-      std::max(1, int(std::lround(trust * kReach * std::min(image.width, image.height))));
-  cv::Mat distance = distance_image(model, image);
+  return mask_from_evidence(compare_with_model(model, image));
+}
 
+Mask mask_from_evidence(const MaskEvidence& model) {
+  cv::Mat distance = model.distance;
+  const int width = distance.cols, height = distance.rows;
+  Mask mask{width, height, std::vector<std::uint8_t>(std::size_t(width) * height, 0)};
+  const double trust = std::clamp(model.doubt / kFullDoubt, kLeastTrust, 1.0);
+  const int reach = std::max(1, int(std::lround(trust * kReach * std::min(width, height))));
   const cv::Mat strong = distance >= model.strong;
   const double least = kSpeck * cv::countNonZero(strong);
   Components parts =
@@ -111,8 +118,8 @@ Mask mask_from_background(const BackgroundModel& model, const ColourImage& image
   object &= distance >= model.weak;
   cv::morphologyEx(object, object, cv::MORPH_CLOSE, square(2 * reach));
   fill_holes(object, kHole * trust * trust * cv::countNonZero(object));
-  soften(distance, object);
-  object.copyTo(cv::Mat(image.height, image.width, CV_8U, mask.coverage.data())(box));
+  soften_contour(distance, object);
+  object.copyTo(cv::Mat(height, width, CV_8U, mask.coverage.data())(box));
   return mask;
 }
 

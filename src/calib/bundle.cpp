@@ -201,10 +201,14 @@ std::vector<Camera> adjust_bundle(const BundleInput& input, std::span<const Came
         new ceres::AutoDiffCostFunction<PriorResidual, 6, 6>(new PriorResidual{input.prior_sigma}),
         nullptr, pose.data());
     ordering->AddElementToGroup(pose.data(), 1);
+    if (input.hold_poses) problem.SetParameterBlockConstant(pose.data());
   }
   if (problem.HasParameterBlock(shared.data())) {
     ordering->AddElementToGroup(shared.data(), 1);
-    if (!input.intrinsics) problem.SetParameterBlockConstant(shared.data());
+    if (input.intrinsics == SharedIntrinsics::kNone)
+      problem.SetParameterBlockConstant(shared.data());
+    else if (input.intrinsics == SharedIntrinsics::kPixelCentre)
+      problem.SetManifold(shared.data(), new ceres::SubsetManifold(3, {0}));
   }
   ceres::Solver::Options options;
   options.linear_solver_type = points.empty() ? ceres::DENSE_QR : ceres::DENSE_SCHUR;

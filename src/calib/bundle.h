@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calib/frontier.h"
+#include "calib/refine_cameras.h"
 #include "calib/triangulate.h"
 
 namespace photohull {
@@ -17,7 +18,8 @@ struct BundleInput {
   double track_sigma = 1;          ///< pixels: spread of the tracks' residuals
   double tangent_sigma = 1;        ///< pixels: that of the tangents'
   double prior_sigma = 10;         ///< pixels: how wrong the given cameras may well be
-  bool intrinsics = false;
+  SharedIntrinsics intrinsics = SharedIntrinsics::kNone;
+  bool hold_poses = false;
   glm::dvec3 middle{0.0};  ///< of the object; cameras turn about it
 };
 

@@ -26,6 +26,10 @@ struct BoardSpec {
 
   /// Throws UsageError naming the option.
   void validate() const;
+  /// Looks the same after half a turn, so that its points cannot be told apart from one picture to
+  /// another: grids of dots, and chessboards whose columns and rows are both odd or both even. One
+  /// camera alone does not mind; rigs and turntables do.
+  bool looks_same_turned() const;
 };
 
 /// The board's points that a picture shows, in the board's plane z = 0 and in pixels.
@@ -34,10 +38,13 @@ struct BoardView {
   int width = 0, height = 0;
   std::vector<glm::dvec3> points;
   std::vector<glm::dvec2> pixels;
+  /// Circles: a dot's radius in world units, measured; `pixels` are then the middles of the dots'
+  /// pictures, off the pictures of their middles. 0: points.
+  double dot_radius = 0;
 };
 
 /// OpenCV's detectors (findChessboardCornersSB [Duda18], ArUco [GarridoJurado14],
-/// findCirclesGrid). No points where the board is not found.
+/// findCirclesGrid), made more precise in linear light. No points where the board is not found.
 BoardView find_board(const ColourImage& image, const BoardSpec& board, const std::string& name);
 
 enum class LensModel { kPinhole, kBrown, kRational, kFisheye };
@@ -49,15 +56,24 @@ struct CalibrateOptions {
   /// One fixed camera, and a board that turns with the object on a table: all pictures share an
   /// axis, and differ in an angle only.
   bool turntable = false;
+  /// Turntable: degrees at which each view was taken, where they are known (empty: they are found).
+  /// As many as views; the axis points so that they grow about it by the right-hand rule.
+  std::vector<double> angles;
+
+  /// Throws UsageError naming the option.
+  void validate(std::size_t views) const;
 };
 
 /// A turntable's axis in the camera's frame.
 struct TurntableAxis {
-  glm::dvec3 direction{0.0};   ///< unit
-  glm::dvec3 point{0.0};       ///< of the axis, nearest to the board's middle in the first picture
-  std::vector<double> angles;  ///< degrees, of each view; 0 for the first; NaN for views left out
+  glm::dvec3 direction{0.0};   ///< unit; the table turns about it by the right-hand rule
+  glm::dvec3 point{0.0};       ///< of the axis, nearest to the camera
+  std::vector<double> angles;  ///< degrees, of each view; NaN for views left out; 0 for the first
+                               ///< where they were not given
   double direction_sigma = 0;  ///< degrees
-  double angle_sigma = 0;      ///< degrees, largest
+  double point_sigma = 0;      ///< world units, across the axis
+  double angle_sigma = 0;      ///< degrees, largest; 0 where the angles were given
+  bool angles_given = false;
 };
 
 struct Calibration {
@@ -72,9 +88,10 @@ struct Calibration {
 };
 
 /// Intrinsics and poses by OpenCV [Zhang00], then refined in one Ceres problem with a robust loss
-/// (with `turntable` over the common axis), from which the standard deviations come. Throws Error
-/// when fewer than three views show six points or more, when views' sizes differ, or when the
-/// problem is degenerate.
+/// (with `turntable` over the common axis), from which the standard deviations come. Dots are
+/// judged by the middles of their pictures, computed through perspective and lens. Throws Error
+/// when fewer than three views show six points or more, when views' sizes differ, when the problem
+/// is degenerate, or when given angles do not fit.
 Calibration calibrate(const std::vector<BoardView>& views, const CalibrateOptions& options);
 
 /// How often each part of the frame was covered by the board's points: a picture, 8-bit grey RGB.

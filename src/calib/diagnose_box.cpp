@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "calib/diagnose_parts.h"
-#include "calib/median.h"
+#include "core/median.h"
 #include "calib/triangulate.h"
 
 namespace photohull::diagnosis {

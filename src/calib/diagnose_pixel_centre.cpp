@@ -3,7 +3,7 @@
 #include <array>
 
 #include "calib/diagnose_parts.h"
-#include "calib/median.h"
+#include "core/median.h"
 #include "calib/triangulate.h"
 
 namespace photohull::diagnosis {

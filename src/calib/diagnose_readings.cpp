@@ -5,7 +5,7 @@
 #include <set>
 
 #include "calib/diagnose_parts.h"
-#include "calib/median.h"
+#include "core/median.h"
 #include "calib/triangulate.h"
 
 namespace photohull {

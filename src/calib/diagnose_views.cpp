@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "calib/diagnose_parts.h"
-#include "calib/median.h"
+#include "core/median.h"
 #include "calib/triangulate.h"
 
 namespace photohull::diagnosis {

@@ -5,13 +5,20 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <numeric>
 #include <opencv2/core.hpp>
+#include <set>
 
 #include "calib/features.h"
+#include "calib/grey_image.h"
+#include "calib/surface_patches.h"
 #include "calib/triangulate.h"
+#include "calib/undistort.h"
+#include "core/error.h"
 
 namespace photohull {
 namespace {
@@ -122,16 +129,47 @@ std::optional<PatchPlace> place_in(const Camera& a, const glm::dvec2& pixel, con
                                    const glm::dvec3& point) {
   const glm::dvec3 normal =
       glm::normalize(glm::normalize(a.center() - point) + glm::normalize(b.center() - point));
-  const auto seen = [&](const glm::dvec2& p) -> std::optional<glm::dvec2> {
-    const glm::dvec3 ray = a.ray(p);
-    const double depth = glm::dot(point - a.center(), normal) / glm::dot(ray, normal);
-    return b.project(a.center() + depth * ray);
+  if (!b.project(point)) return std::nullopt;
+  return place_on_plane(a, pixel, b, point, normal);
+}
+
+/// Features of neighbouring views that are each other's best matches.
+std::vector<Match> match_all(std::span<const View> views, const std::vector<Features>& features,
+                             const TrackOptions& options, Progress& progress) {
+  const std::vector<std::pair<int, int>> pairs = neighbour_pairs(views, options);
+  std::vector<std::vector<Match>> found(pairs.size());
+  tbb::parallel_for(std::size_t(0), pairs.size(), [&](std::size_t p) {
+    if (cancellation_requested()) return;
+    const auto [i, j] = pairs[p];
+    const std::vector<int> there =
+        best_matches(features[i], features[j], views[i].camera, views[j].camera, options);
+    const std::vector<int> back =
+        best_matches(features[j], features[i], views[j].camera, views[i].camera, options);
+    for (int f = 0; f < int(there.size()); ++f)
+      if (there[f] >= 0 && back[there[f]] == f) found[p].push_back({i, f, j, there[f]});
+  });
+  progress.check_cancelled();
+  std::vector<Match> matches;
+  for (const std::vector<Match>& part : found)
+    matches.insert(matches.end(), part.begin(), part.end());
+  return matches;
+}
+
+/// Drops tracks that have a place in the same cell of two pixels as a given one's of that view.
+void remove_repeated(std::span<const Track> given, std::vector<Track>& found) {
+  constexpr double kSame = 2;  // pixels; the side of a cell
+  using Cell = std::array<int, 3>;
+  std::set<Cell> taken;
+  const auto cell = [](const Observation& o) {
+    return Cell{o.view, int(std::floor(o.pixel.x / kSame)), int(std::floor(o.pixel.y / kSame))};
   };
-  const auto center = b.project(point);
-  const auto middle = seen(pixel), x = seen(pixel + glm::dvec2(1, 0)),
-             y = seen(pixel + glm::dvec2(0, 1));
-  if (!center || !middle || !x || !y) return std::nullopt;
-  return PatchPlace{*center, glm::dmat2(*x - *middle, *y - *middle)};
+  for (const Track& track : given)
+    for (const Observation& o : track.observations) taken.insert(cell(o));
+  if (taken.empty()) return;
+  std::erase_if(found, [&](const Track& track) {
+    return std::any_of(track.observations.begin(), track.observations.end(),
+                       [&](const Observation& o) { return taken.contains(cell(o)); });
+  });
 }
 
 /// Aligns the other views' patches to that of the view in the middle; those that do not agree go.
@@ -169,31 +207,23 @@ void polish(std::span<const View> views, std::span<const Camera> cameras,
 }  // namespace
 
 std::vector<Track> find_tracks(std::span<const View> views, const TrackOptions& options,
-                               Progress& progress) {
+                               Progress& progress, std::span<const Track> given, bool search) {
   std::vector<Features> features(views.size());
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
-    if (!cancellation_requested()) features[i] = detect_features(views[i], options.features);
+    if (!cancellation_requested())
+      features[i] = search ? detect_features(views[i], options.features)
+                           : Features{{}, {}, smoothed(grey_image(views[i].image))};
   });
   progress.check_cancelled();
   progress.update(0.3);
-  const std::vector<std::pair<int, int>> pairs = neighbour_pairs(views, options);
-  std::vector<std::vector<Match>> found(pairs.size());
-  tbb::parallel_for(std::size_t(0), pairs.size(), [&](std::size_t p) {
-    if (cancellation_requested()) return;
-    const auto [i, j] = pairs[p];
-    const std::vector<int> there =
-        best_matches(features[i], features[j], views[i].camera, views[j].camera, options);
-    const std::vector<int> back =
-        best_matches(features[j], features[i], views[j].camera, views[i].camera, options);
-    for (int f = 0; f < int(there.size()); ++f)
-      if (there[f] >= 0 && back[there[f]] == f) found[p].push_back({i, f, j, there[f]});
-  });
-  progress.check_cancelled();
+  std::vector<Track> tracks(given.begin(), given.end());
+  if (search) {
+    std::vector<Track> found = join(features, match_all(views, features, options, progress));
+    remove_repeated(given, found);
+    tracks.insert(tracks.end(), std::make_move_iterator(found.begin()),
+                  std::make_move_iterator(found.end()));
+  }
   progress.update(0.8);
-  std::vector<Match> matches;
-  for (const std::vector<Match>& part : found)
-    matches.insert(matches.end(), part.begin(), part.end());
-  std::vector<Track> tracks = join(features, matches);
   std::vector<Camera> cameras;
   for (const View& view : views) cameras.push_back(view.camera);
   tbb::parallel_for(std::size_t(0), tracks.size(), [&](std::size_t t) {
@@ -201,6 +231,26 @@ std::vector<Track> find_tracks(std::span<const View> views, const TrackOptions& 
   });
   progress.check_cancelled();
   std::erase_if(tracks, [](const Track& t) { return t.observations.size() < 2; });
+  return tracks;
+}
+
+std::vector<Track> undistorted_tracks(const Scene& scene, std::span<const View> views) {
+  PHOTOHULL_CHECK_OP(scene.views.size(), ==, views.size());
+  std::vector<Track> tracks;
+  for (const SceneTrack& given : scene.tracks) {
+    Track track;
+    for (const SceneTrack::Observation& o : given.observations) {
+      const SourceView& source = scene.views[std::size_t(o.view)];
+      const Intrinsics &k = source.camera.intrinsics,
+                       &now = views[std::size_t(o.view)].camera.intrinsics;
+      const double y = (o.pixel.y - k.cy) / k.fy, x = (o.pixel.x - k.cx - k.skew * y) / k.fx;
+      const auto ray = undistort_point(source.distortion, {x, y});
+      if (!ray) continue;
+      track.observations.push_back(
+          {o.view, {now.fx * ray->x + now.skew * ray->y + now.cx, now.fy * ray->y + now.cy}});
+    }
+    if (track.observations.size() >= 2) tracks.push_back(std::move(track));
+  }
   return tracks;
 }
 

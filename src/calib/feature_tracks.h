@@ -6,6 +6,7 @@
 
 #include "core/image.h"
 #include "core/progress.h"
+#include "core/scene.h"
 
 namespace photohull {
 
@@ -33,7 +34,14 @@ struct TrackOptions {
 /// views near the epipolar lines of the given cameras, and then aligned to the patch of one view by
 /// least squares over affine warps, gain and offset [Gruen85], to hundredths of a pixel. Same
 /// result whatever the number of threads. Throws Cancelled.
+/// `given`: tracks that another program found, in pixels of the views; aligned in the same way, and
+/// those that do not agree dropped. With `search` false there are no others; else found ones that
+/// repeat a given one are left out.
 std::vector<Track> find_tracks(std::span<const View> views, const TrackOptions& options,
-                               Progress& progress);
+                               Progress& progress, std::span<const Track> given = {},
+                               bool search = true);
+
+/// The scene's own tracks in pixels of its undistorted views.
+std::vector<Track> undistorted_tracks(const Scene& scene, std::span<const View> views);
 
 }  // namespace photohull

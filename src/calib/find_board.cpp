@@ -2,21 +2,21 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "calib/calibrate_board.h"
+#include "calib/find_board_parts.h"
 #include "core/error.h"
 
 namespace photohull {
 namespace {
 
 /// Linear light, in which blurred edges lie where sharp ones would.
-cv::Mat linear_grey(const ColourImage& image) {
+cv::Mat linear_grey(const ColourImage& image, double blur = 0.8) {
   cv::Mat grey(image.height, image.width, CV_32F);
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
       const glm::vec4 c = image.linear(x, y);
       grey.at<float>(y, x) = 0.2126f * c.r + 0.7152f * c.g + 0.0722f * c.b;
     }
-  cv::GaussianBlur(grey, grey, {}, 0.8);
+  if (blur > 0) cv::GaussianBlur(grey, grey, {}, blur);
   return grey;
 }
 
@@ -102,9 +102,13 @@ void BoardSpec::validate() const {
     throw UsageError(concat("--dictionary ", dictionary, ": expected 0 to 20"));
 }
 
+bool BoardSpec::looks_same_turned() const {
+  return kind == BoardKind::kCircles || (kind == BoardKind::kChess && (columns + rows) % 2 == 0);
+}
+
 BoardView find_board(const ColourImage& image, const BoardSpec& board, const std::string& name) {
   board.validate();
-  BoardView view{name, image.width, image.height, {}, {}};
+  BoardView view{name, image.width, image.height, {}, {}, 0};
   const cv::Mat grey = grey_bytes(image);
   const cv::Size size(board.columns, board.rows);
   std::vector<cv::Point2f> found;
@@ -121,7 +125,8 @@ BoardView find_board(const ColourImage& image, const BoardSpec& board, const std
         find_charuco(grey, linear_grey(image), board, view);
         break;
       case BoardKind::kCircles:
-        if (cv::findCirclesGrid(grey, size, found)) add_grid(found, board, view);
+        if (cv::findCirclesGrid(grey, size, found))
+          measure_dots(linear_grey(image, 0), found, board, view);
         break;
     }
   } catch (const cv::Exception& failure) {

@@ -63,6 +63,8 @@ const char* to_string(MaskOrigin origin) {
       return "mask files";
     case MaskOrigin::kAlpha:
       return "alpha channels";
+    case MaskOrigin::kPlate:
+      return "background plate";
     case MaskOrigin::kBackground:
       return "background model";
     case MaskOrigin::kNone:
@@ -103,8 +105,18 @@ MaskOrigin take_given_mask(const SourceView& source, const ViewLoader& loader, V
   return origin;
 }
 
-void describe_masks(const std::vector<MaskOrigin>& origins, double model_confidence,
-                    PreparedViews& views) {
+void describe_masks(const std::vector<MaskOrigin>& origins, PreparedViews& views) {
+  double least = 1;
+  bool any = false;
+  for (std::size_t i = 0; i < origins.size(); ++i) {
+    MaskJudgement& judged = views.masks[i];
+    judged.source = to_string(origins[i]);
+    if (origins[i] == MaskOrigin::kNone) continue;
+    if (origins[i] == MaskOrigin::kFile || origins[i] == MaskOrigin::kAlpha) judged.confidence = 1;
+    least = std::min(least, judged.confidence);
+    any = true;
+  }
+  views.mask_confidence = any ? least : 0;
   std::map<MaskOrigin, int> counts;
   for (const MaskOrigin origin : origins) ++counts[origin];
   views.mask_source.clear();
@@ -113,10 +125,6 @@ void describe_masks(const std::vector<MaskOrigin>& origins, double model_confide
     views.mask_source += to_string(origin);
     if (counts.size() > 1) views.mask_source += concat(" (", count, " views)");
   }
-  const bool none = counts.size() == 1 && counts.contains(MaskOrigin::kNone);
-  views.mask_confidence = none                                       ? 0.0
-                          : counts.contains(MaskOrigin::kBackground) ? model_confidence
-                                                                     : 1.0;
 }
 
 void check_masks(PreparedViews& views) {

@@ -5,7 +5,7 @@
 
 namespace photohull {
 
-enum class MaskOrigin { kNone, kFile, kAlpha, kBackground };
+enum class MaskOrigin { kNone, kFile, kAlpha, kPlate, kBackground };
 
 /// Fills view.mask from the file that the scene names, else from an alpha channel that varies, in
 /// pixels of `view.image`. Throws Error for a mask of the wrong size and what the loader throws.
@@ -14,10 +14,9 @@ MaskOrigin take_given_mask(const SourceView& source, const ViewLoader& loader, V
 /// Sets the alpha of an image that has such a channel to 1: from here on it tells what is known.
 void make_opaque(ColourImage& image);
 
-/// Sets mask_source and mask_confidence from where each view's mask came; `model_confidence` is
-/// that of the background model.
-void describe_masks(const std::vector<MaskOrigin>& origins, double model_confidence,
-                    PreparedViews& views);
+/// Sets mask_source, the masks' sources, the confidence of those that were given, and
+/// mask_confidence from where each view's mask came.
+void describe_masks(const std::vector<MaskOrigin>& origins, PreparedViews& views);
 
 /// Checks masks that were given. Warns of views whose mask is all background or all foreground.
 /// Throws Error when all masks are empty, or when most show foreground along the frame and

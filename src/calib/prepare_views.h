@@ -20,18 +20,33 @@ struct ViewLoader {
 };
 
 enum class MaskPolicy {
-  kAuto,  ///< mask file, else alpha channel, else a background model of the photographs
-  kNone   ///< no masks at all, whatever the scene names
+  kAuto,  ///< plate, else mask file, else alpha channel, else a background model of the photographs
+  kBackground,  ///< plate, else a background model, whatever other masks there are
+  kNone         ///< no masks at all, whatever the scene names
 };
 
 struct PrepareOptions {
   MaskPolicy masks = MaskPolicy::kAuto;
+  /// Let OpenCV's GrabCut place the contour of masks made from the background where these leave
+  /// doubt.
+  bool cut_masks = false;
   /// Undistorted pictures may reach at most this many times as far from the principal point as
   /// the photograph does: wide-angle corners would otherwise stretch without end. In [1, 8].
   double max_frame_growth = 2.0;
 
   /// Throws UsageError for values outside their range.
   void validate() const;
+};
+
+/// A view's mask: where it came from and how sure it is, [0, 1]. Masks that were given are not
+/// judged (1); 0 where there is none.
+struct MaskJudgement {
+  /// Below this a mask is named in a warning.
+  static constexpr double kDoubtful = 0.6;
+
+  std::string
+      source;  ///< "mask files", "alpha channels", "background plate", "background model", "none"
+  double confidence = 0;
 };
 
 /// Views in the scene's order. In every view:
@@ -42,8 +57,9 @@ struct PrepareOptions {
 ///  - without masks, `mask.empty()`.
 struct PreparedViews {
   std::vector<View> views;
-  std::string mask_source;     ///< "mask files", "alpha channels", "background model", "none", ...
-  double mask_confidence = 0;  ///< [0, 1]; 1 for masks that were given, 0 without masks
+  std::string mask_source;  ///< "mask files", "alpha channels", "background model", "none", ...
+  std::vector<MaskJudgement> masks;
+  double mask_confidence = 0;  ///< [0, 1]: the least of the views' that have masks, 0 without masks
   std::vector<std::string> warnings;
 };
 

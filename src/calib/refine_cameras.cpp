@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "calib/bundle.h"
 #include "calib/frontier.h"
-#include "calib/median.h"
+#include "calib/grey_image.h"
+#include "calib/surface_patches.h"
 #include "core/error.h"
+#include "core/median.h"
 
 namespace photohull {
 namespace {
@@ -69,44 +72,36 @@ bool is_held_out(std::size_t index, double share) {
 
 class Refiner {
  public:
-  Refiner(std::span<const View> views, const RefineCamerasOptions& options, Progress& progress)
-      : options_(options), progress_(progress) {
-    for (const View& view : views) {
-      given_.push_back(view.camera);
+  /// `given`: what the result is compared with, and held near to; `start`: where it begins.
+  Refiner(std::span<const View> views, Cameras given, Cameras start,
+          const RefineCamerasOptions& options, std::vector<Track> tracks, Progress& progress)
+      : options_(options), progress_(progress), given_(std::move(given)), start_(std::move(start)) {
+    for (const View& view : views)
       outlines_.push_back(view.mask.empty() ? Outline() : outline_of(view.mask));
-    }
-    std::vector<Track> tracks = find_tracks(views, options.tracks, progress);
     for (std::size_t i = 0; i < tracks.size(); ++i)
       (is_held_out(i, options.held_out) ? judging_ : adjusting_).push_back(std::move(tracks[i]));
   }
 
   CameraRefinement run() {
-    Cameras cameras = given_;
+    Cameras cameras = start_;
     middle_ = find_middle();
     const Judgement first = judge(given_, nullptr);
     first_spread_ = std::max(judging_.size() < std::size_t(kFewestTracks) ? 0 : first.track_sigma,
                              first.tangent_sigma);
     CameraRefinement result;
+    // A turn looks almost like an offset of the principal point: while poses are held, the offset
+    // is what all views have in common.
+    if (options_.intrinsics == SharedIntrinsics::kPixelCentre)
+      try_round(cameras, SharedIntrinsics::kPixelCentre, true, result);
+    const bool last = options_.intrinsics != SharedIntrinsics::kAll;
     bool with_intrinsics = false;
     for (int round = 0; round < options_.rounds; ++round) {
       progress_.check_cancelled();
       progress_.update(0.9 + 0.1 * round / options_.rounds);
-      std::array<double, 3> shared;
-      const Judgement before = judge(cameras, nullptr);
-      Cameras better = adjust(cameras, with_intrinsics, shared);
-      const Judgement after = judge(better, &before);
-      const bool improved = after.cost < before.cost * (1 - 1e-9);
-      if (improved) {
-        ++result.rounds;
-        result.changed = true;
-        cameras = std::move(better);
-        result.focal_factor *= shared[0];
-        result.principal += glm::dvec2(shared[1], shared[2]);
-      }
-      const bool settled = !improved || after.cost > 0.999 * before.cost;
-      if (!settled) continue;
+      const auto shared = with_intrinsics ? SharedIntrinsics::kAll : SharedIntrinsics::kNone;
+      if (try_round(cameras, shared, false, result)) continue;
       // Poses come first; what all views share follows once they have settled.
-      if (with_intrinsics || !options_.intrinsics) break;
+      if (with_intrinsics || last) break;
       with_intrinsics = true;
     }
     if (result.changed) cameras = fix_gauge(cameras);
@@ -117,6 +112,22 @@ class Refiner {
   }
 
  private:
+  /// One adjustment, taken when what is held out agrees better. False once it has settled.
+  bool try_round(Cameras& cameras, SharedIntrinsics intrinsics, bool hold_poses,
+                 CameraRefinement& result) const {
+    std::array<double, 3> shared;
+    const Judgement before = judge(cameras, nullptr);
+    Cameras better = adjust(cameras, intrinsics, hold_poses, shared);
+    const Judgement after = judge(better, &before);
+    if (!(after.cost < before.cost * (1 - 1e-9))) return false;
+    ++result.rounds;
+    result.changed = true;
+    cameras = std::move(better);
+    result.focal_factor *= shared[0];
+    result.principal += glm::dvec2(shared[1], shared[2]);
+    return after.cost <= 0.999 * before.cost;
+  }
+
   struct Judgement {
     double track_sigma = 1, tangent_sigma = 1, cost = 0;
     std::vector<FrontierPair> tangents;
@@ -168,7 +179,8 @@ class Refiner {
     return j;
   }
 
-  Cameras adjust(const Cameras& cameras, bool intrinsics, std::array<double, 3>& shared) const {
+  Cameras adjust(const Cameras& cameras, SharedIntrinsics intrinsics, bool hold_poses,
+                 std::array<double, 3>& shared) const {
     const Triangulated all = triangulate_all(cameras, adjusting_);
     BundleInput input;
     input.track_sigma = std::max(kLeastSigma, spread_of_lengths(all.rms));
@@ -184,6 +196,7 @@ class Refiner {
     input.tracks = kept;
     input.tangents = pairs;
     input.intrinsics = intrinsics;
+    input.hold_poses = hold_poses;
     input.middle = middle_;
     // What neither tracks nor tangents determine stays as it was given.
     input.prior_sigma = std::max(1.0, 2 * first_spread_);
@@ -249,14 +262,48 @@ class Refiner {
 
   RefineCamerasOptions options_;
   Progress& progress_;
-  Cameras given_;
+  Cameras given_, start_;
   std::vector<Outline> outlines_;
   std::vector<Track> adjusting_, judging_;
   glm::dvec3 middle_{0.0};
   double first_spread_ = 1;  ///< pixels: of the residuals by the given cameras
 };
 
+/// Patches of the surface of the hull that these cameras cut.
+std::vector<Track> hull_patches(const Cameras& cameras, std::span<const View> views,
+                                std::span<const GreyImage> images, const Box& box,
+                                Progress& progress) {
+  constexpr int kCells = 96, kPoints = 4000;
+  return patch_tracks(cameras, images, hull_points(cameras, views, box, kCells, kPoints), {},
+                      progress);
+}
+
+/// Do views have so few observations that patches must help?
+bool has_few(std::span<const Track> tracks, std::size_t views, int few) {
+  std::vector<double> counts(views, 0);
+  for (const Track& track : tracks)
+    for (const Observation& o : track.observations) ++counts[std::size_t(o.view)];
+  return median(counts) < few;
+}
+
+std::vector<Track> joined(std::vector<Track> a, const std::vector<Track>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
 }  // namespace
+
+const char* to_string(TrackSource source) {
+  switch (source) {
+    case TrackSource::kBoth:
+      return "both";
+    case TrackSource::kGiven:
+      return "given";
+    case TrackSource::kFound:
+      return "found";
+  }
+  return "unknown";
+}
 
 CameraRefinement refine_cameras(std::span<const View> views, const RefineCamerasOptions& options,
                                 Progress& progress) {
@@ -265,7 +312,39 @@ CameraRefinement refine_cameras(std::span<const View> views, const RefineCameras
         concat("cameras are refined against each other, which needs three views or more; "
                "there are ",
                views.size()));
-  return Refiner(views, options, progress).run();
+  Cameras given;
+  for (const View& view : views) given.push_back(view.camera);
+  std::span<const Track> others;
+  if (options.source != TrackSource::kFound) others = options.given;
+  const std::vector<Track> features =
+      find_tracks(views, options.tracks, progress, others, options.source != TrackSource::kGiven);
+  std::vector<Track> patches;
+  std::vector<GreyImage> images(views.size());
+  const bool with_patches = options.box && has_few(features, views.size(), options.few_features);
+  if (with_patches) {
+    tbb::parallel_for(std::size_t(0), views.size(),
+                      [&](std::size_t i) { images[i] = smoothed(grey_image(views[i].image)); });
+    patches = hull_patches(given, views, images, *options.box, progress);
+  }
+  CameraRefinement result =
+      Refiner(views, given, given, options, joined(features, patches), progress).run();
+  if (with_patches && result.changed) {
+    // Better cameras cut a better hull, whose patches are found in more places.
+    const std::vector<Track> again =
+        hull_patches(result.cameras, views, images, *options.box, progress);
+    CameraRefinement second =
+        Refiner(views, given, result.cameras, options, joined(features, again), progress).run();
+    if (second.changed) {
+      second.rounds += result.rounds;
+      second.focal_factor *= result.focal_factor;
+      second.principal += result.principal;
+      result = std::move(second);
+      patches = again;
+    }
+  }
+  result.given_tracks = int(others.size());
+  result.patches = int(patches.size());
+  return result;
 }
 
 }  // namespace photohull

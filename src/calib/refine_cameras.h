@@ -1,17 +1,40 @@
 // Cameras that are slightly wrong, made consistent with the photographs.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "calib/feature_tracks.h"
+#include "core/box.h"
 
 namespace photohull {
 
+/// What all views share and is refined once poses have settled.
+enum class SharedIntrinsics {
+  kNone,
+  kPixelCentre,  ///< an offset of all principal points, in x and y: another pixel centre
+  kAll           ///< that, and a factor of all focal lengths
+};
+
+/// Which features are used.
+enum class TrackSource {
+  kBoth,   ///< those given, and found ones elsewhere
+  kGiven,  ///< RefineCamerasOptions::given only
+  kFound
+};
+
+const char* to_string(TrackSource source);
+
 struct RefineCamerasOptions {
-  /// Focal length (a factor) and principal point (an offset), the same for all views, too.
-  bool intrinsics = false;
+  SharedIntrinsics intrinsics = SharedIntrinsics::kNone;
+  TrackSource source = TrackSource::kBoth;
+  std::vector<Track> given;  ///< by another program (undistorted_tracks), in the views' pixels
+  /// Where the object is. With it, and masks, patches of the hull's surface (patch_tracks) join
+  /// where a view has few features.
+  std::optional<Box> box;
+  int few_features = 100;  ///< observations of a view, in the median
   TrackOptions tracks;
   double held_out = 0.2;  ///< share of the tracks and tangents that only judge
   int rounds = 8;         ///< at most; each one finds outliers and tangents anew
@@ -34,15 +57,16 @@ struct CameraRefinement {
   double focal_factor = 1;    ///< of the given focal lengths
   glm::dvec2 principal{0.0};  ///< pixels added to the given principal points
   int tracks = 0, tangents = 0, rounds = 0;
+  int given_tracks = 0, patches = 0;  ///< among the tracks
 };
 
-/// Bundle adjustment [Triggs99] of poses, and with `intrinsics` of what all views share, over
-/// feature tracks (find_tracks) and silhouettes' tangents (frontier_pairs; views with masks), by
-/// Ceres with robust losses whose widths follow the residuals. The gauge is fixed: the result is
-/// moved, turned and scaled to where the given cameras have the points. A round is only accepted
-/// when what was held out agrees better after it, judged by residuals weighed against their spread
-/// in the round before.
-/// Views are undistorted. Throws Cancelled, and Error for fewer than three views.
+/// Bundle adjustment [Triggs99] of poses, and with `intrinsics` what all views share, over
+/// feature tracks (find_tracks, patch_tracks) and silhouettes' tangents (frontier_pairs; views with
+/// masks), by Ceres with robust losses whose widths follow the residuals. The gauge is fixed: the
+/// result is moved, turned and scaled to where the given cameras have the points. A round is only
+/// accepted when what was held out agrees better after it, judged by residuals weighed against
+/// their spread in the round before. Views are undistorted. Throws Cancelled, and Error for fewer
+/// than three views.
 CameraRefinement refine_cameras(std::span<const View> views, const RefineCamerasOptions& options,
                                 Progress& progress);
 

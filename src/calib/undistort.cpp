@@ -250,6 +250,23 @@ glm::dvec2 distort(const Distortion& distortion, const glm::dvec2& ideal) {
   return p;
 }
 
+std::optional<glm::dvec2> undistort_point(const Distortion& distortion,
+                                          const glm::dvec2& distorted) {
+  constexpr double kStep = 1e-6, kConverged = 1e-12;
+  glm::dvec2 ideal = distorted;
+  for (int step = 0; step < 50; ++step) {
+    const glm::dvec2 error = distort(distortion, ideal) - distorted;
+    const glm::dmat2 slope(
+        (distort(distortion, ideal + glm::dvec2(kStep, 0)) - distorted - error) / kStep,
+        (distort(distortion, ideal + glm::dvec2(0, kStep)) - distorted - error) / kStep);
+    if (!(glm::determinant(slope) > 1e-3)) return std::nullopt;
+    const glm::dvec2 change = glm::inverse(slope) * error;
+    ideal -= change;
+    if (glm::length(change) <= kConverged * (1 + glm::length(ideal))) return ideal;
+  }
+  return std::nullopt;
+}
+
 Intrinsics undistorted_intrinsics(const Intrinsics& source, const Distortion& distortion,
                                   double max_growth) {
   constexpr int kSteps =

@@ -1,6 +1,8 @@
 // From pictures with lens distortion to ideal pinhole pictures.
 #pragma once
 
+#include <optional>
+
 #include "core/camera.h"
 #include "core/image.h"
 
@@ -9,6 +11,11 @@ namespace photohull {
 /// Where a lens images the ray (x, y, 1): both in the image plane at z = 1 of the camera frame.
 /// Formulas and order of coefficients are those of OpenCV's calib3d and its fisheye module.
 glm::dvec2 distort(const Distortion& distortion, const glm::dvec2& ideal);
+
+/// The ray (x, y, 1) that a lens images at `distorted`, by Newton's method; nothing where there is
+/// none or the model folds.
+std::optional<glm::dvec2> undistort_point(const Distortion& distortion,
+                                          const glm::dvec2& distorted);
 
 /// Pinhole intrinsics for the undistorted picture: the same focal lengths and skew, the principal
 /// point moved by whole pixels, and the smallest frame that shows all of the photograph within

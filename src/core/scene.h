@@ -42,6 +42,16 @@ struct SourceView {
   Camera camera;                ///< pixel centres already converted to (0, 0)
   Distortion distortion;
   bool silhouette = true;  ///< false: the scene says that no usable one can be cut from the picture
+  std::filesystem::path plate{};  ///< the same view without the object; empty where there is none
+};
+
+/// A surface point's places in photographs, at most one in each.
+struct SceneTrack {
+  struct Observation {
+    int view = 0;           ///< index of the scene's views
+    glm::dvec2 pixel{0.0};  ///< of the photograph as it is: with lens distortion
+  };
+  std::vector<Observation> observations;  ///< two or more, by ascending view
 };
 
 /// Immutable result of io::load_scene.
@@ -50,6 +60,7 @@ struct Scene {
   SceneFormat format = SceneFormat::kMiddlebury;
   std::vector<SourceView> views;   ///< in the order of the scene file
   std::vector<glm::dvec3> points;  ///< sparse points, world; may be empty
+  std::vector<SceneTrack> tracks;  ///< features that the file lists, as another program found them
   std::optional<Box> box;          ///< region of interest, world
   std::string box_source;          ///< e.g. "bbox.txt", "README.txt", "--box", "sparse points"
   std::vector<std::string> warnings;

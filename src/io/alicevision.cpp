@@ -135,6 +135,21 @@ std::map<std::string, JsonNode> by_id(const JsonNode& root, const char* list, co
   return found;
 }
 
+/// Places in views without a pose are passed over.
+void read_track(const JsonNode& point, const std::map<std::string, std::size_t>& index,
+                RawScene& scene) {
+  const auto list = point.find("observations");
+  RawTrack track;
+  for (std::size_t i = 0; list && i < list->size(); ++i) {
+    const JsonNode place = list->at(i);
+    const auto view = index.find(place["observationId"].identifier());
+    const JsonNode x = place["x"];
+    if (view != index.end())
+      track.observations.push_back({view->second, {x.at(0).number(), x.at(1).number()}});
+  }
+  if (track.observations.size() >= 2) scene.tracks.push_back(std::move(track));
+}
+
 ordered_json lens_json(const SourceView& view, std::size_t index) {
   require_no_skew(view, "AliceVision");
   const Intrinsics& k = view.camera.intrinsics;
@@ -204,6 +219,7 @@ RawScene read_alicevision(const fs::path& file) {
   const auto poses = by_id(root, "poses", "poseId");
   const JsonNode views = root["views"];
   std::size_t left_out = 0;
+  std::map<std::string, std::size_t> index;  // of each viewId
   for (std::size_t i = 0; i < views.size(); ++i) {
     const JsonNode v = views.at(i);
     if (v.find("rigId"))
@@ -220,12 +236,14 @@ RawScene read_alicevision(const fs::path& file) {
     const Lens read = read_lens(lens->second, version);
     view.camera = {read.intrinsics, read_pose(pose->second)};
     view.distortion = read.distortion;
+    if (const auto id = v.find("viewId")) index[id->identifier()] = scene.views.size();
     scene.views.push_back(std::move(view));
   }
   if (const auto points = root.find("structure"); points && points->json().is_array())
     for (std::size_t i = 0; i < points->size(); ++i) {
       const JsonNode x = points->at(i)["X"];
       scene.points.emplace_back(x.at(0).number(), x.at(1).number(), x.at(2).number());
+      read_track(points->at(i), index, scene);
     }
   if (left_out > 0)
     scene.warnings.push_back(concat(file.string(), ": ", left_out, " of ", views.size(),

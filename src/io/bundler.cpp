@@ -71,6 +71,27 @@ RawView read_camera(Lines& lines, const std::string& name) {
   return view;
 }
 
+/// "COUNT, and for each VIEW KEY X Y", from the image's centre with y up. A file may end before it.
+void read_track(Lines& lines, const std::vector<std::optional<std::size_t>>& views,
+                RawScene& scene) {
+  if (!lines.next_content()) return;
+  const std::vector<std::string_view> fields = split_fields(lines.text());
+  const std::int64_t count = lines.integer(fields[0], "a track's length");
+  if (count < 0 || std::uint64_t(count) != (fields.size() - 1) / 4 || fields.size() % 4 != 1)
+    throw Error(concat(lines.where(), ": a track of ", count, " is stated, but ", fields.size() - 1,
+                       " fields follow; each place is VIEW KEY X Y"));
+  RawTrack track;
+  for (std::size_t i = 1; i < fields.size(); i += 4) {
+    const std::int64_t view = lines.integer(fields[i], "a track's view");
+    if (view < 0 || std::uint64_t(view) >= views.size())
+      throw Error(concat(lines.where(), ": the view ", view, " of a track is none of the ",
+                         views.size(), " cameras"));
+    const glm::dvec2 pixel(lines.number(fields[i + 2], "X"), -lines.number(fields[i + 3], "Y"));
+    if (views[std::size_t(view)]) track.observations.push_back({*views[std::size_t(view)], pixel});
+  }
+  if (track.observations.size() >= 2) scene.tracks.push_back(std::move(track));
+}
+
 }  // namespace
 
 fs::path find_bundler(const fs::path& folder) {
@@ -94,18 +115,22 @@ RawScene read_bundler(const fs::path& file) {
     throw Error(concat(lines.where(), ": ", cameras, " cameras are stated, but list.txt names ",
                        names.size(), " images"));
   std::size_t left_out = 0;
+  std::vector<std::optional<std::size_t>> views;  // of each image
   for (const std::string& name : names) {
     RawView view = read_camera(lines, name);
-    if (view.camera.intrinsics.fx == 0)
-      ++left_out;
-    else
+    const bool registered = view.camera.intrinsics.fx != 0;
+    views.push_back(registered ? std::optional(scene.views.size()) : std::nullopt);
+    if (registered)
       scene.views.push_back(std::move(view));
+    else
+      ++left_out;
   }
+  scene.track_origin = TrackOrigin::kPrincipal;
   for (double i = 0; i < points; ++i) {
     const auto p = read_numbers<3>(lines, "a point's position");
     scene.points.emplace_back(p[0], p[1], p[2]);
     lines.next_content();  // colour
-    lines.next_content();  // track
+    read_track(lines, views, scene);
   }
   if (left_out > 0)
     scene.warnings.push_back(concat(file.string(), ": ", left_out, " of ", names.size(),

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "io/formats.h"
+#include "io/scene_readers.h"
 #include "io/text_file.h"
 
 namespace photohull::io {
@@ -55,6 +56,11 @@ SceneLocation find_scene(const fs::path& path, std::optional<SceneFormat> format
     throw Error(concat(path.string(),
                        ": there is no such file or folder; give a scene folder or "
                        "the file that lists the cameras"));
+  if (!format && is_calibration(path))
+    throw Error(concat(path.string(),
+                       ": is a calibration, which lists no photographs of an object; make a scene "
+                       "with photohull convert ",
+                       path.string(), " --images FOLDER --to FORMAT --out DIR"));
   if (!format) format = format_of_file(path);
   if (!format)
     throw Error(concat(path.string(),

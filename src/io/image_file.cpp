@@ -14,6 +14,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "io/image_signature.h"
 #include "io/text_file.h"
 
 namespace photohull::io {
@@ -84,12 +85,12 @@ OpenImage open_image(const fs::path& path) {
   file.path = path;
   OIIO::ImageSpec request;
   request.attribute("oiio:UnassociatedAlpha", 1);
-  file.input = OIIO::ImageInput::open(path.string(), &request);
-  if (!file.input)
-    throw Error(concat(path.string(), ": cannot be read as an image (", one_line(OIIO::geterror()),
+  file.input = OIIO::ImageInput::create(image_format(path));
+  if (!file.input || !file.input->open(path.string(), file.spec, request))
+    throw Error(concat(path.string(), ": cannot be read as an image (",
+                       one_line(file.input ? file.input->geterror() : OIIO::geterror()),
                        "); PNG, JPEG, TIFF and OpenEXR are known"));
   file.input->threads(1);
-  file.spec = file.input->spec();
   check_size(file.spec, path);
   const OIIO::ImageSpec& s = file.spec;
   if (std::strcmp(file.input->format_name(), "openexr") == 0 &&

@@ -14,6 +14,7 @@
 #include "io/raw_scene.h"
 #include "io/scene_box.h"
 #include "io/scene_masks.h"
+#include "io/scene_readers.h"
 #include "io/select_views.h"
 #include "io/text_file.h"
 
@@ -117,6 +118,32 @@ std::vector<std::size_t> kept_views(const LoadSceneOptions& options,
   return rest;
 }
 
+/// Tracks of the views that are kept: kept[i] is the raw index of the scene's view i.
+void fill_tracks(const RawScene& raw, const std::vector<std::size_t>& kept, double pixel_center,
+                 Scene& scene) {
+  std::vector<int> index(raw.views.size(), -1);
+  for (std::size_t i = 0; i < kept.size(); ++i) index[kept[i]] = int(i);
+  for (const RawTrack& track : raw.tracks) {
+    SceneTrack found;
+    for (const RawTrack::Observation& o : track.observations) {
+      const int view = index[o.view];
+      if (view < 0) continue;
+      const Intrinsics& k = scene.views[std::size_t(view)].camera.intrinsics;
+      const glm::dvec2 origin = raw.track_origin == TrackOrigin::kPrincipal
+                                    ? glm::dvec2(k.cx, k.cy)
+                                    : glm::dvec2(-pixel_center);
+      found.observations.push_back({view, o.pixel + origin});
+    }
+    auto& o = found.observations;
+    std::stable_sort(o.begin(), o.end(),
+                     [](const auto& a, const auto& b) { return a.view < b.view; });
+    const auto twice = std::unique(o.begin(), o.end(),
+                                   [](const auto& a, const auto& b) { return a.view == b.view; });
+    o.erase(twice, o.end());
+    if (o.size() >= 2) scene.tracks.push_back(std::move(found));
+  }
+}
+
 /// Views selected by the options, their images found and their cameras completed.
 std::vector<RawView> fill_views(const LoadSceneOptions& options, const RawScene& raw,
                                 Scene& scene) {
@@ -126,10 +153,11 @@ std::vector<RawView> fill_views(const LoadSceneOptions& options, const RawScene&
   reject_duplicates(raw, images);
   const std::vector<std::string> names = view_names(raw, images);
   std::vector<RawView> selected;
-  for (const std::size_t i : kept_views(options, names)) {
+  const std::vector<std::size_t> kept = kept_views(options, names);
+  const double center = options.pixel_center.value_or(raw.pixel_center);
+  for (const std::size_t i : kept) {
     const RawView& view = raw.views[i];
     if (images[i].empty()) report_missing_image(raw, view);
-    const double center = options.pixel_center.value_or(raw.pixel_center);
     scene.views.push_back({names[i],
                            images[i],
                            {},
@@ -144,7 +172,15 @@ std::vector<RawView> fill_views(const LoadSceneOptions& options, const RawScene&
                        : options.views.empty()   ? " views are listed"
                                                  : " views are selected",
                        ", but at least ", kFewestViews, " are needed"));
+  fill_tracks(raw, kept, center, scene);
   return selected;
+}
+
+RawScene read_calibrated(const fs::path& path, const CalibratedImages& images) {
+  if (!is_file(path) || !is_calibration(path))
+    throw Error(concat(path.string(),
+                       ": is no file of photohull calibrate, which is what --images is for"));
+  return read_calibration(path, images);
 }
 
 }  // namespace
@@ -153,7 +189,12 @@ void LoadSceneOptions::validate() const {
   if (pixel_center && *pixel_center != 0.0 && *pixel_center != 0.5 && *pixel_center != 1.0)
     throw UsageError(concat("--pixel-center ", *pixel_center, ": expected 0, 0.5 or 1"));
   if (masks == MaskSource::kDirectory && mask_directory.empty())
-    throw UsageError("--masks is empty: expected auto, none or the folder that holds the masks");
+    throw UsageError(
+        "--masks is empty: expected auto, background, none or the folder that holds the masks");
+  if (!background.empty() && masks == MaskSource::kNone)
+    throw UsageError("--background and --masks none exclude each other: give one");
+  if (!background.empty() && masks == MaskSource::kDirectory)
+    throw UsageError("--background and a folder of --masks exclude each other: give one");
   if (!box) return;
   try {
     check_box(*box, "--box");
@@ -164,8 +205,10 @@ void LoadSceneOptions::validate() const {
 
 Scene load_scene(const fs::path& path, const LoadSceneOptions& options) {
   options.validate();
-  const SceneLocation location = find_scene(path, options.format);
-  RawScene raw = format_entry(location.format).read(location.file);
+  SceneLocation location;
+  if (!options.calibrated) location = find_scene(path, options.format);
+  RawScene raw = options.calibrated ? read_calibrated(path, *options.calibrated)
+                                    : format_entry(location.format).read(location.file);
   Scene scene;
   scene.path = path;
   scene.format = raw.format;
@@ -173,6 +216,7 @@ Scene load_scene(const fs::path& path, const LoadSceneOptions& options) {
   scene.warnings.insert(scene.warnings.end(), raw.warnings.begin(), raw.warnings.end());
   const std::vector<RawView> selected = fill_views(options, raw, scene);
   attach_masks(options, raw.file.parent_path(), selected, scene);
+  attach_plates(options, selected, scene);
   choose_box(options, path, raw, scene);
   scene.points = std::move(raw.points);
   return scene;

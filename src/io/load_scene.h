@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/scene.h"
 
@@ -13,7 +14,21 @@ namespace photohull::io {
 enum class MaskSource {
   kAuto,  ///< the scene's own entries, else a masks/ folder beside the images where there is one
   kNone,  ///< no masks, whatever the scene says
-  kDirectory  ///< LoadSceneOptions::mask_directory, which must hold one for every view
+  kBackground,  ///< made from the background, whatever masks the scene has
+  kDirectory    ///< LoadSceneOptions::mask_directory, which must hold one for every view
+};
+
+/// Photographs of the object by what `photohull calibrate` has calibrated. Worlds: of a rig, the
+/// first camera's frame; of a turntable, z along its axis and up in the picture, the origin where
+/// the axis passes nearest to the camera's optical axis, x towards the camera at angle 0; of a
+/// camera that saw the board beside the object, the board's (its z points away from the cameras).
+struct CalibratedImages {
+  /// Rig: CAMERA.EXT, or CAMERA/ with one picture or the one that `moment` names. Turntable with
+  /// `step` or `angles`: all pictures in natural order. Else those called as the board's were.
+  std::filesystem::path folder;
+  std::optional<double> step;  ///< turntable: degrees from one picture to the next; first at 0
+  std::vector<double> angles;  ///< turntable: degrees of each picture
+  std::string moment;          ///< rig: file name without extension
 };
 
 struct LoadSceneOptions {
@@ -29,6 +44,12 @@ struct LoadSceneOptions {
   /// Used with kDirectory only: NAME.png, NAME.EXTENSION.png (COLMAP's way) or the image's stem
   /// with another image extension.
   std::filesystem::path mask_directory;
+  /// Makes a scene of these and a file of `photohull calibrate`, which has no images of its own.
+  std::optional<CalibratedImages> calibrated;
+  /// Photographs of the background without the object: a file for all views (a fixed camera), or a
+  /// folder with one for every view, named as masks are. Empty: none. The masks are then made from
+  /// the background; excludes kNone and kDirectory.
+  std::filesystem::path background;
   /// Views to keep, e.g. "0-10,15,templeR0003.png,left_*": indices in file order from 0, inclusive
   /// ranges, names, shell patterns. Empty: all.
   std::string views;

@@ -65,6 +65,27 @@ RawView read_camera(const Lines& lines, const std::optional<Intrinsics>& fixed) 
   return view;
 }
 
+/// After X Y Z R G B "COUNT, and for each VIEW FEATURE X Y", from the principal point.
+void read_track(const Lines& lines, const std::vector<std::string_view>& fields, RawScene& scene) {
+  constexpr std::size_t kCount = 6;
+  if (fields.size() <= kCount) return;
+  const std::int64_t count = lines.integer(fields[kCount], "a track's length");
+  const std::size_t rest = fields.size() - kCount - 1;
+  if (count < 0 || std::uint64_t(count) != rest / 4 || rest % 4 != 0)
+    throw Error(concat(lines.where(), ": a track of ", count, " is stated, but ", rest,
+                       " fields follow; each place is VIEW FEATURE X Y"));
+  RawTrack track;
+  for (std::size_t i = kCount + 1; i < fields.size(); i += 4) {
+    const std::int64_t view = lines.integer(fields[i], "a track's view");
+    if (view < 0 || std::uint64_t(view) >= scene.views.size())
+      throw Error(concat(lines.where(), ": the view ", view, " of a track is none of the ",
+                         scene.views.size(), " cameras"));
+    track.observations.push_back({std::size_t(view), glm::dvec2(lines.number(fields[i + 2], "X"),
+                                                                lines.number(fields[i + 3], "Y"))});
+  }
+  if (track.observations.size() >= 2) scene.tracks.push_back(std::move(track));
+}
+
 }  // namespace
 
 fs::path find_nvm(const fs::path& folder) { return only_file_ending(folder, ".nvm"); }
@@ -76,6 +97,7 @@ RawScene read_nvm(const fs::path& file) {
   scene.format = SceneFormat::kNvm;
   scene.file = file;
   scene.pixel_center = kPixelCenter;
+  scene.track_origin = TrackOrigin::kPrincipal;
   scene.image_folders = {folder_of(file), folder_of(file) / "images"};
   Lines lines(file);
   const std::optional<Intrinsics> fixed = read_header(lines);
@@ -91,8 +113,9 @@ RawScene read_nvm(const fs::path& file) {
   for (std::int64_t i = 0; i < points; ++i) {
     if (!lines.next_content())
       throw Error(concat(lines.where(), ": ", points, " points are stated but ", i, " listed"));
-    const std::vector<std::string_view> fields = split_fields(lines.text(), 3);
+    const std::vector<std::string_view> fields = split_fields(lines.text());
     if (fields.size() < 3) throw Error(concat(lines.where(), ": a point needs X Y Z"));
+    read_track(lines, fields, scene);
     scene.points.emplace_back(lines.number(fields[0], "X"), lines.number(fields[1], "Y"),
                               lines.number(fields[2], "Z"));
   }

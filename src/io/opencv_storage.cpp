@@ -2,6 +2,7 @@
 // "cameras" of maps with the names that OpenCV's calibration samples use (camera_matrix,
 // distortion_coefficients, image_width, image_height, R, t, and image), or EasyMocap's pair
 // intri.yml (K_NAME, dist_NAME) and extri.yml (Rot_NAME or the vector R_NAME, T_NAME).
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <opencv2/core/core.hpp>
@@ -33,12 +34,40 @@ auto guarded(const fs::path& file, Call&& call) {
   }
 }
 
+/// OpenCV's YAML parser does not come to an end on some files of several documents.
+void check_single_document(const std::string& text, const fs::path& file) {
+  constexpr std::size_t kFirstLines = 2;  // %YAML:1.0 and ---
+  if (!text.starts_with('%')) return;
+  std::size_t line = 0;
+  for (std::size_t at = 0; at < text.size(); ++line) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string_view content = std::string_view(text).substr(at, end - at);
+    const bool marks = content.starts_with("---") || content.starts_with("...");
+    if (line == 0 ? content.find("---") != std::string_view::npos
+                  : (marks && (line >= kFirstLines || trimmed(content) != "---")) ||
+                        content.find('%') != std::string_view::npos)
+      throw Error(concat(file.string(), " line ", line + 1,
+                         ": must be one YAML document that opens with %YAML:1.0 and ---"));
+    at = end + 1;
+  }
+}
+
 cv::FileStorage open(const fs::path& file) {
   const std::string text = read_text_file(file);
+  check_single_document(text, file);
   cv::FileStorage storage;
   if (!storage.open(text, cv::FileStorage::READ | cv::FileStorage::MEMORY))
     throw Error(file.string() + ": is empty or no YAML, JSON or XML of OpenCV's");
   return storage;
+}
+
+/// OpenCV asks for the memory that rows and columns claim before it looks at the data.
+void check_matrix_size(const cv::FileNode& node, const std::string& where) {
+  constexpr double kMostNumbers = 1000;
+  const cv::FileNode rows = node["rows"], columns = node["cols"];
+  if (!rows.isInt() || !columns.isInt() || rows.real() < 0 || columns.real() < 0 ||
+      rows.real() * columns.real() > kMostNumbers)
+    throw Error(where + ": its rows and cols are no camera's");
 }
 
 /// A matrix or a plain list as numbers by rows; none where the node is absent.
@@ -47,6 +76,7 @@ std::vector<double> numbers_of(const cv::FileNode& node, const std::string& wher
   if (node.empty() || node.isNone()) return values;
   cv::Mat matrix;
   if (node.isMap()) {
+    check_matrix_size(node, where);
     node >> matrix;
     if (matrix.channels() != 1) throw Error(where + ": must be a matrix of one channel");
     matrix.convertTo(matrix, CV_64F);

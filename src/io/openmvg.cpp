@@ -103,6 +103,21 @@ std::map<std::string, Pose> read_poses(const JsonNode& root) {
   return poses;
 }
 
+/// Places in views without a pose are passed over.
+void read_track(const JsonNode& point, const std::map<std::string, std::size_t>& index,
+                RawScene& scene) {
+  const auto list = point.find("observations");
+  RawTrack track;
+  for (std::size_t i = 0; list && i < list->size(); ++i) {
+    const JsonNode place = list->at(i);
+    const auto view = index.find(place["key"].identifier());
+    const JsonNode x = place["value"]["x"];
+    if (view != index.end())
+      track.observations.push_back({view->second, {x.at(0).number(), x.at(1).number()}});
+  }
+  if (track.observations.size() >= 2) scene.tracks.push_back(std::move(track));
+}
+
 ordered_json lens_json(const SourceView& view, std::size_t index) {
   require_no_skew(view, "OpenMVG");
   require_square_pixels(view, "OpenMVG");
@@ -157,6 +172,7 @@ RawScene read_openmvg(const fs::path& file) {
   const std::map<std::string, Pose> poses = read_poses(root);
   const JsonNode views = root["views"];
   std::size_t left_out = 0;
+  std::map<std::string, std::size_t> index;  // of each view's key
   for (std::size_t i = 0; i < views.size(); ++i) {
     const JsonNode data = views.at(i)["value"]["ptr_wrapper"]["data"];
     // Files without polymorphic views hold the fields here, others one level deeper.
@@ -172,11 +188,15 @@ RawScene read_openmvg(const fs::path& file) {
     view.listed = (fs::path(v.text("local_path", "")) / v["filename"].text()).string();
     view.camera = {lens->second.intrinsics, pose->second};
     view.distortion = lens->second.distortion;
+    if (const auto key = views.at(i).find("key")) index[key->identifier()] = scene.views.size();
     scene.views.push_back(std::move(view));
   }
   if (const auto points = root.find("structure"))
-    for (std::size_t i = 0; i < points->size(); ++i)
-      scene.points.push_back(read_triple(points->at(i)["value"]["X"]));
+    for (std::size_t i = 0; i < points->size(); ++i) {
+      const JsonNode value = points->at(i)["value"];
+      scene.points.push_back(read_triple(value["X"]));
+      read_track(value, index, scene);
+    }
   if (left_out > 0)
     scene.warnings.push_back(concat(file.string(), ": ", left_out, " of ", views.size(),
                                     " images have no pose and are left out"));

@@ -25,12 +25,28 @@ struct RawView {
   bool silhouette = true;  ///< as in SourceView
 };
 
+/// A point's places as the file states them.
+struct RawTrack {
+  struct Observation {
+    std::size_t view = 0;   ///< index of RawScene::views
+    glm::dvec2 pixel{0.0};  ///< as RawScene::track_origin says, y down
+  };
+  std::vector<Observation> observations;
+};
+
+enum class TrackOrigin {
+  kImage,     ///< coordinates of the file's own pixel convention
+  kPrincipal  ///< distances from the principal point
+};
+
 struct RawScene {
   SceneFormat format = SceneFormat::kMiddlebury;
   std::filesystem::path file;  ///< the file that lists the views
   double pixel_center = 0;     ///< the format's coordinates of the top-left pixel's centre
   std::vector<RawView> views;  ///< cameras finite, rotations clean
   std::vector<glm::dvec3> points;
+  std::vector<RawTrack> tracks;
+  TrackOrigin track_origin = TrackOrigin::kImage;
   std::optional<Box> box;  ///< as the scene file itself states it
   std::string box_source;
   std::vector<std::filesystem::path> image_folders;  ///< where names are looked for, in order

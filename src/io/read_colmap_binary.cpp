@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <fstream>
+#include <map>
 
 #include "core/error.h"
 #include "io/colmap_model.h"
@@ -119,6 +120,7 @@ ColmapCameras read_cameras(const fs::path& path) {
 void read_images(const ColmapCameras& cameras, RawScene& scene) {
   BinaryFile file(scene.file);
   constexpr std::uint64_t kSmallest = 4 + 7 * 8 + 4 + 1 + 8, kObservation = 24;
+  std::map<std::int64_t, RawTrack> tracks;
   for (std::uint64_t left = file.read_count(kSmallest, "the number of images"); left > 0; --left) {
     const std::string where = file.where();
     file.read<std::uint32_t>("image_id");
@@ -129,11 +131,16 @@ void read_images(const ColmapCameras& cameras, RawScene& scene) {
     const auto camera_id = file.read<std::uint32_t>("camera_id");
     std::string name = file.read_string("name");
     const std::uint64_t observations = file.read_count(kObservation, "num_points2D");
-    file.skip(observations * kObservation, "points2D");
+    for (std::uint64_t i = 0; i < observations; ++i) {
+      const auto x = file.read_finite("points2D x"), y = file.read_finite("points2D y");
+      const auto point = file.read<std::int64_t>("points2D point3D_id");
+      if (point >= 0) tracks[point].observations.push_back({scene.views.size(), {x, y}});
+    }
     scene.views.push_back(
         make_colmap_view(std::move(name), quaternion, translation, camera_id, cameras, where));
   }
   file.expect_end();
+  for (auto& [point, track] : tracks) scene.tracks.push_back(std::move(track));
 }
 
 void read_points(const fs::path& path, RawScene& scene) {

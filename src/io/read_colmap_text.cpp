@@ -1,5 +1,6 @@
 // COLMAP sparse models as text: cameras.txt, images.txt and, where present, points3D.txt.
 #include <limits>
+#include <map>
 
 #include "core/error.h"
 #include "io/colmap_model.h"
@@ -45,18 +46,30 @@ ColmapCameras read_cameras(const fs::path& file) {
   return cameras;
 }
 
-/// Steps over an image's second line, "X Y POINT3D_ID" for each of its points. A file written by
-/// hand often lacks it, and every other image would be lost in silence.
-void skip_observations(Lines& lines) {
+using Tracks = std::map<std::int64_t, RawTrack>;  ///< by POINT3D_ID
+
+/// An image's second line, "X Y POINT3D_ID" for each of its points. A file written by hand often
+/// lacks it, and every other image would be lost in silence.
+void read_observations(Lines& lines, std::size_t view, Tracks& tracks) {
   constexpr std::size_t kImageFields = 10;
   if (!lines.next()) return;
-  if (split_fields(lines.text(), kImageFields + 1).size() == kImageFields)
+  const std::vector<std::string_view> fields = split_fields(lines.text());
+  if (fields.size() == kImageFields)
     throw Error(concat(lines.where(),
                        ": 10 fields found where the 2D points of the image above "
                        "are expected; put an empty line after each image"));
+  if (fields.size() % 3 != 0)
+    throw Error(concat(lines.where(), ": ", fields.size(),
+                       " fields found, but 2D points are X Y POINT3D_ID each"));
+  for (std::size_t i = 0; i < fields.size(); i += 3) {
+    const std::int64_t point = lines.integer(fields[i + 2], "POINT3D_ID");
+    const glm::dvec2 pixel(lines.number(fields[i], "X"), lines.number(fields[i + 1], "Y"));
+    if (point >= 0) tracks[point].observations.push_back({view, pixel});
+  }
 }
 
 void read_images(const ColmapCameras& cameras, RawScene& scene) {
+  Tracks tracks;
   for (Lines lines(scene.file); lines.next_content();) {
     constexpr std::size_t kFixed = 9;  // IMAGE_ID, quaternion, translation, CAMERA_ID
     const auto fields = split_fields(lines.text(), kFixed + 1);
@@ -73,8 +86,9 @@ void read_images(const ColmapCameras& cameras, RawScene& scene) {
         make_colmap_view(std::string(fields[kFixed].data(), end),
                          std::span<const double, 4>(pose, 4), {pose[4], pose[5], pose[6]},
                          identifier(lines, fields[8], "CAMERA_ID"), cameras, lines.where()));
-    skip_observations(lines);
+    read_observations(lines, scene.views.size() - 1, tracks);
   }
+  for (auto& [point, track] : tracks) scene.tracks.push_back(std::move(track));
 }
 
 void read_points(const fs::path& file, RawScene& scene) {

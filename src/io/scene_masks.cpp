@@ -100,8 +100,10 @@ void attach_automatically(const fs::path& scene_folder, const std::vector<RawVie
 
 void attach_masks(const LoadSceneOptions& options, const fs::path& scene_folder,
                   const std::vector<RawView>& raw, Scene& scene) {
+  if (!options.background.empty()) return;
   switch (options.masks) {
     case MaskSource::kNone:
+    case MaskSource::kBackground:
       return;
     case MaskSource::kDirectory:
       attach_from_directory(options.mask_directory, raw, scene);
@@ -112,6 +114,31 @@ void attach_masks(const LoadSceneOptions& options, const fs::path& scene_folder,
   }
   for (const SourceView& view : scene.views)
     if (!view.mask.empty()) check_mask_size(view);
+}
+
+void attach_plates(const LoadSceneOptions& options, const std::vector<RawView>& raw, Scene& scene) {
+  const fs::path& given = options.background;
+  if (given.empty()) return;
+  const bool folder = is_folder(given);
+  if (!folder && !is_file(given))
+    throw Error(concat(given.string(),
+                       ": there is no such background; --background takes a photograph without the "
+                       "object, or a folder with one for every view"));
+  for (std::size_t i = 0; i < scene.views.size(); ++i) {
+    SourceView& view = scene.views[i];
+    view.plate = folder ? find_mask(given, view.image, raw[i].listed) : given;
+    if (view.plate.empty())
+      throw Error(concat(given.string(), ": there is no background for ", view.name,
+                         " (looked for ", view.name, ".png and ",
+                         fs::path(view.name).stem().string(),
+                         ".png, .jpg, .tif, .exr); add it or leave the view out with --views"));
+    const ImageSize size = read_image_size(view.plate);
+    const Intrinsics& k = view.camera.intrinsics;
+    if (size.width != k.width || size.height != k.height)
+      throw Error(concat(view.plate.string(), ": the background is ", size.width, " x ",
+                         size.height, " but ", view.image.string(), " is ", k.width, " x ",
+                         k.height, "; it must be taken with the same camera and settings"));
+  }
 }
 
 }  // namespace photohull::io

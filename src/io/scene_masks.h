@@ -16,4 +16,8 @@ namespace photohull::io {
 void attach_masks(const LoadSceneOptions& options, const std::filesystem::path& scene_folder,
                   const std::vector<RawView>& raw, Scene& scene);
 
+/// Sets the plate of every view from LoadSceneOptions::background, where that is given. Throws
+/// Error naming the view when its plate is missing, cannot be read or has another size.
+void attach_plates(const LoadSceneOptions& options, const std::vector<RawView>& raw, Scene& scene);
+
 }  // namespace photohull::io

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "io/load_scene.h"
 #include "io/raw_scene.h"
 
 namespace photohull::io {
@@ -72,5 +73,9 @@ std::filesystem::path find_opencv(const std::filesystem::path& folder);
 bool is_opencv(const std::filesystem::path& file);
 RawScene read_opencv(const std::filesystem::path& file);
 void write_opencv(const Scene& scene, const std::filesystem::path& folder);
+
+/// A file of `photohull calibrate`, and a scene of it with these photographs.
+bool is_calibration(const std::filesystem::path& file);
+RawScene read_calibration(const std::filesystem::path& file, const CalibratedImages& images);
 
 }  // namespace photohull::io

@@ -5,112 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <glm/gtc/quaternion.hpp>
-#include <numbers>
-#include <opencv2/aruco/charuco.hpp>
 
-#include "calib/undistort.h"
 #include "core/error.h"
-#include "pictures.h"
+#include "rendered_boards.h"
 
 namespace photohull {
 namespace {
 
 using testing::HasSubstr;
-
-constexpr double kRadian = std::numbers::pi / 180;
-
-/// Brightness of a board at a place in its plane.
-using Pattern = std::function<double(double x, double y)>;
-
-/// Squares of side 1 with the first inner corner at (0, 0), a white rim around columns + 1 by
-/// rows + 1 of them.
-Pattern chess(int columns, int rows) {
-  return [=](double x, double y) {
-    if (x < -1 || y < -1 || x > columns || y > rows) return 0.9;
-    return (int(std::floor(x)) + int(std::floor(y))) & 1 ? 0.05 : 0.9;
-  };
-}
-
-Pattern dots(int columns, int rows) {
-  return [=](double x, double y) {
-    const double i = std::clamp(std::round(x), 0.0, columns - 1.0);
-    const double j = std::clamp(std::round(y), 0.0, rows - 1.0);
-    return std::hypot(x - i, y - j) < 0.28 ? 0.05 : 0.9;
-  };
-}
-
-/// OpenCV's drawing, a hundred pixels a square; its corner 0 is at (1, 1).
-Pattern charuco(int columns, int rows) {
-  constexpr int kSquare = 100;
-  const auto board = cv::aruco::CharucoBoard::create(columns, rows, 1.0f, 0.75f,
-                                                     cv::aruco::getPredefinedDictionary(0));
-  cv::Mat drawn;
-  board->draw({columns * kSquare, rows * kSquare}, drawn, 0);
-  return [=](double x, double y) {
-    const int i = int(std::floor(x * kSquare)), j = int(std::floor(y * kSquare));
-    if (i < 0 || j < 0 || i >= drawn.cols || j >= drawn.rows) return 0.9;
-    return drawn.at<std::uint8_t>(j, i) > 127 ? 0.9 : 0.05;
-  };
-}
-
-struct Truth {
-  Intrinsics k{640, 480, 612.5, 608.0, 0, 326.4, 231.7};
-  Distortion lens{DistortionModel::kBrown, {-0.12, 0.05, 0.001, -0.0008, 0, 0, 0, 0}};
-};
-
-/// The rays that a lens images at pixel corners, by inverting calib's own distort().
-std::vector<glm::dvec2> corner_rays(const Truth& truth) {
-  std::vector<glm::dvec2> rays;
-  for (int y = 0; y <= truth.k.height; ++y)
-    for (int x = 0; x <= truth.k.width; ++x) {
-      const glm::dvec2 target((x - 0.5 - truth.k.cx) / truth.k.fx,
-                              (y - 0.5 - truth.k.cy) / truth.k.fy);
-      glm::dvec2 q = target;
-      for (int step = 0; step < 12; ++step) q += target - distort(truth.lens, q);
-      rays.push_back(q);
-    }
-  return rays;
-}
-
-ColourImage photograph(const Truth& truth, const Pose& cam_from_board, const Pattern& pattern) {
-  const glm::dmat3 back = glm::transpose(cam_from_board.rotation);
-  const glm::dvec3 center = -(back * cam_from_board.translation);
-  constexpr int kSamples = 4;
-  static Truth known;
-  static std::vector<glm::dvec2> rays = corner_rays(known);
-  if (known.lens.coefficients != truth.lens.coefficients) {
-    known = truth;
-    rays = corner_rays(known);
-  }
-  return paint_srgb(truth.k.width, truth.k.height, [&](double x, double y) {
-    double sum = 0;
-    const glm::dvec2* r = &rays[std::size_t(y) * (truth.k.width + 1) + std::size_t(x)];
-    for (int i = 0; i < kSamples * kSamples; ++i) {
-      const double s = (i % kSamples + 0.5) / kSamples, t = (i / kSamples + 0.5) / kSamples;
-      const glm::dvec2 q = glm::mix(glm::mix(r[0], r[1], s),
-                                    glm::mix(r[truth.k.width + 1], r[truth.k.width + 2], s), t);
-      const glm::dvec3 d = back * glm::dvec3(q, 1);
-      const glm::dvec3 p = center - d * (center.z / d.z);
-      sum += pattern(p.x, p.y);
-    }
-    return glm::vec3(float(sum / (kSamples * kSamples)));
-  });
-}
-
-/// The board's middle before the camera, tilted in a different way in each of the views.
-Pose pose_of(int view, const glm::dvec2& middle, double distance) {
-  const double tilt = 22 + 6 * (view % 3), towards = 137.5 * view;
-  const glm::dvec3 axis(std::cos(towards * kRadian), std::sin(towards * kRadian), 0);
-  const glm::dquat q = glm::angleAxis(tilt * kRadian, axis) *
-                       glm::angleAxis(10 * kRadian * (view % 5 - 2), glm::dvec3(0, 0, 1));
-  Pose pose;
-  pose.rotation = glm::mat3_cast(q);
-  const glm::dvec3 aim(0.12 * distance * (view % 3 - 1), 0.08 * distance * (view % 4 - 1.5),
-                       distance);
-  pose.translation = aim - pose.rotation * glm::dvec3(middle, 0);
-  return pose;
-}
 
 void expect_truth(const Calibration& c, const Truth& truth) {
   testing::Test::RecordProperty("rms", std::to_string(c.all_rms));
@@ -122,16 +24,6 @@ void expect_truth(const Calibration& c, const Truth& truth) {
   EXPECT_NEAR(c.intrinsics.fy / truth.k.fy, 1, 1e-3);
   EXPECT_NEAR(c.intrinsics.cx, truth.k.cx, 0.3);
   EXPECT_NEAR(c.intrinsics.cy, truth.k.cy, 0.3);
-}
-
-std::vector<BoardView> photographs(const Truth& truth, const BoardSpec& spec,
-                                   const Pattern& pattern, const glm::dvec2& middle, int count,
-                                   double distance) {
-  std::vector<BoardView> views;
-  for (int i = 0; i < count; ++i)
-    views.push_back(find_board(photograph(truth, pose_of(i, middle, distance), pattern), spec,
-                               concat("view ", i)));
-  return views;
 }
 
 TEST(CalibrateBoard, ChessboardsGiveTheRenderedCamera) {
@@ -163,32 +55,28 @@ TEST(CalibrateBoard, CharucoBoardsGiveTheRenderedCamera) {
   expect_truth(c, truth);
 }
 
-TEST(CalibrateBoard, CirclesServeWithinTheirPerspectiveBias) {
-  Truth truth;
-  truth.lens = {};
+TEST(CalibrateBoard, CirclesGiveTheRenderedCamera) {
+  const Truth truth;
   const BoardSpec spec{BoardKind::kCircles, 8, 6, 1};
-  CalibrateOptions pinhole;
-  pinhole.lens = LensModel::kPinhole;
-  const Calibration c = calibrate(photographs(truth, spec, dots(8, 6), {3.5, 2.5}, 8, 11), pinhole);
-  EXPECT_NEAR(c.intrinsics.fx / truth.k.fx, 1, 5e-3);
-  EXPECT_NEAR(c.intrinsics.cx, truth.k.cx, 1.5);
-}
-
-/// Views whose pixels are computed, not detected.
-std::vector<BoardView> exact_views(const Truth& truth, const std::vector<Pose>& poses) {
-  std::vector<BoardView> views;
-  for (std::size_t n = 0; n < poses.size(); ++n) {
-    BoardView view{concat("view ", n), truth.k.width, truth.k.height, {}, {}};
-    for (int i = 0; i < 54; ++i) {
-      const glm::dvec3 point(i % 9, i / 9, 0);
-      const glm::dvec3 p = poses[n].rotation * point + poses[n].translation;
-      const glm::dvec2 q = distort(truth.lens, glm::dvec2(p) / p.z);
-      view.points.push_back(point);
-      view.pixels.emplace_back(truth.k.fx * q.x + truth.k.cx, truth.k.fy * q.y + truth.k.cy);
-    }
-    views.push_back(view);
+  std::vector<BoardView> views = photographs(truth, spec, dots(8, 6), {3.5, 2.5}, 12, 13);
+  double worst = 0;
+  int found = 0;
+  for (const BoardView& view : views) {
+    if (view.points.empty()) continue;
+    ++found;
+    EXPECT_NEAR(view.dot_radius, 0.28, 0.005) << view.name;
   }
-  return views;
+  EXPECT_GE(found, 10);
+  const Calibration c = calibrate(views, {});
+  expect_truth(c, truth);
+  EXPECT_LT(c.all_rms, 0.06);
+  // As points, the middles of the dots' pictures are off.
+  for (BoardView& view : views) view.dot_radius = 0;
+  const Calibration biased = calibrate(views, {});
+  worst = std::abs(biased.intrinsics.fx / truth.k.fx - 1);
+  RecordProperty("focal_without_correction", std::to_string(worst));
+  RecordProperty("rms_without_correction", std::to_string(biased.all_rms));
+  EXPECT_GT(biased.all_rms, c.all_rms);
 }
 
 TEST(CalibrateBoard, OutliersAreLeftOutAndNamed) {
@@ -250,6 +138,103 @@ TEST(CalibrateBoard, TurntablesAxisAndAngles) {
   }
   EXPECT_GT(c.turntable->direction_sigma, 0);
   EXPECT_LT(c.turntable->direction_sigma, 0.05);
+}
+
+/// Poses of a board on a table that stands at these degrees.
+std::vector<Pose> on_table(const Pose& at_zero, const glm::dvec3& axis, const glm::dvec3& point,
+                           const std::vector<double>& degrees) {
+  std::vector<Pose> poses;
+  for (const double angle : degrees) {
+    const glm::dmat3 turn = glm::mat3_cast(glm::angleAxis(angle * kRadian, axis));
+    poses.push_back({turn * at_zero.rotation, turn * (at_zero.translation - point) + point});
+  }
+  return poses;
+}
+
+class Turntable : public testing::Test {
+ protected:
+  const Truth truth_;
+  const glm::dvec3 axis_ = glm::normalize(glm::dvec3(0.1, -0.9, -0.4)), point_{0.5, 1, 13};
+  const Pose first_ = pose_of(1, {4, 2.5}, 13);
+
+  double axis_error(const Calibration& c) const {
+    return std::acos(std::min(1.0, glm::dot(c.turntable->direction, axis_))) / kRadian;
+  }
+  /// Distance of the axis found from the true one.
+  double point_error(const Calibration& c) const {
+    return glm::length(glm::cross(c.turntable->point - point_, axis_));
+  }
+};
+
+TEST_F(Turntable, GivenAnglesGiveTheRenderedAxis) {
+  const BoardSpec spec{BoardKind::kChess, 9, 6, 1};
+  CalibrateOptions options;
+  options.turntable = true;
+  for (int i = 0; i < 9; ++i) options.angles.push_back(100 + 7.5 * (i - 4));
+  std::vector<double> turned = options.angles;
+  for (double& angle : turned) angle -= 100;
+  std::vector<BoardView> views;
+  for (const Pose& pose : on_table(first_, axis_, point_, turned))
+    views.push_back(
+        find_board(photograph(truth_, pose, chess(9, 6)), spec, concat("view ", views.size())));
+  const Calibration c = calibrate(views, options);
+  ASSERT_TRUE(c.turntable);
+  RecordProperty("axis_degrees", std::to_string(axis_error(c)));
+  RecordProperty("axis_sigma", std::to_string(c.turntable->direction_sigma));
+  RecordProperty("axis_place", std::to_string(point_error(c)));
+  EXPECT_LT(axis_error(c), 0.02);
+  EXPECT_LT(point_error(c), 0.01);
+  EXPECT_GT(c.turntable->direction_sigma, 0);
+  EXPECT_GT(c.turntable->point_sigma, 0);
+  EXPECT_EQ(c.turntable->angle_sigma, 0);
+  for (int i = 0; i < 9; ++i) EXPECT_NEAR(c.turntable->angles[i], options.angles[i], 1e-9);
+}
+
+TEST_F(Turntable, AViewAtAnotherAngleThanStatedIsNamed) {
+  std::vector<double> angles;
+  for (int i = 0; i < 12; ++i) angles.push_back(10.0 * i - 55);
+  CalibrateOptions options;
+  options.turntable = true;
+  options.angles = angles;
+  angles[7] += 1.5;
+  const Calibration c =
+      calibrate(exact_views(truth_, on_table(first_, axis_, point_, angles)), options);
+  for (int i = 0; i < 12; ++i) EXPECT_EQ(c.left_out[i], i == 7) << i;
+  EXPECT_GT(c.rms[7], 1.5);
+  EXPECT_LT(axis_error(c), 1e-4);
+  EXPECT_LT(point_error(c), 1e-4);
+}
+
+TEST_F(Turntable, FullTurnsAtGivenAnglesAreUnderstood) {
+  // Only some of a full turn shows the board; what does is told by the others' angles.
+  const std::vector<double> angles = {-20, 5, 340, 361, 375, 25};
+  CalibrateOptions options;
+  options.turntable = true;
+  options.angles = angles;
+  const Calibration c =
+      calibrate(exact_views(truth_, on_table(first_, axis_, point_, angles)), options);
+  EXPECT_LT(axis_error(c), 1e-4);
+  EXPECT_LT(c.all_rms, 1e-4);
+}
+
+TEST_F(Turntable, WrongAnglesAreRefused) {
+  std::vector<double> angles;
+  for (int i = 0; i < 9; ++i) angles.push_back(10.0 * i - 40);
+  const std::vector<BoardView> views = exact_views(truth_, on_table(first_, axis_, point_, angles));
+  CalibrateOptions options;
+  options.turntable = true;
+  for (const double angle : angles) options.angles.push_back(1.2 * angle);
+  try {
+    calibrate(views, options);
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("the stated angles do not fit"));
+  }
+  options.angles.pop_back();
+  EXPECT_THROW(calibrate(views, options), UsageError);
+  options.angles = angles;
+  options.turntable = false;
+  EXPECT_THROW(calibrate(views, options), UsageError);
 }
 
 TEST(CalibrateBoard, TooFewBoardsAndMixedSizesAreRefused) {

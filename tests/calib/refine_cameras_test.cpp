@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -216,11 +217,89 @@ TEST_F(RefineCameras, FocalLengthAndPrincipalPointOnDemand) {
   synthesize(kTextured, R"({"intrinsics_error": 3})");
   const double before = error(cameras_of(scene_));
   RefineCamerasOptions options;
-  options.intrinsics = true;
+  options.intrinsics = SharedIntrinsics::kAll;
   const CameraRefinement found = refine_cameras(views_, options, progress_);
   EXPECT_LT(error(found.cameras), 0.25 * before);
   EXPECT_NE(found.focal_factor, 1);
   EXPECT_EQ(refine_cameras(views_, {}, progress_).focal_factor, 1);
+}
+
+TEST_F(RefineCameras, PatchesOfTheHullServeWhereTextureIsFaint) {
+  synthesize(R"({"contrast": 0.03, "chroma": 0})", R"({"pose_error": 2})");
+  const double before = error(cameras_of(scene_));
+  const double without = error(refine_cameras(views_, {}, progress_).cameras);
+  RefineCamerasOptions options;
+  options.box = scene_.box;
+  const CameraRefinement found = refine_cameras(views_, options, progress_);
+  RecordProperty("without", std::to_string(without));
+  RecordProperty("with", std::to_string(error(found.cameras)));
+  EXPECT_GT(found.patches, 50);
+  EXPECT_LT(error(found.cameras), 0.85 * without);
+  EXPECT_LT(error(found.cameras), 0.2 * before);
+}
+
+TEST_F(RefineCameras, PatchesStayAwayWhereFeaturesAreMany) {
+  synthesize(kTextured, R"({"pose_error": 1})");
+  RefineCamerasOptions options;
+  options.box = scene_.box;
+  options.few_features = 1;
+  EXPECT_EQ(refine_cameras(views_, options, progress_).patches, 0);
+}
+
+TEST_F(RefineCameras, GivenTracksServeAlone) {
+  synthesize(kTextured, R"({"pose_error": 2})");
+  // Tracks as another program would have found them: a pixel off, by the exact cameras.
+  RefineCamerasOptions options;
+  options.source = TrackSource::kGiven;
+  const std::vector<Track> found = find_tracks(views_, {}, progress_);
+  for (std::size_t i = 0; i < found.size(); i += 2) {
+    options.given.push_back(found[i]);
+    for (Observation& o : options.given.back().observations)
+      o.pixel += 0.5 * glm::dvec2(std::sin(7.0 * double(i + o.view)), std::cos(3.0 * double(i)));
+  }
+  const CameraRefinement refined = refine_cameras(views_, options, progress_);
+  EXPECT_EQ(refined.given_tracks, int(options.given.size()));
+  EXPECT_LE(refined.tracks, int(options.given.size()));
+  EXPECT_LT(error(refined.cameras), 0.15);
+  // Given ones are not found a second time.
+  options.source = TrackSource::kBoth;
+  const CameraRefinement both = refine_cameras(views_, options, progress_);
+  EXPECT_GT(both.tracks, refined.tracks);
+  EXPECT_LT(both.tracks, int(found.size() + options.given.size()));
+  options.source = TrackSource::kFound;
+  EXPECT_EQ(refine_cameras(views_, options, progress_).given_tracks, 0);
+}
+
+TEST_F(RefineCameras, PixelCentreAlone) {
+  synthesize(kTextured, "{}");
+  // The file's writer counted pixels from their corners.
+  for (View& view : views_) view.camera.intrinsics.cx += 0.5, view.camera.intrinsics.cy += 0.5;
+  RefineCamerasOptions options;
+  options.intrinsics = SharedIntrinsics::kPixelCentre;
+  const CameraRefinement found = refine_cameras(views_, options, progress_);
+  EXPECT_NEAR(found.principal.x, -0.5, 0.1);
+  EXPECT_NEAR(found.principal.y, -0.5, 0.1);
+  EXPECT_EQ(found.focal_factor, 1);
+}
+
+TEST_F(RefineCameras, WhatDoesNotAgreeBetterIsNotTaken) {
+  synthesize(kTextured, "{}");
+  // Given tracks of which all lie: nothing held out may become better by following them.
+  RefineCamerasOptions options;
+  options.source = TrackSource::kGiven;
+  for (int i = 0; i < 200; ++i) {
+    Track track;
+    for (int v = 0; v < 3; ++v)
+      track.observations.push_back(
+          {(i + v) % int(views_.size()), {100 + (i * 37 + v * 11) % 120, 60 + (i * 53) % 110}});
+    std::sort(track.observations.begin(), track.observations.end(),
+              [](const auto& a, const auto& b) { return a.view < b.view; });
+    options.given.push_back(track);
+  }
+  const CameraRefinement found = refine_cameras(views_, options, progress_);
+  EXPECT_LT(error(found.cameras), 0.3);
+  EXPECT_TRUE(!found.changed || found.all.after < found.all.before ||
+              found.tangents_after < found.tangents_before);
 }
 
 TEST_F(RefineCameras, NeedsThreeViews) {

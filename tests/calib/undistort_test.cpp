@@ -208,6 +208,90 @@ TEST(Undistort, ResamplesInLinearLight) {
   EXPECT_NEAR(sum / (80 * 160), 0.5, 0.01);
 }
 
+TEST(Undistort, PointsComeBack) {
+  for (const Distortion& d : {kBarrel, kPincushion, kRational, kFisheye})
+    for (double y = -0.4; y <= 0.4; y += 0.1)
+      for (double x = -0.5; x <= 0.5; x += 0.1) {
+        const auto back = undistort_point(d, distort(d, {x, y}));
+        ASSERT_TRUE(back);
+        EXPECT_LT(glm::distance(*back, {x, y}), 1e-9);
+      }
+  // r (1 - 0.6 r^2) reaches 0.497 at most.
+  EXPECT_FALSE(undistort_point({DistortionModel::kBrown, {-0.6}}, {0.6, 0}));
+}
+
+/// What convert --undistort makes of a view.
+TEST(Rectify, FrameShowsAllThatThePhotographShows) {
+  for (const Distortion& d : {kBarrel, kPincushion, kRational, Distortion{}}) {
+    const Intrinsics k = intrinsics(260);
+    View view;
+    view.camera.intrinsics = k;
+    view.image = paint_srgb(320, 240, [](double, double) { return glm::vec3(0.25f); });
+    view.mask = paint_mask(320, 240, [](double, double) { return 0.0; });
+    rectify(d, 4.0, view);
+    const Intrinsics& out = view.camera.intrinsics;
+    // A camera that any format can express, as finely sampled as the finer axis.
+    EXPECT_EQ(out.skew, 0);
+    EXPECT_EQ(out.fx, out.fy);
+    EXPECT_EQ(out.fx, std::max(k.fx, k.fy));
+    EXPECT_EQ(out.cx, 0.5 * (out.width - 1));
+    EXPECT_EQ(out.cy, 0.5 * (out.height - 1));
+    EXPECT_EQ(out.width, view.image.width);
+    EXPECT_EQ(out.height, view.mask.height);
+    // The photograph's border and what is within are on the frame and known, what is without not.
+    int known = 0;
+    for (int v = 0; v < out.height; v += 3)
+      for (int u = 0; u < out.width; u += 3) {
+        const glm::dvec2 source = to_pixel(k, distort(d, to_plane(out, {u, v})));
+        const double inside =
+            std::min({source.x + 0.5, source.y + 0.5, 319.5 - source.x, 239.5 - source.y});
+        const double alpha = view.image.linear(u, v).a;
+        if (inside > 1e-6 && glm::length(to_plane(out, {u, v})) < 0.9) {
+          ASSERT_EQ(alpha, 1) << u << "," << v;
+        }
+        if (inside < -1e-6) {
+          ASSERT_EQ(alpha, 0) << u << "," << v;
+        }
+        // Unknown is not background.
+        ASSERT_EQ(view.mask.coverage[std::size_t(v) * out.width + std::size_t(u)],
+                  alpha == 1 ? 0 : 255);
+        known += alpha == 1;
+      }
+    EXPECT_GT(known, 320 * 240 / 9 * 9 / 10);
+    for (int i = 0; i <= 40; ++i)
+      for (const glm::dvec2 border : {glm::dvec2(8 * i - 0.5, 0), glm::dvec2(8 * i - 0.5, 239),
+                                      glm::dvec2(0, 6 * i - 0.5), glm::dvec2(319, 6 * i - 0.5)})
+        EXPECT_TRUE(Camera{out}.on_image(to_pixel(out, ideal_of(d, to_plane(k, border)))));
+  }
+}
+
+TEST(Rectify, KeepsFineDetail) {
+  // Stripes of four pixels keep most of their contrast where the picture is resampled once.
+  const Intrinsics k = intrinsics(260);
+  View view;
+  view.camera.intrinsics = k;
+  view.image = paint_half(320, 240, [](double x, double) {
+    return glm::vec3(float(0.5 + 0.4 * std::sin(x * 1.5707963)));
+  });
+  rectify(kBarrel, 2.0, view);
+  double low = 1, high = 0;
+  const Intrinsics& out = view.camera.intrinsics;
+  for (int x = out.width / 2 - 20; x < out.width / 2 + 20; ++x) {
+    const double value = view.image.linear(x, out.height / 2).g;
+    low = std::min(low, value), high = std::max(high, value);
+  }
+  EXPECT_GT(high - low, 0.7);
+}
+
+TEST(Rectify, LeavesCentredSquarePinholesAlone) {
+  View view;
+  view.camera.intrinsics = {320, 240, 260, 260, 0, 159.5, 119.5};
+  view.image = paint_srgb(320, 240, [](double x, double) { return glm::vec3(float(x / 320)); });
+  const std::uint8_t* bytes = view.image.bytes.data();
+  rectify({}, 2.0, view);
+  EXPECT_EQ(view.image.bytes.data(), bytes);
+}
+
 TEST(Undistort, LeavesIdealViewsAlone) {
   View view;
   view.camera.intrinsics = intrinsics(260);

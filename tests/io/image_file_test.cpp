@@ -220,6 +220,29 @@ TEST_F(ImageFile, AbsurdSizesAreRefused) {
   EXPECT_THAT(error_of([&] { read_mask(path); }), HasSubstr("60000 x 60000"));
 }
 
+TEST_F(ImageFile, TheSignatureNotTheNameChoosesTheDecoder) {
+  write_png(folder_ / "a.png", 1, 1, 3, std::vector<std::uint8_t>{4, 5, 6});
+  fs::rename(folder_ / "a.png", folder_ / "a.jpg");
+  EXPECT_THAT(read_image(folder_ / "a.jpg").bytes, ElementsAre(4, 5, 6, 255));
+  const fs::path gif = put("b.png", "GIF89a\1\0\1\0");
+  EXPECT_THAT(error_of([&] { read_image(gif); }), HasSubstr("beginning is none that is known"));
+}
+
+TEST_F(ImageFile, OpenExrAttributesOfImpossibleLengthAreRefused) {
+  const fs::path path = folder_ / "a.exr";
+  write_raw(path, spec_of(2, 2, 3, OIIO::TypeDesc::FLOAT), std::vector<float>(12));
+  std::ifstream in(path, std::ios::binary);
+  const std::string whole{std::istreambuf_iterator<char>(in), {}};
+  const std::size_t at = whole.find("lineOrder") + 20;  // behind the name and the type
+  for (const auto& [length, message] :
+       {std::pair('\x7f', "no end"), std::pair('\0', "another length")}) {
+    std::string damaged = whole;
+    damaged[at + 2] = length;
+    damaged[at] = length == 0 ? 4 : damaged[at];
+    EXPECT_THAT(error_of([&] { read_image(put("a.exr", damaged)); }), HasSubstr(message));
+  }
+}
+
 TEST_F(ImageFile, ThreadsDecodeSideBySide) {
   std::vector<std::uint16_t> values(64 * 64 * 3);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::uint16_t(i * 5);

@@ -1,4 +1,4 @@
-// Private to module calib.
+// The median.
 #pragma once
 
 #include <algorithm>

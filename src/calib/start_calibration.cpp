@@ -1,0 +1,82 @@
+// Based on: Z. Zhang, "A flexible new technique for camera calibration", 2000 [Zhang00].
+#include <opencv2/calib3d.hpp>
+
+#include "calib/board_model.h"
+#include "core/error.h"
+
+namespace photohull {
+namespace {
+
+using Points = std::vector<std::vector<cv::Point3f>>;
+using Pixels = std::vector<std::vector<cv::Point2f>>;
+
+struct Found {
+  cv::Mat k, d;
+  std::vector<cv::Mat> turns, moves;
+};
+
+/// OpenCV's own start, and where that leads nowhere, a pinhole with Brown's poses.
+Found start_fisheye(const Points& points, const Pixels& pixels, const cv::Size& size) {
+  Found f;
+  bool good = true;
+  try {
+    cv::fisheye::calibrate(points, pixels, size, f.k, f.d, f.turns, f.moves,
+                           cv::fisheye::CALIB_RECOMPUTE_EXTRINSIC | cv::fisheye::CALIB_FIX_SKEW);
+    for (const cv::Mat& move : f.moves) good = good && move.at<double>(2) > 0;
+  } catch (const cv::Exception&) {
+    good = false;
+  }
+  if (good && cv::checkRange(f.k) && cv::checkRange(f.d)) return f;
+  cv::calibrateCamera(points, pixels, size, f.k, f.d, f.turns, f.moves);
+  f.d = cv::Mat::zeros(1, 4, CV_64F);
+  return f;
+}
+
+int flags_of(LensModel lens) {
+  if (lens == LensModel::kRational) return cv::CALIB_RATIONAL_MODEL;
+  if (lens == LensModel::kBrown) return 0;
+  return cv::CALIB_FIX_K1 | cv::CALIB_FIX_K2 | cv::CALIB_FIX_K3 | cv::CALIB_ZERO_TANGENT_DIST;
+}
+
+}  // namespace
+
+BoardStart start_calibration(const std::vector<BoardView>& views,
+                             const std::vector<std::size_t>& used, LensModel model) {
+  Points points;
+  Pixels pixels;
+  for (const std::size_t i : used) {
+    points.emplace_back();
+    pixels.emplace_back();
+    for (std::size_t k = 0; k < views[i].points.size(); ++k) {
+      const glm::dvec3& p = views[i].points[k];
+      points.back().emplace_back(float(p.x), float(p.y), float(p.z));
+      pixels.back().emplace_back(float(views[i].pixels[k].x), float(views[i].pixels[k].y));
+    }
+  }
+  const cv::Size size(views[used[0]].width, views[used[0]].height);
+  Found f;
+  try {
+    if (model == LensModel::kFisheye)
+      f = start_fisheye(points, pixels, size);
+    else
+      cv::calibrateCamera(points, pixels, size, f.k, f.d, f.turns, f.moves, flags_of(model));
+  } catch (const cv::Exception& failure) {
+    throw Error(concat("the pictures do not determine the camera (", failure.err,
+                       "); photograph the board from more sides, tilted"));
+  }
+  f.k.convertTo(f.k, CV_64F);
+  f.d.convertTo(f.d, CV_64F);
+  BoardStart start;
+  start.lens = {f.k.at<double>(0, 0), f.k.at<double>(1, 1), f.k.at<double>(0, 2),
+                f.k.at<double>(1, 2)};
+  for (int i = 0; i < std::min(int(f.d.total()), 8); ++i) start.lens[4 + i] = f.d.at<double>(i);
+  start.poses.resize(views.size());
+  for (std::size_t n = 0; n < used.size(); ++n)
+    for (int i = 0; i < 3; ++i) {
+      start.poses[used[n]][i] = f.turns[n].at<double>(i);
+      start.poses[used[n]][3 + i] = f.moves[n].at<double>(i);
+    }
+  return start;
+}
+
+}  // namespace photohull
