@@ -3,14 +3,16 @@
 #include <cmath>
 #include <functional>
 #include <glm/gtc/quaternion.hpp>
+#include <numeric>
 
+#include "core/box.h"
 #include "core/error.h"
-#include "synth/random.h"
 
 namespace photohull::synth {
 namespace {
 
 using Cameras = std::vector<LensCamera>;
+constexpr std::uint64_t kWrongViews = 0x3207;
 
 /// The distance at which the points lie, on average.
 double mean_depth(const LensCamera& lens, const std::vector<glm::dvec3>& points) {
@@ -68,8 +70,11 @@ double reprojection_error(const Cameras& a, const Cameras& b,
   return count ? std::sqrt(sum / double(count)) : 0;
 }
 
-Cameras degrade_cameras(const Cameras& cameras, const DegradationSpec& spec, std::uint64_t seed,
-                        const std::vector<glm::dvec3>& points) {
+namespace {
+
+/// Off in their poses and intrinsics by the sizes asked for.
+Cameras miscalibrated(const Cameras& cameras, const DegradationSpec& spec, std::uint64_t seed,
+                      const std::vector<glm::dvec3>& points) {
   Cameras posed = cameras;
   if (spec.pose_error > 0)
     posed = scaled(cameras, points, spec.pose_error, [&](double scale) {
@@ -97,6 +102,57 @@ Cameras degrade_cameras(const Cameras& cameras, const DegradationSpec& spec, std
   for (std::size_t i = 0; i < posed.size(); ++i)
     posed[i].camera.intrinsics = off[i].camera.intrinsics;
   return posed;
+}
+
+/// Views chosen at random, their poses those of a camera turned about the middle of the points
+/// around an axis at random: they still look at the object.
+void turn_away(Cameras& cameras, const DegradationSpec& spec, std::uint64_t seed,
+               const std::vector<glm::dvec3>& points) {
+  const auto count = std::size_t(std::lround(spec.wrong_views * double(cameras.size())));
+  const std::vector<std::size_t> order = random_order(cameras.size(), Random(seed, kWrongViews));
+  Box box{points.front(), points.front()};
+  for (const glm::dvec3& p : points) box.min = min(box.min, p), box.max = max(box.max, p);
+  const glm::dvec3 middle = box.center();
+  for (std::size_t i = 0; i < count; ++i) {
+    Random random(seed, kWrongViews, order[i] + 1);
+    glm::dvec3 axis(0, 0, 1);
+    for (int tries = 0; tries < 100; ++tries) {
+      axis = {random.normal(), random.normal(), random.normal()};
+      if (length(axis) > 0.1) break;
+    }
+    const glm::dmat3 turn =
+        glm::mat3_cast(glm::angleAxis(glm::radians(spec.wrong_turn), normalize(axis)));
+    Pose& pose = cameras[order[i]].camera.cam_from_world;
+    pose.translation += pose.rotation * (middle - turn * middle);
+    pose.rotation = pose.rotation * turn;
+  }
+}
+
+}  // namespace
+
+std::vector<std::size_t> random_order(std::size_t count, Random random) {
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  for (std::size_t i = count; i > 1; --i)
+    std::swap(order[i - 1], order[std::size_t(random.uniform() * double(i))]);
+  return order;
+}
+
+Cameras degrade_cameras(const Cameras& cameras, const DegradationSpec& spec, std::uint64_t seed,
+                        const std::vector<glm::dvec3>& points) {
+  Cameras written = miscalibrated(cameras, spec, seed, points);
+  if (spec.wrong_views > 0) turn_away(written, spec, seed, points);
+  for (LensCamera& lens : written) {
+    lens.camera.intrinsics.cx += spec.pixel_shift.x;
+    lens.camera.intrinsics.cy += spec.pixel_shift.y;
+    if (spec.ignore_distortion) lens.distortion = {};
+  }
+  return written;
+}
+
+bool cameras_are_off(const DegradationSpec& spec) {
+  return spec.pose_error > 0 || spec.intrinsics_error > 0 || spec.wrong_views > 0 ||
+         length(spec.pixel_shift) > 0 || spec.ignore_distortion;
 }
 
 }  // namespace photohull::synth

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "synth/lens.h"
+#include "synth/random.h"
 #include "synth/spec.h"
 
 namespace photohull::synth {
@@ -15,9 +16,16 @@ double reprojection_error(const std::vector<LensCamera>& a, const std::vector<Le
 
 /// The cameras with errors of exactly the asked sizes over the points: poses turned and moved at
 /// random, each view by itself; focal length and principal point off by the same amounts in all
-/// views. With both, each is of its size by itself.
+/// views; with both, each is of its size by itself. Then a share of the views is turned about the
+/// middle of the points, all principal points are shifted, and distortion is forgotten.
 std::vector<LensCamera> degrade_cameras(const std::vector<LensCamera>& cameras,
                                         const DegradationSpec& spec, std::uint64_t seed,
                                         const std::vector<glm::dvec3>& points);
+
+/// Do the written cameras differ from the exact ones?
+bool cameras_are_off(const DegradationSpec& spec);
+
+/// 0 to count - 1, shuffled.
+std::vector<std::size_t> random_order(std::size_t count, Random random);
 
 }  // namespace photohull::synth

@@ -13,7 +13,7 @@
 namespace photohull::synth {
 namespace {
 
-enum Stream : std::uint64_t { kGains = 0x6a105, kNoise = 0x20153 };
+enum Stream : std::uint64_t { kGains = 0x6a105, kNoise = 0x20153, kCodeNoise = 0x20154 };
 
 std::vector<float> gaussian(double sigma) {
   const int reach = std::max(1, int(std::ceil(4 * sigma)));
@@ -36,14 +36,6 @@ void vignette(std::vector<glm::vec3>& image, int width, int height, double stren
     }
 }
 
-glm::vec3 gains(const DegradationSpec& spec, std::uint64_t seed, std::size_t view) {
-  Random random(seed, kGains, view);
-  const double stops = spec.exposure * random.normal();
-  const double red = spec.white_balance * random.normal();
-  const double blue = spec.white_balance * random.normal();
-  return {float(std::exp2(stops + red)), float(std::exp2(stops)), float(std::exp2(stops + blue))};
-}
-
 /// Linear light to 8-bit sRGB by the thresholds between the codes.
 std::uint8_t encode(float linear) {
   static const std::vector<float> thresholds = [] {
@@ -56,6 +48,14 @@ std::uint8_t encode(float linear) {
 }
 
 }  // namespace
+
+glm::vec3 view_gain(const DegradationSpec& spec, std::uint64_t seed, std::size_t view) {
+  Random random(seed, kGains, view);
+  const double stops = spec.exposure * random.normal();
+  const double red = spec.white_balance * random.normal();
+  const double blue = spec.white_balance * random.normal();
+  return {float(std::exp2(stops + red)), float(std::exp2(stops)), float(std::exp2(stops + blue))};
+}
 
 void blur(std::vector<glm::vec3>& image, int width, int height, double sigma) {
   if (sigma <= 0) return;
@@ -106,27 +106,62 @@ std::vector<std::uint8_t> through_jpeg(std::span<const std::uint8_t> rgb, int wi
   return decoded;
 }
 
-std::vector<std::uint8_t> expose(const Picture& picture, const DegradationSpec& spec,
-                                 std::uint64_t seed, std::size_t view) {
+namespace {
+
+/// Noise of the stored codes, in linear light again.
+float add_code_noise(float light, double sigma, Random& random) {
+  const double code = srgb_from_linear(std::clamp(light, 0.0f, 1.0f)) + sigma * random.normal();
+  return float(linear_from_srgb(std::clamp(code, 0.0, 1.0)));
+}
+
+/// What the sensor reads, in linear light, 1 = white.
+std::vector<glm::vec3> develop(const Picture& picture, const DegradationSpec& spec,
+                               std::uint64_t seed, std::size_t view, bool again) {
   std::vector<glm::vec3> image = picture.colour;
   if (spec.vignetting > 0) vignette(image, picture.width, picture.height, spec.vignetting);
   blur(image, picture.width, picture.height, spec.blur);
-  const glm::vec3 gain = gains(spec, seed, view);
+  const glm::vec3 gain = view_gain(spec, seed, view);
   const bool noisy = spec.photon_noise > 0 || spec.read_noise > 0;
-  std::vector<std::uint8_t> bytes(image.size() * 3);
   for (std::size_t i = 0; i < image.size(); ++i) {
-    glm::vec3 light = image[i] * gain;
+    glm::vec3& light = image[i];
+    light *= gain;
     if (noisy) {
-      Random random(seed ^ mix_bits(kNoise), view, i);
+      Random random(seed ^ mix_bits(kNoise), view, again ? i + image.size() : i);
       for (int c = 0; c < 3; ++c) {
         const double variance = spec.read_noise * spec.read_noise +
                                 spec.photon_noise * spec.photon_noise * std::max(0.0f, light[c]);
         light[c] += float(std::sqrt(variance) * random.normal());
       }
     }
-    for (int c = 0; c < 3; ++c) bytes[3 * i + std::size_t(c)] = encode(light[c]);
+    if (spec.code_noise > 0) {
+      Random random(seed ^ mix_bits(kCodeNoise), view, again ? i + image.size() : i);
+      for (int c = 0; c < 3; ++c)
+        light[c] = add_code_noise(light[c], spec.code_noise / 255, random);
+    }
   }
+  return image;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> expose(const Picture& picture, const DegradationSpec& spec,
+                                 std::uint64_t seed, std::size_t view, bool again) {
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(picture.colour.size() * 3);
+  for (const glm::vec3& light : develop(picture, spec, seed, view, again))
+    for (int c = 0; c < 3; ++c) bytes.push_back(encode(light[c]));
   return spec.jpeg > 0 ? through_jpeg(bytes, picture.width, picture.height, spec.jpeg) : bytes;
+}
+
+std::vector<std::uint16_t> expose_16_bits(const Picture& picture, const DegradationSpec& spec,
+                                          std::uint64_t seed, std::size_t view) {
+  std::vector<std::uint16_t> codes;
+  codes.reserve(picture.colour.size() * 3);
+  for (const glm::vec3& light : develop(picture, spec, seed, view, false))
+    for (int c = 0; c < 3; ++c)
+      codes.push_back(
+          std::uint16_t(std::lround(65535 * srgb_from_linear(std::clamp(light[c], 0.0f, 1.0f)))));
+  return codes;
 }
 
 }  // namespace photohull::synth

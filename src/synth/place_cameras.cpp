@@ -18,6 +18,14 @@ glm::dvec3 direction(double azimuth, double elevation) {
           std::sin(elevation)};
 }
 
+/// Of a ring's view, in full turns; crowding gathers the views after the first one and leaves a gap
+/// before it.
+double ring_turn(const CameraSpec& c, const Ring& ring, int view) {
+  const double even = (view + ring.phase) / ring.count;
+  const double whole = std::floor(even);
+  return whole + std::pow(even - whole, c.crowding);
+}
+
 /// Unit vectors from the middle of the box to the cameras.
 std::vector<glm::dvec3> directions(const CameraSpec& c) {
   std::vector<glm::dvec3> all;
@@ -25,8 +33,8 @@ std::vector<glm::dvec3> directions(const CameraSpec& c) {
   if (c.layout == "rings")
     for (const Ring& ring : c.rings)
       for (int i = 0; i < ring.count; ++i)
-        all.push_back(direction(azimuth + 2 * kPi * (i + ring.phase) / ring.count,
-                                glm::radians(ring.elevation)));
+        all.push_back(
+            direction(azimuth + 2 * kPi * ring_turn(c, ring, i), glm::radians(ring.elevation)));
   if (c.layout == "hemisphere") {
     const double low = std::sin(glm::radians(c.lowest)), high = std::sin(glm::radians(c.highest));
     for (int i = 0; i < c.count; ++i)

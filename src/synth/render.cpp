@@ -170,4 +170,18 @@ Picture render(const Surface& surface, const Shading& shading, const LensCamera&
   return picture;
 }
 
+Picture render_background(const Shading& shading, const LensCamera& lens, std::size_t view) {
+  Picture picture;
+  picture.width = lens.camera.intrinsics.width, picture.height = lens.camera.intrinsics.height;
+  const glm::dmat3 to_world = transpose(lens.camera.cam_from_world.rotation);
+  const glm::dvec3 eye = lens.camera.center();
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x) {
+      const auto p = lens.undistorted({x, y});
+      if (!p) throw Error("degradations: the lens folds over within the frame; lower k1, k2");
+      picture.colour.push_back(shading.background({eye, to_world * glm::dvec3(*p, 1.0)}, view));
+    }
+  return picture;
+}
+
 }  // namespace photohull::synth

@@ -25,4 +25,7 @@ Picture render(
     const Surface& surface, const Shading& shading, const LensCamera& lens, std::size_t view,
     int samples, std::uint64_t seed, const std::function<void()>& row_done = [] {});
 
+/// The same view without the object: one look at the background a pixel.
+Picture render_background(const Shading& shading, const LensCamera& lens, std::size_t view);
+
 }  // namespace photohull::synth

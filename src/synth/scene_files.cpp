@@ -21,6 +21,7 @@ namespace {
 constexpr const char* kMark = "INCOMPLETE";
 constexpr const char* kParts[][2] = {
     {"images", ".png"}, {"masks", ".png"}, {"depth", ".exr"}, {"normals", ".exr"}};
+constexpr const char* kPlates = "plates";
 
 /// View names of the synthesized scene that a JSON file describes; nothing where it does not.
 std::optional<std::vector<std::string>> described_views(const fs::path& file) {
@@ -64,9 +65,11 @@ void clear_old_scene(const fs::path& folder) {
     throw Error(concat(folder.string(),
                        ": the folder holds other files than a synthesized scene; nothing was "
                        "written, choose an empty or a new folder with --out"));
-  for (const std::string& name : *views)
+  for (const std::string& name : *views) {
+    fs::remove(folder / kPlates / (name + ".png"), failure);
     for (const auto& [part, extension] : kParts)
       fs::remove(folder / part / (name + extension), failure);
+  }
 }
 
 std::string number(double value) {
@@ -81,6 +84,20 @@ void append(std::string& out, const T& value) {
   out.append(bytes, sizeof value);
 }
 
+/// Codes pixels in memory, since OpenImageIO may take a full disk for a success.
+void write_coded(const std::string& format, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
+                 const void* pixels, AtomicFile& file) {
+  std::vector<unsigned char> coded;
+  OIIO::Filesystem::IOVecOutput memory(coded);
+  const auto output = OIIO::ImageOutput::create(format);
+  if (!output) throw Error(format + " files cannot be written: OpenImageIO lacks its plug-in");
+  output->threads(1);
+  if (!output->set_ioproxy(&memory) || !output->open("memory." + format, spec) ||
+      !output->write_image(type, pixels) || !output->close())
+    throw Error(concat(file.target().string(), ": cannot be coded (", output->geterror(), ")"));
+  file.write(coded.data(), coded.size());
+}
+
 }  // namespace
 
 void write_exr(const fs::path& path, int width, int height, int channels, const float* pixels) {
@@ -89,35 +106,53 @@ void write_exr(const fs::path& path, int width, int height, int channels, const 
   if (channels == 1) spec.channelnames = {"Z"};
   spec.attribute("compression", "zips");
   spec.attribute("DateTime", "1970:01:01 00:00:00");  // else the time now: other bytes every time
-  std::vector<unsigned char> coded;
-  OIIO::Filesystem::IOVecOutput memory(coded);
-  const auto output = OIIO::ImageOutput::create("openexr");
-  if (!output) throw Error("OpenEXR files cannot be written: OpenImageIO lacks its plug-in");
-  output->threads(1);
-  if (!output->set_ioproxy(&memory) || !output->open("memory.exr", spec) ||
-      !output->write_image(OIIO::TypeDesc::FLOAT, pixels) || !output->close())
-    throw Error(concat(path.string(), ": cannot be coded (", output->geterror(), ")"));
-  file.write(coded.data(), coded.size());
+  write_coded("exr", spec, OIIO::TypeDesc::FLOAT, pixels, file);
   file.commit();
 }
 
-SceneFiles::SceneFiles(const fs::path& folder, const std::vector<std::string>& views)
-    : folder_(folder) {
+SceneFiles::SceneFiles(const fs::path& folder, const std::vector<std::string>& views,
+                       const ImageSpec& image)
+    : folder_(folder), masks_(image.masks) {
   clear_old_scene(folder);
   make_folder(folder);
   const nlohmann::json mark = {{"result", {{"writer", "photohull synthesize"}, {"views", views}}}};
   write_atomically(folder / kMark, mark.dump() + "\n");
   std::error_code ignored;
   fs::remove(folder / "spec.json", ignored);
-  for (const auto& [part, extension] : kParts) make_folder(folder / part);
+  for (const auto& [part, extension] : kParts) {
+    const bool wanted = std::string_view(part) == "images" ||
+                        (std::string_view(part) == "masks" ? image.masks : image.maps);
+    if (wanted)
+      make_folder(folder / part);
+    else  // an older scene's, empty by now unless others put files there
+      fs::remove(folder / part, ignored);
+  }
 }
 
-void SceneFiles::write_picture(const std::string& view, const Picture& picture,
+void SceneFiles::write_picture(const std::string& view, int width, int height,
                                const std::vector<std::uint8_t>& rgb) const {
+  io::write_png(folder_ / "images" / (view + ".png"), width, height, 3, rgb);
+}
+
+void SceneFiles::write_picture(const std::string& view, int width, int height,
+                               const std::vector<std::uint16_t>& rgb) const {
+  const fs::path path = folder_ / "images" / (view + ".png");
+  AtomicFile file(path);
+  OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT16);
+  write_coded("png", spec, OIIO::TypeDesc::UINT16, rgb.data(), file);
+  file.commit();
+}
+
+void SceneFiles::write_maps(const std::string& view, const Picture& picture) const {
   const int w = picture.width, h = picture.height;
-  io::write_png(folder_ / "images" / (view + ".png"), w, h, 3, rgb);
   write_exr(folder_ / "depth" / (view + ".exr"), w, h, 1, picture.depth.data());
   write_exr(folder_ / "normals" / (view + ".exr"), w, h, 3, &picture.normal.data()->x);
+}
+
+void SceneFiles::write_plate(const std::string& view, int width, int height,
+                             const std::vector<std::uint8_t>& rgb) const {
+  make_folder(folder_ / kPlates);
+  io::write_png(folder_ / kPlates / (view + ".png"), width, height, 3, rgb);
 }
 
 void SceneFiles::write_mask(const std::string& view, const Mask& mask) const {
@@ -149,8 +184,8 @@ void SceneFiles::write_cameras(const std::vector<std::string>& views,
     scene.box = box;
     for (std::size_t i = 0; i < views.size(); ++i)
       scene.views.push_back({views[i] + ".png", folder_ / "images" / (views[i] + ".png"),
-                             folder_ / "masks" / (views[i] + ".png"), cameras[i].camera,
-                             cameras[i].distortion});
+                             masks_ ? folder_ / "masks" / (views[i] + ".png") : fs::path(),
+                             cameras[i].camera, cameras[i].distortion});
     return scene;
   };
   const Scene scene = scene_of(written);

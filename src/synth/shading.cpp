@@ -81,13 +81,39 @@ void Shading::add_noise_texture(std::span<Point> points) const {
   }
 }
 
+/// What lies below the surface shines through: the pattern, which fills space, at haze_depth along
+/// the line of sight, so that it moves against the surface from view to view.
+void Shading::add_haze(std::span<Point> points) const {
+  const MaterialSpec& m = spec_.material;
+  thread_local std::vector<Point> below;
+  below.assign(points.begin(), points.end());
+  for (Point& p : below) {
+    p.albedo = glm::vec3(1);
+    p.position -= m.haze_depth * surface_.diagonal * glm::dvec3(p.to_eye);
+  }
+  std::vector<glm::vec3> plain;
+  for (Point& p : points) plain.push_back(p.albedo), p.albedo = glm::vec3(1);
+  add_pattern(points);
+  add_pattern(below);
+  const float share = float(m.haze);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points[i].albedo = plain[i] * mix(points[i].albedo, below[i].albedo, share);
+}
+
+void Shading::add_pattern(std::span<Point> points) const {
+  if (spec_.material.pattern == "checker")
+    add_checker(points);
+  else
+    add_noise_texture(points);
+}
+
 void Shading::set_albedo(std::span<Point> points, std::span<const Hit> hits) const {
   for (Point& point : points) point.albedo = base(surface_.patches[hits[point.index].triangle]);
   if (spec_.material.contrast > 0) {
-    if (spec_.material.pattern == "checker")
-      add_checker(points);
+    if (spec_.material.haze > 0)
+      add_haze(points);
     else
-      add_noise_texture(points);
+      add_pattern(points);
   }
   for (Point& point : points) point.albedo = min(point.albedo, glm::vec3(1));
 }

@@ -34,6 +34,8 @@ class Shading {
   glm::vec3 base(std::uint32_t patch) const;
   void add_checker(std::span<Point> points) const;
   void add_noise_texture(std::span<Point> points) const;
+  void add_pattern(std::span<Point> points) const;
+  void add_haze(std::span<Point> points) const;
   void set_albedo(std::span<Point> points, std::span<const Hit> hits) const;
   glm::vec3 highlight(const glm::vec3& normal, const glm::vec3& to_eye,
                       const glm::vec3& to_light) const;

@@ -28,7 +28,7 @@ const std::vector<Shape>& shapes() {
        "a deep bowl, open to the top",
        {{"radius", 1.0, 0.01, 100, "at the rim, outside"},
         {"height", 1.3, 0.01, 100, "of the rim above the ground"},
-        {"thickness", 0.12, 0.01, 0.5, "of the wall as a share of the radius"}},
+        {"thickness", 0.12, 0.005, 0.5, "of the wall as a share of the radius"}},
        make_bowl},
       {"folds",
        "a twisted body with deep folds that lean over and hide their own ground",

@@ -87,6 +87,10 @@ void check_together(const Spec& s, const std::string& source) {
   for (std::size_t i = 0; i < s.light.directional.size(); ++i)
     if (length(s.light.directional[i].direction) < 1e-9)
       fail(concat("light.directional[", i, "].direction: must not be zero"));
+  if (s.image.bits != 8 && s.image.bits != 16)
+    fail(concat("image.bits: expected 8 or 16, found ", s.image.bits));
+  if (s.image.bits == 16 && s.degradations.jpeg > 0)
+    fail("image.bits: JPEG has 8 bits; set degradations.jpeg to 0 or image.bits to 8");
   const int views = view_count(s.cameras);
   if (views > kMostViews)
     fail(concat("cameras: ", views, " views are more than ", kMostViews, "; ask for fewer"));

@@ -34,6 +34,8 @@ struct MaterialSpec {
   bool faces = false;                ///< another base colour for every plane
   double gloss = 0;                  ///< strength of the highlights
   double roughness = 0.25;           ///< of the highlights
+  double haze = 0;                   ///< share of the colour that comes from below the surface
+  double haze_depth = 0.03;          ///< along the line of sight, in diagonals
 };
 
 struct DirectionalLight {
@@ -59,11 +61,15 @@ struct BackgroundSpec {
   double size = 0.35;           ///< of the clutter's patches as a share of the diagonal
   double distance = 2.5;        ///< of the clutter: radius of its sphere in camera distances
   bool moving = false;          ///< other clutter in every view
+  bool plates = false;          ///< write photographs of the background without the object, too
 };
 
 struct ImageSpec {
   int width = 640, height = 480;
-  int samples = 4;  ///< n x n rays a pixel, stratified
+  int samples = 4;    ///< n x n rays a pixel, stratified
+  int bits = 8;       ///< of the pictures: 8 or 16
+  bool maps = true;   ///< write depth/ and normals/
+  bool masks = true;  ///< write masks/
 };
 
 struct Ring {
@@ -79,6 +85,7 @@ struct CameraSpec {
   double lowest = 0, highest = 80;      ///< hemisphere: degrees of elevation
   double arc = 90;                      ///< degrees that the arc spans
   double azimuth = 0;                   ///< degrees: of ring views 0, of the arc's middle
+  double crowding = 1;                  ///< rings: azimuths as its power of the share; 1 even
   double elevation = 15;                ///< of the arc
   double distance = 1.8;                ///< from the middle of the box, in its diagonals
   std::vector<double> distances = {1};  ///< factors of the distance, dealt out in turn
@@ -92,6 +99,7 @@ struct DegradationSpec {
   std::uint64_t seed = 0;                 ///< mixed with the scene's
   double photon_noise = 0;                ///< deviation at white, of 1 = white, linear light
   double read_noise = 0;                  ///< deviation at black
+  double code_noise = 0;                  ///< deviation of the sRGB codes, of 255
   double blur = 0;                        ///< Gaussian deviation in pixels
   double exposure = 0;                    ///< deviation between views, stops
   double white_balance = 0;               ///< deviation of red and blue gain between views, stops
@@ -100,12 +108,19 @@ struct DegradationSpec {
   double k1 = 0, k2 = 0, p1 = 0, p2 = 0;  ///< lens distortion, Brown's model
   double pose_error = 0;                  ///< root mean square over object and views, pixels
   double intrinsics_error = 0;            ///< the same, by focal length and principal point
+  glm::dvec2 pixel_shift{0.0};            ///< written principal points, pixels
+  bool ignore_distortion = false;         ///< the written cameras have no distortion
+  double wrong_views = 0;                 ///< share of the views whose written poses are wrong
+  double wrong_turn = 30;                 ///< by so many degrees about the object's middle
   double mask_grow = 0;                   ///< pixels that masks are too large; negative: too small
   int mask_holes = 0;                     ///< a mask
   double mask_hole_radius = 6;            ///< pixels
   std::vector<int> mask_wrong;            ///< views that get the next view's mask
   double missing = 0;                     ///< share of the views left out
   std::vector<int> missing_views;         ///< views left out, by index before any is
+  int shuffle = 0;                        ///< order of the views; 0: as they were taken
+  double box_scale = 1;                   ///< of the written box about its middle
+  glm::dvec3 box_shift{0.0};              ///< of the written box, in the object's diagonals
 };
 
 struct Spec {

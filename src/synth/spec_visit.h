@@ -27,6 +27,8 @@ void visit_material(Visitor& v, MaterialSpec& m) {
   v.flag("faces", m.faces);
   v.number("gloss", m.gloss, 0, 10);
   v.number("roughness", m.roughness, 0.02, 1);
+  v.number("haze", m.haze, 0, 1);
+  v.number("haze_depth", m.haze_depth, 0, 1);
 }
 
 template <typename Visitor>
@@ -56,6 +58,7 @@ void visit_cameras(Visitor& v, CameraSpec& c) {
   v.number("highest", c.highest, -90, 90);
   v.number("arc", c.arc, 0, 360);
   v.number("azimuth", c.azimuth, -360, 360);
+  v.number("crowding", c.crowding, 1, 20);
   v.number("elevation", c.elevation, -89.9, 89.9);
   v.number("distance", c.distance, 0, 1000);
   v.numbers("distances", c.distances, 0.01, 100);
@@ -70,6 +73,7 @@ void visit_degradations(Visitor& v, DegradationSpec& d) {
   v.seed("seed", d.seed);
   v.number("photon_noise", d.photon_noise, 0, 1);
   v.number("read_noise", d.read_noise, 0, 1);
+  v.number("code_noise", d.code_noise, 0, 255);
   v.number("blur", d.blur, 0, 50);
   v.number("exposure", d.exposure, 0, 5);
   v.number("white_balance", d.white_balance, 0, 3);
@@ -81,12 +85,19 @@ void visit_degradations(Visitor& v, DegradationSpec& d) {
   v.number("p2", d.p2, -1, 1);
   v.number("pose_error", d.pose_error, 0, 100);
   v.number("intrinsics_error", d.intrinsics_error, 0, 100);
+  v.vector("pixel_shift", d.pixel_shift, -1000, 1000);
+  v.flag("ignore_distortion", d.ignore_distortion);
+  v.number("wrong_views", d.wrong_views, 0, 1);
+  v.number("wrong_turn", d.wrong_turn, 0, 180);
   v.number("mask_grow", d.mask_grow, -100, 100);
   v.integer("mask_holes", d.mask_holes, 0, 1000);
   v.number("mask_hole_radius", d.mask_hole_radius, 0.5, 500);
   v.integers("mask_wrong", d.mask_wrong, 0, kMostViews - 1);
   v.number("missing", d.missing, 0, 0.95);
   v.integers("missing_views", d.missing_views, 0, kMostViews - 1);
+  v.integer("shuffle", d.shuffle, 0, 1000000);
+  v.number("box_scale", d.box_scale, 0.01, 1000);
+  v.vector("box_shift", d.box_shift, -100, 100);
 }
 
 template <typename Visitor>
@@ -107,11 +118,15 @@ void visit_spec(Visitor& v, Spec& s) {
     v.number("size", s.background.size, 0.001, 10);
     v.number("distance", s.background.distance, 1.1, 1000);
     v.flag("moving", s.background.moving);
+    v.flag("plates", s.background.plates);
   });
   v.object("image", [&] {
     v.integer("width", s.image.width, 8, kLargestImage);
     v.integer("height", s.image.height, 8, kLargestImage);
     v.integer("samples", s.image.samples, 1, 16);
+    v.integer("bits", s.image.bits, 8, 16);
+    v.flag("maps", s.image.maps);
+    v.flag("masks", s.image.masks);
   });
   v.object("cameras", [&] { visit_cameras(v, s.cameras); });
   v.object("degradations", [&] { visit_degradations(v, s.degradations); });

@@ -49,11 +49,8 @@ std::vector<std::size_t> kept_views(const Spec& spec, std::size_t count) {
   std::vector<bool> gone(count);
   for (const int view : d.missing_views) gone[std::size_t(view)] = true;
   // A share of all views, at random among them.
-  std::vector<std::size_t> order(count);
-  std::iota(order.begin(), order.end(), std::size_t(0));
-  Random random(degradation_seed(spec), 0x3155);
-  for (std::size_t i = count; i > 1; --i)
-    std::swap(order[i - 1], order[std::size_t(random.uniform() * double(i))]);
+  const std::vector<std::size_t> order =
+      random_order(count, Random(degradation_seed(spec), 0x3155));
   for (std::size_t i = 0; i < std::size_t(std::floor(d.missing * double(count) + 1e-9)); ++i)
     gone[order[i]] = true;
   std::vector<std::size_t> kept;
@@ -96,6 +93,23 @@ void check_orientation(const TriMesh& mesh, Progress& progress) {
         "counts as seeing it; turn its faces around");
 }
 
+/// In the order in which they are written.
+std::vector<std::size_t> ordered_views(const Spec& spec, std::vector<std::size_t> kept) {
+  if (spec.degradations.shuffle == 0) return kept;
+  std::vector<std::size_t> shuffled;
+  for (const std::size_t i :
+       random_order(kept.size(), Random(std::uint64_t(spec.degradations.shuffle), 0x5f1e)))
+    shuffled.push_back(kept[i]);
+  return shuffled;
+}
+
+Box written_box(const DegradationSpec& spec, const Surface& surface) {
+  const glm::dvec3 half =
+      spec.box_scale * (0.5 * (surface.box.max - surface.box.min) + kBoxMargin * surface.diagonal);
+  const glm::dvec3 middle = surface.box.center() + surface.diagonal * spec.box_shift;
+  return {middle - half, middle + half};
+}
+
 /// A mask can only be wrong where its view and another one are there.
 void check_wrong_masks(const Spec& spec, const std::vector<std::size_t>& kept, Progress& progress) {
   for (const int view : spec.degradations.mask_wrong)
@@ -125,8 +139,20 @@ double write_views(const Spec& spec, const Surface& surface, const std::vector<L
       throw Error(concat("view ", names[i],
                          " sees nothing of the object; change cameras.distance, fill or "
                          "principal_offset"));
-    files.write_picture(names[i], picture, expose(picture, spec.degradations, seed, indices[i]));
+    const int w = picture.width, h = picture.height;
+    if (spec.image.bits == 16)
+      files.write_picture(names[i], w, h,
+                          expose_16_bits(picture, spec.degradations, seed, indices[i]));
+    else
+      files.write_picture(names[i], w, h, expose(picture, spec.degradations, seed, indices[i]));
+    if (spec.image.maps) files.write_maps(names[i], picture);
+    if (!spec.background.plates) return;
+    // Taken with the camera as it stands, with noise of its own.
+    const Picture empty = render_background(shading, cameras[i], indices[i]);
+    files.write_plate(names[i], empty.width, empty.height,
+                      expose(empty, spec.degradations, seed, indices[i], true));
   });
+  if (!spec.image.masks) return *std::max_element(fill.begin(), fill.end());
   const auto& wrong = spec.degradations.mask_wrong;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     const bool other = std::find(wrong.begin(), wrong.end(), int(indices[i])) != wrong.end();
@@ -139,11 +165,14 @@ double write_views(const Spec& spec, const Surface& surface, const std::vector<L
 std::string result_text(const SynthesizedScene& scene, const std::vector<std::string>& names,
                         const Surface& surface) {
   const auto list = [](const glm::dvec3& p) { return nlohmann::json{p.x, p.y, p.z}; };
+  nlohmann::json gains = nlohmann::json::array();
+  for (const glm::dvec3& gain : scene.gains) gains.push_back(list(gain));
   const nlohmann::json result = {{"writer", "photohull synthesize"},
                                  {"views", names},
                                  {"triangles", scene.triangles},
                                  {"diagonal", scene.diagonal},
                                  {"tight_box", {list(surface.box.min), list(surface.box.max)}},
+                                 {"gains", gains},
                                  {"seen_share", scene.seen},
                                  {"largest_fill", scene.largest_fill}};
   return result.dump();
@@ -169,15 +198,19 @@ SynthesizedScene synthesize(const Spec& spec, const std::filesystem::path& folde
   check_orientation(surface.mesh, progress);
   progress.check_cancelled();
   const std::vector<LensCamera> all = place_cameras(spec, surface);
-  const std::vector<std::size_t> indices = kept_views(spec, all.size());
-  check_wrong_masks(spec, indices, progress);
+  const std::vector<std::size_t> kept = kept_views(spec, all.size());
+  check_wrong_masks(spec, kept, progress);
+  const std::vector<std::size_t> indices = ordered_views(spec, kept);
   std::vector<LensCamera> cameras;
   std::vector<std::string> names;
-  for (const std::size_t i : indices) cameras.push_back(all[i]), names.push_back(view_name(i));
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    cameras.push_back(all[indices[i]]);
+    names.push_back(view_name(spec.degradations.shuffle ? i : indices[i]));
+  }
   const std::vector<LensCamera> written = degrade_cameras(
       cameras, spec.degradations, degradation_seed(spec), control_points(surface.mesh));
 
-  const SceneFiles files(folder, names);
+  const SceneFiles files(folder, names, spec.image);
   SharedProgress shared(progress);
   progress.stage("photographs", render_weight(spec));
   SynthesizedScene result;
@@ -188,10 +221,10 @@ SynthesizedScene synthesize(const Spec& spec, const std::filesystem::path& folde
   count_views(surface, cameras, samples, [&](double share) { shared.update(share); });
   files.write_truth(surface.mesh, samples);
 
-  const glm::dvec3 margin(kBoxMargin * surface.diagonal);
-  const bool differ = spec.degradations.pose_error > 0 || spec.degradations.intrinsics_error > 0;
-  files.write_cameras(names, written, cameras, differ,
-                      {surface.box.min - margin, surface.box.max + margin});
+  files.write_cameras(names, written, cameras, cameras_are_off(spec.degradations),
+                      written_box(spec.degradations, surface));
+  for (const std::size_t i : indices)
+    result.gains.emplace_back(view_gain(spec.degradations, degradation_seed(spec), i));
   result.views = int(cameras.size());
   result.triangles = surface.mesh.triangles.size();
   result.diagonal = surface.diagonal;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <glm/glm.hpp>
+#include <vector>
 
 #include "core/box.h"
 #include "core/progress.h"
@@ -16,7 +18,8 @@ struct SynthesizedScene {
   double diagonal = 0;      ///< of the object's tight box, world units
   double seen = 0;          ///< share of the surface that a camera sees
   double largest_fill = 0;  ///< share of a frame that the object covers, largest over the views
-  bool middlebury = true;   ///< false where lens distortion keeps that format from being written
+  std::vector<glm::dvec3> gains;  ///< of each view: exposure times white balance
+  bool middlebury = true;  ///< false where lens distortion keeps that format from being written
 };
 
 /// The stages' weights, for the progress bar.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/box.h"
 #include "core/image.h"
 #include "synth/degrade_cameras.h"
 #include "synth/degrade_image.h"
@@ -48,6 +49,27 @@ TEST(Noise, HasTheDeviationAskedFor) {
   EXPECT_NE(expose(flat(20, 20, 0.5f), spec, 5, 0), expose(flat(20, 20, 0.5f), spec, 5, 1));
   EXPECT_NE(expose(flat(20, 20, 0.5f), spec, 5, 0), expose(flat(20, 20, 0.5f), spec, 6, 0));
   EXPECT_EQ(expose(flat(20, 20, 0.5f), spec, 5, 3), expose(flat(20, 20, 0.5f), spec, 5, 3));
+}
+
+TEST(Noise, OfTheCodesHasTheDeviationAskedForInCodes) {
+  DegradationSpec spec;
+  spec.code_noise = 6;
+  for (const int code : {60, 190}) {
+    const auto rgb = expose(flat(200, 150, float(linear_from_srgb(code / 255.0))), spec, 5, 0);
+    double sum = 0, squares = 0;
+    for (const std::uint8_t v : rgb) sum += v, squares += double(v) * v;
+    const double n = double(rgb.size()), mean = sum / n;
+    EXPECT_NEAR(mean, code, 0.1);
+    EXPECT_NEAR(std::sqrt(squares / n - mean * mean), 6, 0.15) << code;
+  }
+}
+
+TEST(Exposure, At16BitsHasThatManyLevels) {
+  for (const double encoded : {0.0, 0.1, 0.70001, 1.0}) {
+    const auto rgb = expose_16_bits(flat(1, 1, float(linear_from_srgb(encoded))), {}, 1, 0);
+    ASSERT_EQ(rgb.size(), 3u);
+    EXPECT_NEAR(rgb[1] / 65535.0, encoded, 1.0 / 65535);
+  }
 }
 
 TEST(Exposure, WithoutDegradationTheCodesAreExact) {
@@ -195,7 +217,43 @@ TEST_F(CameraErrors, IntrinsicsAreOffByThePixelsAskedForAndAlikeInAllViews) {
             cameras_[5].camera.cam_from_world.translation);
 }
 
+TEST_F(CameraErrors, WrongViewsAreTurnedAboutTheMiddleAndNoOtherView) {
+  DegradationSpec spec;
+  spec.wrong_views = 0.25, spec.wrong_turn = 40;
+  ASSERT_EQ(cameras_.size(), 36u);
+  const auto off = degrade_cameras(cameras_, spec, 3, points_);
+  Box box{points_.front(), points_.front()};
+  for (const glm::dvec3& p : points_) box.min = min(box.min, p), box.max = max(box.max, p);
+  int wrong = 0;
+  for (std::size_t i = 0; i < off.size(); ++i) {
+    const glm::dmat3 turn = transpose(cameras_[i].camera.cam_from_world.rotation) *
+                            off[i].camera.cam_from_world.rotation;
+    const double degrees = glm::degrees(
+        std::acos(std::clamp((turn[0][0] + turn[1][1] + turn[2][2] - 1) / 2, -1.0, 1.0)));
+    if (degrees < 1e-3) continue;
+    ++wrong;
+    EXPECT_NEAR(degrees, 40, 1e-6);
+    EXPECT_LT(length(*off[i].project(box.center()) - *cameras_[i].project(box.center())), 1e-6);
+  }
+  EXPECT_EQ(wrong, 9);
+  EXPECT_TRUE(cameras_are_off(spec));
+}
+
+TEST_F(CameraErrors, PrincipalPointsShiftAndDistortionIsForgotten) {
+  for (LensCamera& lens : cameras_) lens.distortion = {DistortionModel::kBrown, {0.1, 0, 0, 0}};
+  DegradationSpec spec;
+  spec.pixel_shift = {0.5, -2};
+  spec.ignore_distortion = true;
+  const auto off = degrade_cameras(cameras_, spec, 3, points_);
+  for (std::size_t i = 0; i < off.size(); ++i) {
+    EXPECT_EQ(off[i].camera.intrinsics.cx, cameras_[i].camera.intrinsics.cx + 0.5);
+    EXPECT_EQ(off[i].camera.intrinsics.cy, cameras_[i].camera.intrinsics.cy - 2);
+    EXPECT_EQ(off[i].distortion.model, DistortionModel::kNone);
+  }
+}
+
 TEST_F(CameraErrors, NoneLeavesThemAlone) {
+  EXPECT_FALSE(cameras_are_off({}));
   EXPECT_EQ(reprojection_error(cameras_, degrade_cameras(cameras_, {}, 3, points_), points_), 0);
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "core/error.h"
 #include "synth/place_cameras.h"
@@ -153,6 +154,46 @@ TEST(Render, ShadowsDarken) {
   const double without = sum(Small("{" + light + "false" + rest).picture(0));
   EXPECT_LT(with, 0.95 * without);
   EXPECT_GT(with, 0.3 * without);
+}
+
+TEST(Render, HazeShowsThePatternBelowTheSurface) {
+  const auto picture = [](const std::string& material) {
+    return Small(R"({"light": {"directional": []}, "cameras": {"layout": "arc", "count": 2},
+                     "material": {"size": 0.3, "octaves": 2)" +
+                 material + "}}")
+        .picture(0);
+  };
+  const auto difference = [](const Picture& a, const Picture& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.colour.size(); ++i)
+      sum += std::abs(a.colour[i].g - b.colour[i].g);
+    return sum / double(a.colour.size());
+  };
+  const Picture plain = picture("");
+  EXPECT_LT(difference(plain, picture(R"(, "haze": 0.7, "haze_depth": 0)")), 1e-6);
+  const double half = difference(plain, picture(R"(, "haze": 0.5, "haze_depth": 0.1)"));
+  const double full = difference(plain, picture(R"(, "haze": 1, "haze_depth": 0.1)"));
+  EXPECT_GT(half, 0.003);
+  EXPECT_NEAR(half, full / 2, 0.1 * full);
+}
+
+TEST(PlaceCameras, CrowdingGathersTheFirstViewsOfARing) {
+  const auto azimuths = [](const std::string& crowding) {
+    const Small scene(R"({"cameras": {"rings": [{"count": 4, "elevation": 0}], "crowding": )" +
+                      crowding + "}}");
+    std::vector<double> turns;
+    for (const LensCamera& lens : scene.cameras) {
+      const glm::dvec3 c = lens.camera.center();
+      double turn = std::atan2(c.x, -c.y) / (2 * std::numbers::pi);
+      turns.push_back(turn < -1e-9 ? turn + 1 : turn);
+    }
+    return turns;
+  };
+  const std::vector<double> even = azimuths("1"), crowded = azimuths("2");
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_NEAR(even[std::size_t(i)], i / 4.0, 1e-9);
+    EXPECT_NEAR(crowded[std::size_t(i)], i * i / 16.0, 1e-9);
+  }
 }
 
 TEST(PlaceCameras, ObjectFillsTheFrameAndStaysInside) {

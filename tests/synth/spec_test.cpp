@@ -71,6 +71,10 @@ TEST(Spec, WrongTypesAndRangesAreNamed) {
   EXPECT_THAT(message_of(R"({"seed": -1})"), HasSubstr("seed"));
   EXPECT_THAT(message_of(R"({"cameras": {"distances": []}})"), HasSubstr("one number at least"));
   EXPECT_THAT(message_of(R"({"cameras": {"rings": []}})"), HasSubstr("cameras.rings"));
+  EXPECT_THAT(message_of(R"({"image": {"bits": 12}})"),
+              AllOf(HasSubstr("image.bits"), HasSubstr("8 or 16"), HasSubstr("12")));
+  EXPECT_THAT(message_of(R"({"image": {"bits": 16}, "degradations": {"jpeg": 50}})"),
+              HasSubstr("JPEG has 8 bits"));
   EXPECT_THAT(message_of("[1]"), HasSubstr("object"));
   EXPECT_THAT(message_of("{"), HasSubstr("not valid JSON"));
   EXPECT_THAT(message_of(R"({"name": "a/b"})"), HasSubstr("name"));

@@ -5,6 +5,7 @@
 #include <tbb/global_control.h>
 
 #include <map>
+#include <set>
 
 #include "core/error.h"
 #include "io/image_file.h"
@@ -190,6 +191,54 @@ TEST(Synthesize, WrittenPosesAreOffAndTheTrueOnesKept) {
   expect_cameras(io::load_scene(scratch / "scene" / "true_cameras"), exact);
   const Scene off = io::load_scene(scratch / "scene");
   EXPECT_GT(length(off.views[0].camera.center() - exact[0].camera.center()), 1e-4);
+}
+
+TEST(Synthesize, ShuffledViewsAreTheSameUnderOtherNames) {
+  const ScratchFolder folder;
+  Spec spec = small(kBlock);
+  make(spec, folder / "a");
+  spec.degradations.shuffle = 2;
+  make(spec, folder / "b");
+  const auto a = contents(folder / "a/images"), b = contents(folder / "b/images");
+  std::multiset<std::string> first, second;
+  for (const auto& [name, bytes] : a) first.insert(bytes);
+  for (const auto& [name, bytes] : b) second.insert(bytes);
+  EXPECT_EQ(first, second);
+  EXPECT_NE(a, b);
+  const Scene x = io::load_scene(folder / "a"), y = io::load_scene(folder / "b");
+  for (std::size_t i = 0; i < y.views.size(); ++i)
+    for (std::size_t k = 0; k < x.views.size(); ++k)
+      EXPECT_EQ(read_text(y.views[i].image) == read_text(x.views[k].image),
+                length(y.views[i].camera.center() - x.views[k].camera.center()) < 1e-9);
+}
+
+TEST(Synthesize, WrittenBoxIsScaledAndShifted) {
+  const ScratchFolder folder;
+  Spec spec = small(kBlock);
+  make(spec, folder / "a");
+  spec.degradations.box_scale = 3;
+  spec.degradations.box_shift = {0.5, 0, 0};
+  make(spec, folder / "b");
+  const Box a = *io::load_scene(folder / "a").box, b = *io::load_scene(folder / "b").box;
+  const glm::dvec3 before = a.max - a.min, after = b.max - b.min, moved = b.center() - a.center();
+  EXPECT_LT(length(after - 3.0 * before), 1e-6);
+  const Surface surface = make_surface(spec.geometry);
+  EXPECT_NEAR(moved.x, 0.5 * surface.diagonal, 1e-6);
+  EXPECT_NEAR(moved.y, 0, 1e-6);
+}
+
+TEST(Synthesize, SixteenBitsAndNoMapsOrMasks) {
+  const ScratchFolder folder;
+  Spec spec = small(kBlock);
+  make(spec, folder / "a");
+  spec.image.bits = 16;
+  spec.image.maps = spec.image.masks = false;
+  make(spec, folder / "a");
+  for (const char* part : {"depth", "normals", "masks"})
+    EXPECT_FALSE(fs::exists(folder / "a" / part)) << part;
+  const Scene scene = io::load_scene(folder / "a");
+  EXPECT_TRUE(scene.views[0].mask.empty());
+  EXPECT_EQ(io::read_image(scene.views[0].image).encoding, ColourImage::Encoding::kLinearHalf);
 }
 
 TEST(Synthesize, OtherPeoplesFilesAreLeftAlone) {
