@@ -12,6 +12,7 @@
 
 #include "core/error.h"
 #include "volume/fill_tree.h"
+#include "volume/write_vdb.h"
 
 namespace photohull {
 namespace {
@@ -57,7 +58,8 @@ void store_exposed_inside_bricks(const SparseVolume& volume, Accessor& accessor)
       }
 }
 
-/// The volume as a level set in voxels, its coordinates relative to the centre of the grid.
+/// The volume as a level set in voxels, its coordinates in units of vdb_unit relative to the centre
+/// of the grid.
 openvdb::FloatGrid::Ptr distance_grid(const SparseVolume& volume, const glm::dvec3& center) {
   auto grid = openvdb::FloatGrid::create(SparseVolume::kBand);
   Accessor accessor(grid->tree());
@@ -65,9 +67,11 @@ openvdb::FloatGrid::Ptr distance_grid(const SparseVolume& volume, const glm::dve
   // between voxels of which neither is in the band.
   fill_tree<Leaf>(volume, accessor, away_from_zero, [](float) { return true; });
   store_exposed_inside_bricks(volume, accessor);
-  const glm::dvec3 shift = volume.grid.origin - center;
+  const glm::dvec3 shift = (volume.grid.origin - center) / vdb_unit(volume.grid.voxel_size);
   grid->setGridClass(openvdb::GRID_LEVEL_SET);  // Says on which side the inside is.
-  grid->setTransform(openvdb::math::Transform::createLinearTransform(volume.grid.voxel_size));
+  const double unit = vdb_unit(volume.grid.voxel_size);
+  grid->setTransform(
+      openvdb::math::Transform::createLinearTransform(volume.grid.voxel_size / unit));
   grid->transform().postTranslate(openvdb::Vec3d(shift.x, shift.y, shift.z));
   return grid;
 }
@@ -138,6 +142,8 @@ TriMesh extract_mesh(const SparseVolume& volume, std::span<const std::uint8_t> c
   if (!mesh.positions.empty())
     std::memcpy(mesh.positions.data(), mesher.pointList().get(),
                 mesh.positions.size() * sizeof(glm::vec3));
+  if (const double unit = vdb_unit(volume.grid.voxel_size); unit != 1)
+    for (glm::vec3& p : mesh.positions) p *= float(unit);
   add_polygons(mesher, mesh);
   refine_vertices(volume, mesh);
   return mesh;

@@ -10,16 +10,15 @@
 #include <bit>
 #include <cctype>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <mutex>
-#include <sstream>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
 #include "core/error.h"
+#include "volume/mesh_soup.h"
 #include "volume/write_mesh.h"
 
 namespace photohull {
@@ -28,22 +27,11 @@ namespace {
 constexpr double kFarthest = 1e30;               // fits a float
 constexpr std::size_t kMostVertices = 1u << 28;  // also what instances of meshes add up to
 
-[[noreturn]] void fail(const std::filesystem::path& path, const std::string& what,
-                       const std::string& mend) {
-  throw Error(concat("cannot read ", path.string(), ": ", what, "; ", mend, "."));
-}
-
 std::string extension_of(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
   return extension;
 }
-
-/// World positions and triangles before vertices at the same position are joined.
-struct Soup {
-  std::vector<glm::dvec3> positions;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-};
 
 /// Keeps what assimp complains of but repairs by guessing.
 class RangeComplaints : public Assimp::LogStream {
@@ -55,27 +43,6 @@ class RangeComplaints : public Assimp::LogStream {
   bool found = false;
 };
 
-/// An OFF file's counts must fit its size: assimp allocates what they claim.
-void check_off_counts(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::vector<std::string> words;
-  for (std::string line; words.size() < 4 && std::getline(in, line);) {
-    if (line.size() > 1000) fail(path, "its header is malformed", "give an OFF file in ASCII");
-    std::istringstream text(line.substr(0, line.find('#')));
-    for (std::string word; text >> word;) words.push_back(word);
-  }
-  const bool keyword = !words.empty() && words[0].find("OFF") != std::string::npos;
-  if (!keyword || words.size() < 3)
-    fail(path, "its header is malformed",
-         "start it with OFF and the numbers of vertices and faces");
-  std::error_code ignored;
-  const auto size = double(std::filesystem::file_size(path, ignored));
-  const double vertices = std::atof(words[1].c_str()), faces = std::atof(words[2].c_str());
-  if (!(vertices >= 0 && faces >= 0 && 6 * vertices + 4 * faces <= size))
-    fail(path, concat("it is too short for its ", words[1], " vertices and ", words[2], " faces"),
-         "give a complete file");
-}
-
 glm::dmat4 matrix(const aiMatrix4x4& m) {
   return glm::transpose(glm::dmat4(m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3,
                                    m.c4, m.d1, m.d2, m.d3, m.d4));
@@ -85,7 +52,7 @@ void add_mesh(const std::filesystem::path& path, const aiMesh& mesh, const glm::
               Soup& soup) {
   const std::size_t first = soup.positions.size();
   if (first + mesh.mNumVertices > kMostVertices)
-    fail(path, "it has more than 268 million vertices", "give a smaller mesh");
+    fail_to_read(path, "it has more than 268 million vertices", "give a smaller mesh");
   for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
     const aiVector3D& p = mesh.mVertices[v];
     soup.positions.emplace_back(world * glm::dvec4(p.x, p.y, p.z, 1));
@@ -95,7 +62,8 @@ void add_mesh(const std::filesystem::path& path, const aiMesh& mesh, const glm::
     const aiFace& face = mesh.mFaces[f];
     for (unsigned i = 0; i < face.mNumIndices; ++i)
       if (face.mIndices[i] >= mesh.mNumVertices)
-        fail(path, concat("face ", f, " has a vertex index out of range"), "repair the file");
+        fail_to_read(path, concat("face ", f, " has a vertex index out of range"),
+                     "repair the file");
     for (unsigned i = 2; i < face.mNumIndices; ++i) {  // none for points and lines
       const auto corner = [&](unsigned k) { return std::uint32_t(first + face.mIndices[k]); };
       const std::uint32_t second = corner(mirrored ? i : i - 1),
@@ -132,11 +100,11 @@ Soup read_with_assimp(const std::filesystem::path& path) {
   Assimp::DefaultLogger::get()->detachStream(&complaints, kSeverities);
   Assimp::DefaultLogger::kill();
   if (complaints.found)
-    fail(path, "a face has a vertex index out of range", "repair or export the mesh again");
+    fail_to_read(path, "a face has a vertex index out of range", "repair or export the mesh again");
   if (!scene) {
     std::string reason = importer.GetErrorString();
     std::replace(reason.begin(), reason.end(), '\n', ' ');
-    fail(path, reason.empty() ? "it is damaged" : reason, "give a complete file");
+    fail_to_read(path, reason.empty() ? "it is damaged" : reason, "give a complete file");
   }
   return flatten(path, *scene);
 }
@@ -144,7 +112,8 @@ Soup read_with_assimp(const std::filesystem::path& path) {
 void check_positions(const std::filesystem::path& path, const std::vector<glm::dvec3>& positions) {
   for (std::size_t v = 0; v < positions.size(); ++v)
     if (!glm::all(glm::lessThan(glm::abs(positions[v]), glm::dvec3(kFarthest))))
-      fail(path, concat("the position of vertex ", v, " is no usable number"), "repair the mesh");
+      fail_to_read(path, concat("the position of vertex ", v, " is no usable number"),
+                   "repair the mesh");
 }
 
 struct PositionHash {
@@ -180,30 +149,37 @@ TriMesh join(const Soup& soup) {
 
 }  // namespace
 
+void fail_to_read(const std::filesystem::path& path, const std::string& what,
+                  const std::string& mend) {
+  throw Error(concat("cannot read ", path.string(), ": ", what, "; ", mend, "."));
+}
+
 TriMesh read_mesh(const std::filesystem::path& path, Faces faces) {
   const std::string extension = extension_of(path);
   const std::string known[] = {".ply", ".obj", ".glb", ".gltf", ".off", ".stl"};
   if (std::find(std::begin(known), std::end(known), extension) == std::end(known))
-    fail(path,
-         extension.empty() ? "it has no extension"
-                           : concat("its extension ", extension, " is not known"),
-         "give a .ply, .obj, .glb, .gltf, .off or .stl file");
+    fail_to_read(path,
+                 extension.empty() ? "it has no extension"
+                                   : concat("its extension ", extension, " is not known"),
+                 "give a .ply, .obj, .glb, .gltf, .off or .stl file");
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored))
-    fail(path, "it is no file", "check the path");
-  if (!std::ifstream(path)) fail(path, "it cannot be opened", "check its permissions");
+    fail_to_read(path, "it is no file", "check the path");
+  if (!std::ifstream(path)) fail_to_read(path, "it cannot be opened", "check its permissions");
   TriMesh mesh;
   if (extension == ".ply") {
     mesh = read_ply(path);
   } else {
-    if (extension == ".off") check_off_counts(path);
-    const Soup soup = read_with_assimp(path);
+    const bool gltf = extension == ".glb" || extension == ".gltf";
+    const Soup soup = gltf                  ? read_gltf(path)
+                      : extension == ".off" ? read_off(path)
+                                            : read_with_assimp(path);
     check_positions(path, soup.positions);
     if (!soup.positions.empty()) mesh = join(soup);
   }
-  if (mesh.positions.empty()) fail(path, "it has no vertices", "give a mesh");
+  if (mesh.positions.empty()) fail_to_read(path, "it has no vertices", "give a mesh");
   if (mesh.triangles.empty() && faces == Faces::kNeeded)
-    fail(path, "it has no faces", "give a mesh with faces, not a point cloud");
+    fail_to_read(path, "it has no faces", "give a mesh with faces, not a point cloud");
   return mesh;
 }
 

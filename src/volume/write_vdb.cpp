@@ -38,9 +38,10 @@ openvdb::MetaMap meta_map(const SparseVolume& volume, const VdbMetadata& metadat
   openvdb::MetaMap map;
   for (const auto& [name, value] : metadata) map.insertMeta(name, openvdb::StringMetadata(value));
   const glm::ivec3 bricks = volume.grid.bricks;
-  for (const char* name : {"voxel_size", "grid_bricks", "photohull_version"})
+  for (const char* name : {"voxel_size", "scene_unit", "grid_bricks", "photohull_version"})
     map.removeMeta(name);  // These are facts, and keep their types.
   map.insertMeta("voxel_size", openvdb::DoubleMetadata(volume.grid.voxel_size));
+  map.insertMeta("scene_unit", openvdb::DoubleMetadata(vdb_unit(volume.grid.voxel_size)));
   map.insertMeta("grid_bricks", openvdb::Vec3IMetadata({bricks.x, bricks.y, bricks.z}));
   map.insertMeta("photohull_version", openvdb::StringMetadata(PHOTOHULL_VERSION));
   return map;
@@ -48,8 +49,9 @@ openvdb::MetaMap meta_map(const SparseVolume& volume, const VdbMetadata& metadat
 
 void describe(openvdb::GridBase& grid, const char* name, const SparseVolume& volume,
               const openvdb::MetaMap& metadata) {
-  const glm::dvec3& origin = volume.grid.origin;
-  auto transform = openvdb::math::Transform::createLinearTransform(volume.grid.voxel_size);
+  const double unit = vdb_unit(volume.grid.voxel_size);
+  const glm::dvec3 origin = volume.grid.origin / unit;
+  auto transform = openvdb::math::Transform::createLinearTransform(volume.grid.voxel_size / unit);
   transform->postTranslate({origin.x, origin.y, origin.z});
   grid.setTransform(transform);
   for (auto it = metadata.beginMeta(); it != metadata.endMeta(); ++it)
@@ -59,7 +61,7 @@ void describe(openvdb::GridBase& grid, const char* name, const SparseVolume& vol
 }
 
 FloatGrid::Ptr surface_grid(const SparseVolume& volume) {
-  const float voxel_size = float(volume.grid.voxel_size);
+  const auto voxel_size = float(volume.grid.voxel_size / vdb_unit(volume.grid.voxel_size));
   auto grid = FloatGrid::create(SparseVolume::kBand * voxel_size);
   fill_tree<FloatGrid::TreeType::LeafNodeType>(
       volume, openvdb::tree::ValueAccessor<openvdb::FloatTree, false>(grid->tree()),
@@ -259,10 +261,22 @@ SparseVolume to_volume(const FloatGrid& source) {
           volume.distance.push_back(std::clamp(float(leaf->getValue(i) / grid.voxel_size),
                                                -SparseVolume::kBand, SparseVolume::kBand));
       }
+  if (const auto unit = source.getMetadata<openvdb::DoubleMetadata>("scene_unit")) {
+    if (!(unit->value() > 0)) throw Error("its scene_unit is not positive");
+    grid.voxel_size *= unit->value();
+    grid.origin *= unit->value();
+  }
   return volume;
 }
 
 }  // namespace
+
+double vdb_unit(double voxel_size) {
+  constexpr double kSmallest = 2e-5;  // OpenVDB takes a voxel's volume below 3e-15 for zero
+  double unit = 1;
+  while (voxel_size / unit < kSmallest) unit /= 1000;
+  return unit;
+}
 
 void write_vdb(AtomicFile& file, const SparseVolume& volume, const VolumeAttributes& attributes,
                const VdbMetadata& metadata) {

@@ -13,14 +13,19 @@ namespace photohull {
 
 using VdbMetadata = std::map<std::string, std::string>;
 
+/// The length, in the scene's units, that is 1 in a file of voxels of that size: 1, or for voxels
+/// below 2e-5, which OpenVDB takes for nothing, a power of a thousandth. Files say it in the
+/// metadata `scene_unit`.
+double vdb_unit(double voxel_size);
+
 /// Writes an OpenVDB file with the grids
-///   surface     float level set in world units; active where nearer than 3 voxels, inside negative
-///   Cd          linear RGB (half), active where nearer than 1.5 voxels and known
+///   surface     float level set in units of vdb_unit; active where nearer than 3 voxels, inside
+///   negative Cd          linear RGB (half), active where nearer than 1.5 voxels and known
 ///   confidence  [0, 1] (half), active likewise: the mean of the vertices nearby
 /// the last two only where `attributes` has them. Index (i, j, k) of every grid is the voxel of
 /// that index, whose centre is at grid.world({i, j, k}). `metadata` becomes string metadata of the
-/// file and of every grid, beside voxel_size and photohull_version. Equal contents give equal
-/// bytes. The file appears whole or not at all; throws Error when it cannot be written.
+/// file and of every grid, beside voxel_size, scene_unit and photohull_version. Equal contents give
+/// equal bytes. The file appears whole or not at all; throws Error when it cannot be written.
 void write_vdb(const std::filesystem::path& path, const SparseVolume& volume,
                const VolumeAttributes& attributes, const VdbMetadata& metadata);
 /// The same, for the caller to commit.

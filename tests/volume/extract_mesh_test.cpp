@@ -89,6 +89,17 @@ TEST(ExtractMesh, WorldCoordinatesFollowTheGrid) {
     ASSERT_NEAR(glm::length(mesh.world(i) - (origin + 0.001 * kCenter)), 0.020, 5e-5);
 }
 
+// OpenVDB takes voxels of such a size for nothing.
+TEST(ExtractMesh, TinyVoxelsGiveTheSameMesh) {
+  const Distance distance = sphere(kCenter, 20);
+  SparseVolume volume = sample_volume(glm::ivec3(8), distance);
+  volume.grid.voxel_size *= 1e-9;
+  volume.grid.origin *= 1e-9;
+  const TriMesh mesh = extract_mesh(volume);
+  expect_sound(mesh);
+  EXPECT_LT(largest_deviation(volume, mesh, distance).distance, 0.02);
+}
+
 TEST(ExtractMesh, BodyCutByTheBorderIsClosedThere) {
   const TriMesh mesh =
       extract_mesh(sample_volume(glm::ivec3(6), box({-10, -10, -10}, {100, 25, 26})));

@@ -133,6 +133,51 @@ TEST(ReadMesh, TransformsOfNodesAreAppliedAndMirrorsKeepFacesOutward) {
   }
 }
 
+/// One primitive of a square's four corners, as base64, in one of glTF's ways to list triangles.
+std::string gltf_square(int mode, const std::string& more = "") {
+  std::string bytes;
+  for (const glm::vec3 p :
+       {glm::vec3(0, 0, 0), glm::vec3(1, 0, 0), glm::vec3(0, 1, 0), glm::vec3(1, 1, 0)})
+    append(bytes, p);
+  static constexpr char kDigits[] =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string base64;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const auto byte = [&](std::size_t k) { return unsigned(static_cast<unsigned char>(bytes[k])); };
+    const unsigned bits = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
+    for (int shift = 18; shift >= 0; shift -= 6) base64 += kDigits[bits >> shift & 63];
+  }
+  return concat(
+      R"({"asset":{"version":"2.0"},)", more,
+      R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"mode":)", mode,
+      R"(}]}],"accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"}],)",
+      R"("bufferViews":[{"buffer":0,"byteLength":48}],)",
+      R"("buffers":[{"byteLength":48,"uri":"data:application/octet-stream;base64,)", base64,
+      "\"}]}");
+}
+
+TEST(ReadMesh, StripsAndFansOfGltfAreTriangles) {
+  const ScratchFolder folder;
+  const auto triangles = [&](int mode) {
+    write_text(folder / "square.gltf", gltf_square(mode));
+    return read_mesh(folder / "square.gltf").triangles;
+  };
+  using Triangle = std::array<std::uint32_t, 3>;
+  EXPECT_THAT(triangles(4), testing::ElementsAre(Triangle{0, 1, 2}));
+  EXPECT_THAT(triangles(5), testing::ElementsAre(Triangle{0, 1, 2}, Triangle{2, 1, 3}));
+  EXPECT_THAT(triangles(6), testing::ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
+}
+
+TEST(ReadMesh, OffWithColoursNormalsAndCountsBesideTheKeyword) {
+  const ScratchFolder folder;
+  write_text(folder / "a.off",
+             "CNOFF 4 2 0 # counts\r\n0 0 0 0 0 1 255 0 0 255\n+1 0 0 0 0 1 1 1 1 1\n\n"
+             "1 1 0 0 0 1 1 1 1 1\n0 1 0 0 0 1 1 1 1 1\n4 0 1 2 3 0.5 0.5 0.5\n2 0 1\n");
+  const TriMesh mesh = read_mesh(folder / "a.off");
+  EXPECT_EQ(mesh.positions.size(), 4u);
+  EXPECT_EQ(mesh.triangles.size(), 2u);
+}
+
 TEST(ReadMesh, PointsOnlyWhereFacesAreOptional) {
   const ScratchFolder folder;
   write_text(folder / "a.ply",
@@ -162,6 +207,11 @@ TEST(ReadMesh, BadFilesAreErrorsThatNameThem) {
       {"cut.stl", "cut.stl", stl_box().substr(0, 200)},
       {"cut.glb", "cut.glb", glb(gltf_json("", buffer.size()), buffer).substr(0, 700)},
       {"index.glb", "index.glb", glb(gltf_json("", buffer.size()), gltf_buffer(4000))},
+      {"draco.gltf", "KHR_draco_mesh_compression",
+       gltf_square(4, R"("extensionsRequired":["KHR_draco_mesh_compression"],)")},
+      {"loop.gltf", "several parents",
+       gltf_square(4, R"("scenes":[{"nodes":[0]}],"nodes":[{"children":[0]}],)")},
+      {"cut.gltf", "not valid JSON", gltf_square(4).substr(0, 300)},
       {"none.gltf", "none.gltf", gltf_json("missing.bin", buffer.size())},
   };
   for (const auto& c : cases) {

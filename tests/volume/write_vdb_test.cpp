@@ -129,6 +129,21 @@ TEST_F(WriteVdb, ComesBackAsItWas) {
     ASSERT_FLOAT_EQ(back.distance[i], volume_.distance[i]);
 }
 
+// OpenVDB takes voxels of such a size for nothing.
+TEST_F(WriteVdb, TinyScenesComeBackToo) {
+  SparseVolume tiny = volume_;
+  tiny.grid.voxel_size *= 1e-8;
+  tiny.grid.origin *= 1e-8;
+  write_vdb(folder_ / "tiny.vdb", tiny, {}, {});
+  const SparseVolume back = read_vdb_surface(folder_ / "tiny.vdb");
+  EXPECT_NEAR(back.grid.voxel_size / tiny.grid.voxel_size, 1, 1e-12);
+  EXPECT_LT(glm::distance(back.grid.origin, tiny.grid.origin), 1e-9 * tiny.grid.voxel_size);
+  for (std::size_t i = 0; i < back.distance.size(); ++i)
+    ASSERT_FLOAT_EQ(back.distance[i], tiny.distance[i]);
+  EXPECT_EQ(vdb_unit(1e-3), 1);
+  EXPECT_EQ(vdb_unit(3e5), 1);
+}
+
 TEST_F(WriteVdb, SurfaceAloneAndNothingAtAll) {
   write_vdb(folder_ / "b.vdb", volume_, {}, {{"voxel_size", "text that gives way"}});
   openvdb::io::File file((folder_ / "b.vdb").string());
