@@ -41,6 +41,7 @@ std::string to_json(const PhotoAgreement& a, const std::string& around) {
   ordered_json& p = j["photos"];
   p["scene"] = a.scene;
   p["mask_source"] = a.mask_source;
+  if (!a.photometric.empty()) p["photometric"] = a.photometric;
   p["lenders"] = a.lenders;
   p["window"] = a.options.window;
   p["blend"] = a.options.predict.blend;

@@ -60,6 +60,7 @@ struct PhotoScore {
 struct PhotoAgreement {
   PhotoOptions options;
   std::string result_name, scene, mask_source;  ///< as the caller names them
+  std::string photometric;  ///< how the photographs were made alike; empty: they were not
   std::size_t lenders = 0;                      ///< photographs that lent colour
   std::vector<PhotoScore> views;                ///< held out, in the order asked for
   PhotoScore all;                               ///< sums of them; masked when all are

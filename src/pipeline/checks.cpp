@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "carving/fit_grid.h"
 #include "core/error.h"
 
 namespace photohull::pipeline {
@@ -48,12 +49,8 @@ std::vector<std::string> check_box(const Box& box, const std::string& source,
     throw Error(concat("the box from ", source, " has no volume: its sides are ", size.x, ", ",
                        size.y, ", ", size.z, "; give --box \"x0 y0 z0 x1 y1 z1\""));
   std::vector<std::string> blind;
-  for (const SourceView& view : views) {
-    if (box.contains(view.camera.center()))
-      throw Error(concat("camera ", view.name, " stands inside the box from ", source,
-                         ": make --box smaller, or check that the poses are world-to-camera"));
+  for (const SourceView& view : views)
     if (!sees(view.camera, box)) blind.push_back(view.name);
-  }
   if (blind.size() == views.size())
     throw Error(concat("no camera has the box from ", source,
                        " on its image: check the box's units and the poses' direction "
@@ -64,7 +61,16 @@ std::vector<std::string> check_box(const Box& box, const std::string& source,
                  blind.size() > 1 ? ", ..." : "")};
 }
 
-void check_memory(std::int64_t bytes, const GridSpec& grid) {
+void check_cameras_outside(const Box& box, const std::string& source,
+                           std::span<const SourceView> views) {
+  for (const SourceView& view : views)
+    if (box.contains(view.camera.center()))
+      throw Error(concat("camera ", view.name, " stands inside the box from ", source,
+                         ": make --box smaller, or check that the poses are world-to-camera"));
+}
+
+void check_memory(const GridSpec& grid) {
+  const std::int64_t bytes = carving::estimate_memory(grid);
   const std::int64_t physical =
       std::int64_t(sysconf(_SC_PHYS_PAGES)) * std::int64_t(sysconf(_SC_PAGE_SIZE));
   if (bytes <= physical) return;

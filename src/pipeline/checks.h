@@ -10,13 +10,17 @@
 
 namespace photohull::pipeline {
 
-/// Throws Error when the scene has no usable box, a camera stands inside it or none has it on its
-/// image; returns warnings about cameras that miss it.
+/// Throws Error when the scene has no usable box or no camera has it on its image; returns warnings
+/// about cameras that miss it.
 std::vector<std::string> check_box(const Box& box, const std::string& source,
                                    std::span<const SourceView> views);
 
-/// Throws Error when `bytes` exceed the machine's memory.
-void check_memory(std::int64_t bytes, const GridSpec& grid);
+/// Throws Error when a camera stands inside the box.
+void check_cameras_outside(const Box& box, const std::string& source,
+                           std::span<const SourceView> views);
+
+/// Throws Error when a volume of the lattice would exceed the machine's memory.
+void check_memory(const GridSpec& grid);
 
 /// Why nothing of the box is left: voxels that are too large, or the views whose silhouettes alone
 /// remove the most of it.

@@ -41,7 +41,7 @@ std::string job_identity(const ReconstructOptions& options, const Scene& scene,
   text << std::setprecision(17) << PHOTOHULL_VERSION << '\n'
        << device << '\n'
        << to_string(options.quality) << ' ' << to_string(options.effective_method()) << ' '
-       << int(options.load.masks) << '\n';
+       << int(options.load.masks) << ' ' << to_string(options.photometric) << '\n';
   for (const std::string& tuned : options.tune) text << std::quoted(tuned) << '\n';
   text << grid.voxel_size << ' ' << grid.origin.x << ' ' << grid.origin.y << ' ' << grid.origin.z
        << ' ' << grid.bricks.x << ' ' << grid.bricks.y << ' ' << grid.bricks.z << '\n';
@@ -52,6 +52,7 @@ std::string job_identity(const ReconstructOptions& options, const Scene& scene,
   for (const SourceView& view : scene.views) {
     add_file(view.image, text);
     add_file(view.mask, text);
+    add_file(view.plate, text);
     add_camera(view, text);
   }
   const std::string all = text.str();

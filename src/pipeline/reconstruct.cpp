@@ -7,19 +7,25 @@
 #include <cmath>
 #include <memory>
 
+#include "assess/verdict.h"
+#include "assess/wrong_views.h"
 #include "calib/crop.h"
+#include "calib/mask_bias.h"
 #include "calib/noise.h"
 #include "calib/prepare_views.h"
 #include "calib/silhouette.h"
 #include "carving/fit_grid.h"
 #include "carving/hull.h"
+#include "carving/object_box.h"
 #include "carving/photo.h"
 #include "carving/thin_parts.h"
 #include "core/error.h"
 #include "io/image_file.h"
 #include "pipeline/checks.h"
 #include "pipeline/job_identity.h"
+#include "pipeline/mask_policy.h"
 #include "pipeline/result_files.h"
+#include "pipeline/self_check.h"
 #include "pipeline/stage_clock.h"
 #include "pipeline/stage_weights.h"
 #include "pipeline/tuning.h"
@@ -52,10 +58,17 @@ constexpr int kDoubtingViews = 3;
 constexpr double kDoubtfulRim = 2;
 constexpr double kLeastEvidence = 0.1;    // share of the surface below which a result is doubtful
 constexpr double kDebrisFraction = 5e-4;  // of the largest part's voxels
+constexpr int kPhotometricVoxels = 160;   // along the box, of the hull that gains are measured on
+constexpr double kOversized = 1.8;        // times the object's box: the box is made smaller
 constexpr int kCropMargin = 24;           // pixels around the box's projection: patches, mip levels
 constexpr double kDetail = 1.5;           // pixels: what refinement resolves, by its patches
 constexpr std::size_t kFewestThinVoxels = 32;  // a hull of fewer, all of them thin, is none
 constexpr double kBoxSlack = 0.5;              // voxels that the surface may stand out of the box
+
+double longest_side(const Box& box) {
+  const glm::dvec3 size = box.size();
+  return std::max({size.x, size.y, size.z});
+}
 
 double voxel_size_of(const ReconstructOptions& options, const Box& box,
                      std::span<const Camera> cameras) {
@@ -76,6 +89,12 @@ double voxel_size_of(const ReconstructOptions& options, const Box& box,
                        "side is ",
                        2 * largest, "; check the box's units, or give --voxel-size"));
   return size;
+}
+
+std::vector<Camera> cameras_of(std::span<const SourceView> views) {
+  std::vector<Camera> cameras;
+  for (const SourceView& view : views) cameras.push_back(view.camera);
+  return cameras;
 }
 
 double median_noise(std::span<const View> views) {
@@ -107,12 +126,21 @@ class Job {
     clock_.run("views", Weights::kViews, [&] { prepare(); });
     if (options_.refine_cameras != RefineCameras::kOff)
       clock_.run("cameras", Weights::kCameras, [&] { refine_cameras(); });
+    tighten_box();
+    fit_grid();
     crop();
     const bool refining = options_.effective_method() == Method::kRefine;
     SparseVolume volume = clock_.run("hull", Weights::kHull, [&] {
       measure_silhouettes();
+      correct_masks();
+      leave_out_wrong_views();
       return refining ? SparseVolume() : carve_hull();
     });
+    // Before colours are compared, where silhouettes give a surface.
+    const bool photometric = options_.photometric != Photometric::kOff;
+    const bool on_hull = photometric && any_mask();
+    if (on_hull)
+      clock_.run("photometric", Weights::kPhotometric, [&] { correct_photometric_on_hull(); });
     // The other samplers weight by the masks.
     if (!refining && sampler() == projtex::Sampler::kMipmap)
       for (View& view : views_) std::vector<std::uint8_t>().swap(view.mask.coverage);
@@ -125,12 +153,20 @@ class Job {
       volume = clock_.run("photo", Weights::kPhoto, [&] { return carve_photo(volume); });
     clock_.run("clean", Weights::kClean, [&] { remove_small_components(volume, kDebrisFraction); });
     TriMesh mesh = clock_.run("mesh", Weights::kMesh, [&] { return extract(volume); });
+    if (photometric && !on_hull)
+      clock_.run("photometric", Weights::kPhotometric, [&] {
+        if (!correct_photometric(mesh, grid_.voxel_size)) return;
+        images_.reset();
+        context_->release_deleted();
+        images_ = std::make_unique<projtex::ImageSet>(views_);
+      });
     VolumeAttributes attributes = clock_.run("colour", Weights::kColour, [&] {
       colour(mesh, files);
       return attributes_from_mesh(volume, mesh);
     });
     images_.reset();
     context_->release_deleted();
+    clock_.run("verdict", Weights::kVerdict, [&] { judge(mesh); });
     if (options_.unseen == Unseen::kOpen) open_unseen(mesh);
     report_.uniform_triangles = std::int64_t(mesh.triangles.size());
     if (options_.mesh_error.value > 0)
@@ -170,9 +206,33 @@ class Job {
     report_.box_source = scene_.box_source;
     for (const std::string& text : check_box(*scene_.box, scene_.box_source, scene_.views))
       warn(text);
-    for (const SourceView& view : scene_.views) cameras_.push_back(view.camera);
-    grid_ = carving::fit_grid(*scene_.box, voxel_size_of(options_, *scene_.box, cameras_));
-    check_memory(carving::estimate_memory(grid_), grid_);
+    // Else the voxels' size follows the box, which may become smaller.
+    if (options_.resolution || options_.voxel_size) check_memory(lattice(cameras_of(scene_.views)));
+  }
+
+  /// A box that is much larger than the object would waste the voxels, and far from the object few
+  /// views see what silhouettes do not reject.
+  void tighten_box() {
+    if (!carving::box_is_oversized(*scene_.box, views_)) return;
+    const Box box = carving::object_box(*scene_.box, views_);
+    const double factor = longest_side(*scene_.box) / longest_side(box);
+    if (factor < kOversized) return;
+    warn(concat("the box from ", scene_.box_source, " is ", std::round(10 * factor) / 10,
+                " times larger than what the silhouettes leave: the object's own box is taken, "
+                "and --resolution counts along that"));
+    scene_.box = report_.box = box;
+    scene_.box_source = report_.box_source += ", made smaller by the silhouettes";
+  }
+
+  GridSpec lattice(std::span<const Camera> cameras) const {
+    return carving::fit_grid(*scene_.box, voxel_size_of(options_, *scene_.box, cameras));
+  }
+
+  void fit_grid() {
+    check_cameras_outside(*scene_.box, scene_.box_source, scene_.views);
+    cameras_ = projtex::cameras_of(views_);
+    grid_ = lattice(cameras_);
+    check_memory(grid_);
     report_.grid = grid_;
   }
 
@@ -180,25 +240,48 @@ class Job {
     const ViewLoader loader{[](const fs::path& path) { return io::read_image(path); },
                             [](const fs::path& path) { return io::read_mask(path); }};
     PrepareOptions prepare_options;
-    if (options_.load.masks == io::MaskSource::kNone) prepare_options.masks = MaskPolicy::kNone;
+    prepare_options.masks = mask_policy(options_.load.masks);
     PreparedViews prepared = prepare_views(scene_, loader, prepare_options, progress_);
     views_ = std::move(prepared.views);
     report_.noise_sigma = median_noise(views_);
     for (const std::string& text : prepared.warnings) warn(text);
     report_.mask_source = prepared.mask_source;
     report_.mask_confidence = prepared.mask_confidence;
+    for (std::size_t i = 0; i < views_.size(); ++i)
+      report_.masks.push_back(
+          {views_[i].name, prepared.masks[i].source, prepared.masks[i].confidence});
   }
 
   void refine_cameras() {
     RefineCamerasOptions o;
-    o.intrinsics = options_.refine_cameras == RefineCameras::kPosesAndIntrinsics;
+    if (options_.refine_cameras == RefineCameras::kPosesAndIntrinsics)
+      o.intrinsics = SharedIntrinsics::kAll;
+    o.given = undistorted_tracks(scene_, views_);
+    o.box = scene_.box;
     const CameraRefinement found = photohull::refine_cameras(views_, o, progress_);
     const bool use =
         found.changed && (options_.refine_cameras != RefineCameras::kAuto || pays(found));
     report_.camera_refinement = to_json(found, scene_, use);
     if (!use) return;
+    cameras_moved_ = found.moved;
     apply(found, scene_);
     for (std::size_t i = 0; i < views_.size(); ++i) views_[i].camera = found.cameras[i];
+  }
+
+  void correct_photometric_on_hull() {
+    const double coarse = carving::voxel_size_for(*scene_.box, kPhotometricVoxels);
+    const GridSpec grid = carving::fit_grid(*scene_.box, std::max(coarse, grid_.voxel_size));
+    correct_photometric(extract_mesh(hull_at(grid)), grid.voxel_size);
+  }
+
+  /// Whether the views' pixels changed.
+  bool correct_photometric(const TriMesh& mesh, double voxel_size) {
+    const PhotometricOutcome found = pipeline::correct_photometric(
+        options_.photometric, scene_, mesh, voxel_size, report_.noise_sigma, views_, progress_);
+    report_.photometric = found.json;
+    report_.photometric_line = found.line;
+    if (!found.warning.empty()) warn(found.warning);
+    return found.used;
   }
 
   void crop() {
@@ -220,6 +303,41 @@ class Job {
     tbb::parallel_for(std::size_t(0), views_.size(), [&](std::size_t i) {
       if (!views_[i].mask.empty()) silhouette_distances_[i] = silhouette_distance(views_[i].mask);
     });
+  }
+
+  /// Masks that are all too small carve the object itself away.
+  void correct_masks() {
+    double offset = options_.mask_offset.value_or(0);
+    if (!options_.mask_offset) {
+      const MaskBias bias = measure_mask_bias(views_, silhouette_distances_);
+      if (bias.counts()) offset = bias.pixels;
+    }
+    report_.mask_offset = offset;
+    if (offset == 0) return;
+    if (!options_.mask_offset)
+      warn(concat("the masks are about ", std::round(10 * std::abs(offset)) / 10, " px too ",
+                  offset > 0 ? "small" : "large",
+                  ": outlines are taken from where the photographs' edges are (--mask-offset 0 "
+                  "takes the masks as they are)"));
+    for (std::size_t i = 0; i < views_.size(); ++i)
+      if (!views_[i].mask.empty()) move_outline(offset, views_[i].mask, silhouette_distances_[i]);
+  }
+
+  /// One view that is far off carves away what all others have.
+  void leave_out_wrong_views() {
+    const assess::SilhouetteConsistency found =
+        assess::find_wrong_views(*scene_.box, cameras_, pointers(silhouette_distances_));
+    contradiction_ = found.uncovered_left;
+    for (auto i = found.wrong.rbegin(); i != found.wrong.rend(); ++i) {
+      warn(concat("view ", views_[*i].name,
+                  " is left out: without it the other views' silhouettes agree; check its camera "
+                  "and its mask"));
+      report_.left_out.push_back(views_[*i].name);
+      views_.erase(views_.begin() + *i);
+      scene_.views.erase(scene_.views.begin() + *i);
+      cameras_.erase(cameras_.begin() + *i);
+      silhouette_distances_.erase(silhouette_distances_.begin() + *i);
+    }
   }
 
   std::vector<carving::Silhouette> silhouettes() const {
@@ -394,6 +512,21 @@ class Job {
     write_ply(files.open("evidence.ply"), mesh, scalars);
   }
 
+  void judge(const TriMesh& mesh) {
+    const assess::Signals signals = gather_signals({.mesh = &mesh,
+                                                    .box = &*scene_.box,
+                                                    .voxel_size = grid_.voxel_size,
+                                                    .views = views_,
+                                                    .silhouettes = silhouette_distances_,
+                                                    .mask_confidence = report_.mask_confidence,
+                                                    .contradiction = contradiction_,
+                                                    .cameras_moved = cameras_moved_});
+    std::vector<std::string> names;
+    for (const View& view : views_) names.push_back(view.name);
+    report_.verdict = assess::judge(signals, names);
+    report_.verdict_json = to_json(report_.verdict, signals, views_);
+  }
+
   /// After colouring, which tells what is seen, and before simplification, which keeps the border.
   void open_unseen(TriMesh& mesh) {
     mesh = remove_unseen(mesh);
@@ -416,6 +549,10 @@ class Job {
 
   void write(const SparseVolume& volume, const VolumeAttributes& attributes, const TriMesh& mesh,
              ResultFiles& files) {
+    if (vdb_unit(grid_.voxel_size) != 1)
+      warn(concat("volume.vdb counts in ", vdb_unit(grid_.voxel_size),
+                  " scene units (its metadata scene_unit): OpenVDB has no voxels as small as ",
+                  grid_.voxel_size));
     write_vdb(files.open("volume.vdb"), volume, attributes, {{"photohull_options", option_line()}});
     progress_.check_cancelled();
     write_ply(files.open("mesh.ply"), mesh);
@@ -467,6 +604,8 @@ class Job {
   std::unique_ptr<gpu::Context> context_;
   std::unique_ptr<projtex::ImageSet> images_;
   std::vector<SilhouetteDistance> silhouette_distances_;
+  double contradiction_ = 0;  ///< of the silhouettes that are used
+  double cameras_moved_ = 0;  ///< pixels
   SharpenOptions sharpen_;
   std::int64_t hull_samples_ = 0, photo_samples_ = 0, refine_samples_ = 0;
 };

@@ -10,6 +10,7 @@
 #include "carving/statistic.h"
 #include "core/progress.h"
 #include "io/load_scene.h"
+#include "pipeline/photometric.h"
 #include "pipeline/refine_cameras.h"
 #include "pipeline/report.h"
 #include "projtex/sampler.h"
@@ -36,6 +37,9 @@ struct MeshError {
 /// Reads "0.25" (voxels) or "0.002u" (world units). Throws UsageError.
 MeshError parse_mesh_error(const std::string& text);
 
+/// Reads "auto" (nothing) or pixels. Throws UsageError.
+std::optional<double> parse_mask_offset(const std::string& text);
+
 struct ReconstructOptions {
   std::filesystem::path scene;   ///< folder or file
   std::filesystem::path output;  ///< folder; made when it does not exist
@@ -45,6 +49,9 @@ struct ReconstructOptions {
   Quality quality = Quality::kNormal;
   std::optional<Method> method;  ///< default: hull for draft, refine otherwise
   RefineCameras refine_cameras = RefineCameras::kOff;
+  Photometric photometric = Photometric::kOff;
+  /// Pixels by which outlines lie outside the masks'; nothing: measured (calib/mask_bias.h).
+  std::optional<double> mask_offset;
   MeshError mesh_error;
   Unseen unseen = Unseen::kClosed;
   /// How the sweep resamples photographs and what decides there; voxel coloring and space carving

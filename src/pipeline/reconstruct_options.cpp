@@ -10,6 +10,8 @@
 namespace photohull::pipeline {
 namespace {
 
+constexpr double kFarthestMaskOffset = 100;  // pixels
+
 /// Throws UsageError for options of the plane sweep where there is none.
 void check_sweep_options(const ReconstructOptions& o) {
   if (o.supersample && (*o.supersample < 1 || *o.supersample > projtex::kMaxSupersample))
@@ -55,6 +57,8 @@ std::string mask_option(const io::LoadSceneOptions& load) {
   switch (load.masks) {
     case io::MaskSource::kAuto:
       return "auto";
+    case io::MaskSource::kBackground:
+      return "background";
     case io::MaskSource::kNone:
       return "none";
     case io::MaskSource::kDirectory:
@@ -106,6 +110,16 @@ MeshError parse_mesh_error(const std::string& text) {
   return error;
 }
 
+std::optional<double> parse_mask_offset(const std::string& text) {
+  if (text == "auto") return std::nullopt;
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (end == text.c_str() || *end != 0 || !(std::abs(value) <= kFarthestMaskOffset))
+    throw UsageError(concat("--mask-offset ", text, ": expected auto, or pixels from ",
+                            -kFarthestMaskOffset, " to ", kFarthestMaskOffset));
+  return value;
+}
+
 double footprint_factor(Quality quality) {
   switch (quality) {
     case Quality::kDraft:
@@ -153,12 +167,15 @@ NamedValues named_options(const ReconstructOptions& options) {
   if (!options.load.hold_out.empty()) list.emplace_back("hold_out", options.load.hold_out);
   if (options.refine_cameras != RefineCameras::kOff)
     list.emplace_back("refine_cameras", to_string(options.refine_cameras));
+  if (options.photometric != Photometric::kOff)
+    list.emplace_back("photometric", to_string(options.photometric));
   list.emplace_back("mesh_error",
                     number(options.mesh_error.value) + (options.mesh_error.world_units ? "u" : ""));
   list.emplace_back("unseen", to_string(options.unseen));
   list.emplace_back("masks", mask_option(options.load));
-  if (options.refine_cameras != RefineCameras::kOff)
-    list.emplace_back("refine_cameras", to_string(options.refine_cameras));
+  list.emplace_back("mask_offset", options.mask_offset ? number(*options.mask_offset) : "auto");
+  if (!options.load.background.empty())
+    list.emplace_back("background", options.load.background.string());
   if (options.load.pixel_center)
     list.emplace_back("pixel_center", number(*options.load.pixel_center));
   std::string tuning;

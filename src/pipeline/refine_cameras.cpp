@@ -45,6 +45,8 @@ std::string to_json(const CameraRefinement& r, const Scene& scene, bool used) {
   j["changed"] = r.changed;
   j["used"] = used;
   j["tracks"] = r.tracks;
+  j["given_tracks"] = r.given_tracks;
+  j["surface_patches"] = r.patches;
   j["tangents"] = r.tangents;
   j["rounds"] = r.rounds;
   j["residual_before"] = r.all.before;

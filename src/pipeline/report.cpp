@@ -23,13 +23,20 @@ std::string Report::to_json() const {
   for (const auto& [name, value] : options) j["options"][name] = value;
   j["box"] = {
       {"min", to_json_array(box.min)}, {"max", to_json_array(box.max)}, {"source", box_source}};
-  j["masks"] = {{"source", mask_source}, {"confidence", mask_confidence}};
+  j["masks"] = {{"source", mask_source}, {"confidence", mask_confidence}, {"offset", mask_offset}};
+  j["masks"]["views"] = ordered_json::array();
+  for (const MaskReport& m : masks)
+    j["masks"]["views"].push_back(
+        {{"name", m.view}, {"source", m.source}, {"confidence", m.confidence}});
   j["noise_sigma"] = noise_sigma;
   j["grid"] = {{"origin", to_json_array(grid.origin)},
                {"voxel_size", grid.voxel_size},
                {"voxels", to_json_array(grid.voxels())},
                {"bricks_stored", bricks_stored}};
   if (!camera_refinement.empty()) j["camera_refinement"] = ordered_json::parse(camera_refinement);
+  if (!photometric.empty()) j["photometric"] = ordered_json::parse(photometric);
+  j["left_out"] = left_out;
+  if (!verdict_json.empty()) j["verdict"] = ordered_json::parse(verdict_json);
   j["stages"] = ordered_json::array();
   for (const StageReport& s : stages)
     j["stages"].push_back({{"name", s.name},

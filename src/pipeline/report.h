@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "assess/verdict.h"
 #include "core/box.h"
 #include "core/grid.h"
 
@@ -57,6 +58,12 @@ struct SamplingReport {
   std::string visibility;
 };
 
+/// Where a view's mask came from, and how sure it is (calib's MaskJudgement).
+struct MaskReport {
+  std::string view, source;
+  double confidence = 0;
+};
+
 struct Report {
   std::string version;
   std::string scene, format, device;
@@ -66,8 +73,15 @@ struct Report {
   std::string box_source;
   std::string mask_source;
   double mask_confidence = 0;
+  double mask_offset = 0;         ///< pixels by which the masks' outlines were moved outward
+  std::vector<MaskReport> masks;  ///< of each view
   std::string camera_refinement;  ///< JSON (pipeline/refine_cameras.h); empty: not asked for
-  double noise_sigma = 0;         ///< square-root-encoded units of full scale
+  std::string photometric;        ///< JSON (pipeline/photometric.h); empty: not asked for
+  std::string photometric_line;   ///< the same, for the screen
+  assess::Verdict verdict;
+  std::string verdict_json;           ///< the same with what it rests on (pipeline/self_check.h)
+  std::vector<std::string> left_out;  ///< views whose silhouettes contradict the others'
+  double noise_sigma = 0;             ///< square-root-encoded units of full scale
   GridSpec grid;
   std::vector<StageReport> stages;
   std::int64_t nodes_tested = 0, bricks_evaluated = 0;

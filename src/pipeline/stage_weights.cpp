@@ -8,12 +8,14 @@ double total_weight(const ReconstructOptions& options) {
   const Method method = options.effective_method();
   return Weights::kScene + Weights::kViews +
          (options.refine_cameras != RefineCameras::kOff ? Weights::kCameras : 0) +
-         Weights::kDevice + Weights::kHull + Weights::kImages +
+         (options.photometric != Photometric::kOff ? Weights::kPhotometric : 0) + Weights::kDevice +
+         Weights::kHull + Weights::kImages +
          (method == Method::kHull     ? 0
           : method == Method::kRefine ? Weights::kRefine
                                       : Weights::kPhoto) +
          (options.mesh_error.value > 0 ? Weights::kSimplify : 0) + Weights::kClean +
-         Weights::kMesh + Weights::kColour + Weights::kPreview + Weights::kFiles;
+         Weights::kMesh + Weights::kColour + Weights::kVerdict + Weights::kPreview +
+         Weights::kFiles;
 }
 
 }  // namespace photohull::pipeline

@@ -8,7 +8,8 @@ namespace photohull::pipeline {
 struct Weights {
   static constexpr double kScene = 0.1, kViews = 3, kCameras = 100, kDevice = 0.5, kHull = 3.5,
                           kImages = 2, kPhoto = 110, kRefine = 50, kClean = 0.2, kMesh = 0.6,
-                          kColour = 2, kSimplify = 15, kPreview = 2.7, kFiles = 2;
+                          kPhotometric = 1, kColour = 2, kVerdict = 3, kSimplify = 15,
+                          kPreview = 2.7, kFiles = 2;
 };
 
 }  // namespace photohull::pipeline

@@ -1,0 +1,166 @@
+#include "assess/verdict.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/median.h"
+
+namespace photohull::assess {
+namespace {
+
+// Fitted on the runs of bench/plans/stress.json (docs/stability.md): beyond the first figure
+// results are doubtful, beyond the second they count as failed.
+struct Limits {
+  double doubtful, failed;
+};
+constexpr Limits kResidual{0.5, 2};           // of the distance that counts as far off
+constexpr Limits kMoved{2, 8};                // the same
+constexpr Limits kFarOff{0.15, 0.6};          // share of the matches
+constexpr Limits kUnmatched{0.42, INFINITY};  // of the surface, textured and not found again
+constexpr Limits kUnsure{0.3, INFINITY};      // of the surface, where matches are few
+constexpr Limits kUnseen{0.3, 0.8};           // of the surface
+constexpr Limits kAtBox{0.25, INFINITY};      // of the surface
+constexpr Limits kMissed{0.04, 0.3};          // of the silhouettes
+constexpr Limits kExcess{0.06, 0.3};          // of the surface's projection
+constexpr Limits kContradiction{0.02, 0.5};   // of the silhouettes' rays
+constexpr double kEnoughMatched = 0.7;        // of the textured surface
+constexpr double kLeastTexture = 0.1;         // of the surface, for shares of it to mean anything
+constexpr double kOutlying = 3;               // times what is usual: a view's residual
+constexpr int kFewestMatches = 5;             // of a view, to accuse it
+
+std::string percent(double share) { return concat(std::lround(100 * share), " %"); }
+
+std::string pixels(double value) { return concat(std::round(10 * value) / 10, " px"); }
+
+/// Views whose matches lie clearly farther from the epipolar lines than usual.
+std::vector<std::size_t> outlying_views(const Signals& s) {
+  std::vector<double> residuals;
+  for (const ViewResidual& v : s.match.views)
+    if (v.matches >= kFewestMatches) residuals.push_back(v.pixels);
+  const double usual = median(residuals);
+  std::vector<std::size_t> views;
+  for (std::size_t i = 0; i < s.match.views.size(); ++i) {
+    const ViewResidual& v = s.match.views[i];
+    if (v.matches >= kFewestMatches && v.pixels > kOutlying * usual &&
+        v.pixels * s.pixel_size > kResidual.doubtful * s.far)
+      views.push_back(i);
+  }
+  // All of them at once is no view's fault.
+  if (views.size() > residuals.size() / 3) views.clear();
+  return views;
+}
+
+class Judge {
+ public:
+  Judge(const Signals& signals, const std::vector<std::string>& names) : s_(signals), n_(names) {}
+
+  Verdict run() {
+    cameras();
+    surface();
+    silhouettes();
+    coverage();
+    return std::move(verdict_);
+  }
+
+ private:
+  /// Takes the reason where the value is beyond its limits.
+  void weigh(double value, const Limits& limits, const std::string& reason) {
+    if (!(value > limits.doubtful)) return;
+    const Level level = value > limits.failed ? Level::kFailed : Level::kDoubtful;
+    // What is worst comes first.
+    if (level > verdict_.level)
+      verdict_.reasons.insert(verdict_.reasons.begin(), reason);
+    else
+      verdict_.reasons.push_back(reason);
+    verdict_.level = std::max(verdict_.level, level);
+  }
+
+  void cameras() {
+    const double residual = s_.match.residual * s_.pixel_size / s_.far;
+    const std::vector<std::size_t> outlying = outlying_views(s_);
+    if (!outlying.empty()) {
+      double worst = 0;
+      std::string list;
+      for (const std::size_t i : outlying) {
+        worst = std::max(worst, s_.match.views[i].pixels);
+        list += (list.empty() ? "" : ", ") + n_[i];
+      }
+      weigh(worst * s_.pixel_size / s_.far, {kResidual.doubtful, INFINITY},
+            concat("the views ", list, " disagree with the rest by up to ", pixels(worst),
+                   ": calibrate them again, leave them out (--views), or try --refine-cameras "
+                   "auto"));
+    }
+    weigh(residual, kResidual,
+          concat("the cameras disagree by ", pixels(s_.match.residual),
+                 " (median): calibrate again, or try --refine-cameras auto"));
+    weigh(s_.cameras_moved * s_.pixel_size / s_.far, kMoved,
+          concat("the cameras had to be moved by ", pixels(s_.cameras_moved),
+                 " to agree: shape is right, but place and size may be off by as much"));
+  }
+
+  void surface() {
+    if (s_.match.textured < kLeastTexture) {
+      // Silhouettes alone may still show all there is.
+      if (s_.unsure > kUnsure.doubtful || !s_.masks)
+        weigh(1 - s_.match.textured, {1 - kLeastTexture, INFINITY},
+              concat("too little texture on ", percent(1 - s_.match.textured),
+                     " of the surface: the hull stands there; paint or project a pattern, or add "
+                     "light"));
+      return;
+    }
+    const double unmatched = s_.match.textured * (1 - s_.match.matched);
+    weigh(unmatched, kUnmatched,
+          concat("on ", percent(unmatched),
+                 " of the surface there is texture that no second view shows: cameras, focus, "
+                 "gloss or moving parts may be the cause"));
+    weigh(s_.match.beyond_far, kFarOff,
+          concat("two views put ", percent(s_.match.beyond_far),
+                 " of what they both show more than 0.5 % of the diagonal off the surface: look at "
+                 "the confidence in mesh.ply"));
+  }
+
+  void silhouettes() {
+    if (!s_.masks) return;
+    weigh(s_.contradiction, kContradiction,
+          concat("the silhouettes contradict each other: ", percent(s_.contradiction),
+                 " of them can be filled by no shape; check masks and cameras"));
+    weigh(s_.missed, kMissed,
+          concat("the surface leaves ", percent(s_.missed),
+                 " of the silhouettes empty: check masks and cameras"));
+    weigh(s_.excess, kExcess,
+          concat(percent(s_.excess),
+                 " of the surface's picture lies on background: check masks "
+                 "and cameras"));
+  }
+
+  void coverage() {
+    weigh(s_.unseen, kUnseen,
+          concat("no view sees ", percent(s_.unseen),
+                 " of the surface: add views there, or use --unseen open"));
+    if (s_.match.matched < kEnoughMatched)  // else colours differ, and the surface is right
+      weigh(s_.unsure, kUnsure,
+            concat("confidence is below one half on ", percent(s_.unsure), " of the surface"));
+    weigh(s_.at_box, kAtBox,
+          concat(percent(s_.at_box),
+                 " of the surface lies on the box's sides: the box cuts the object off (make --box "
+                 "larger), or the masks do not show its outline"));
+  }
+
+  const Signals& s_;
+  const std::vector<std::string>& n_;
+  Verdict verdict_;
+};
+
+}  // namespace
+
+const char* to_string(Level level) {
+  constexpr std::array kNames = {"good", "doubtful", "failed"};
+  return kNames[std::size_t(level)];
+}
+
+Verdict judge(const Signals& signals, const std::vector<std::string>& names) {
+  return Judge(signals, names).run();
+}
+
+}  // namespace photohull::assess

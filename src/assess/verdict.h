@@ -1,0 +1,46 @@
+// What a reconstruction says of itself, without knowing the truth (docs/stability.md).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "assess/match_probes.h"
+#include "core/error.h"
+
+namespace photohull::assess {
+
+/// What the verdict rests on. Shares are in [0, 1].
+struct Signals {
+  int views = 0;                  ///< that were used
+  bool masks = false;             ///< has any view a silhouette?
+  double mask_confidence = 0;     ///< 1 for masks that were given
+  double pixel_size = 0;          ///< world units that a pixel covers at the object
+  double far = 0;                 ///< world units: half a percent of the surface's diagonal
+  double cameras_moved = 0;       ///< pixels, by --refine-cameras
+  double contradiction = 0;       ///< share of the silhouettes that no hull of all views fills
+  double missed = 0, excess = 0;  ///< SilhouetteFit, means over the views
+  double mean_confidence = 0;     ///< of the surface, the unseen with 0
+  double unsure = 0;              ///< share of the surface with confidence below one half
+  double unseen = 0;              ///< share of the surface that no view sees
+  double few_views = 0;           ///< share of the surface that fewer than three views see
+  double at_box = 0;              ///< share of the surface that lies on the box's sides
+  MatchEvidence match;
+};
+
+enum class Level { kGood, kDoubtful, kFailed };
+
+const char* to_string(Level level);
+
+/// What the process reports to its caller when a result failed by its verdict; the files are there.
+inline constexpr ExitCode kFailedVerdict{3};
+
+struct Verdict {
+  Level level = Level::kGood;
+  std::vector<std::string> reasons;  ///< sentences: what is wrong, and what to do; empty if good
+};
+
+/// `names` are the views', in the order of signals.match.views.
+Verdict judge(const Signals& signals, const std::vector<std::string>& names);
+
+}  // namespace photohull::assess

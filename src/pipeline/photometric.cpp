@@ -1,0 +1,128 @@
+#include "pipeline/photometric.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "calib/photometric_samples.h"
+#include "core/error.h"
+
+namespace photohull::pipeline {
+namespace {
+
+constexpr double kPatch = 2;  // voxels: about the error of a surface, and so large are the windows
+
+using nlohmann::ordered_json;
+
+ordered_json array_of(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+
+/// Area-weighted means of the faces' normals.
+TriMesh with_normals(TriMesh mesh) {
+  mesh.normals.assign(mesh.positions.size(), glm::vec3(0));
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const glm::vec3 n =
+        glm::cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a]);
+    for (const std::uint32_t i : {a, b, c}) mesh.normals[i] += n;
+  }
+  for (glm::vec3& n : mesh.normals)
+    if (const float length = glm::length(n); length > 0) n /= length;
+  return mesh;
+}
+
+std::string to_json(const PhotometricCalibration& c, const Scene& scene,
+                    const std::vector<int>& lenses, bool used) {
+  ordered_json j = {{"solved", c.solved},
+                    {"significant", c.significant},
+                    {"used", used},
+                    {"points", c.points},
+                    {"samples", c.samples},
+                    {"disagreement_before", c.disagreement_before},
+                    {"disagreement_after", c.disagreement_after},
+                    {"held_out_samples", c.held_out_samples},
+                    {"rms_gain", c.rms_gain},
+                    {"rms_gain_sigmas", c.rms_sigmas}};
+  j["lenses"] = ordered_json::array();
+  for (std::size_t l = 0; l < c.vignetting.size(); ++l)
+    j["lenses"].push_back({{"vignetting", c.vignetting[l]}, {"sigma", c.vignetting_sigma[l]}});
+  j["views"] = ordered_json::array();
+  for (std::size_t i = 0; i < c.views.size(); ++i)
+    j["views"].push_back({{"name", scene.views[i].name},
+                          {"gain", array_of(c.views[i].gain)},
+                          {"sigma", array_of(c.views[i].sigma)},
+                          {"samples", c.views[i].samples},
+                          {"solved", c.views[i].solved},
+                          {"lens", lenses[i]}});
+  return j.dump(2, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+std::string to_line(const PhotometricCalibration& c, bool used) {
+  if (!c.solved) return "photometric: too few surface points that several views see";
+  double low = INFINITY, high = 0, lost = 0;
+  for (const ViewGain& view : c.views)
+    for (int channel = 0; channel < 3; ++channel) {
+      low = std::min(low, view.gain[channel]);
+      high = std::max(high, view.gain[channel]);
+    }
+  for (const double v : c.vignetting) lost = std::max(lost, v);
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "photometric: gains %.3f to %.3f, corners lose %.0f %%; colours differ by %.1f %%, "
+                "corrected by %.1f %%: %s",
+                low, high, 100 * lost, 100 * c.disagreement_before, 100 * c.disagreement_after,
+                used ? "corrected" : "left as they are");
+  return text;
+}
+
+}  // namespace
+
+const char* to_string(Photometric photometric) {
+  switch (photometric) {
+    case Photometric::kOff:
+      return "off";
+    case Photometric::kAuto:
+      return "auto";
+    case Photometric::kOn:
+      return "on";
+  }
+  return "?";
+}
+
+PhotometricOutcome correct_photometric(Photometric photometric, const Scene& scene,
+                                       const TriMesh& mesh, double voxel_size, double noise_sigma,
+                                       std::vector<View>& views, const Progress& progress) {
+  PHOTOHULL_CHECK_OP(views.size(), ==, scene.views.size());
+  PHOTOHULL_CHECK(photometric != Photometric::kOff);
+  const std::vector<PhotometricFrame> frames = frames_of(scene);
+  const std::vector<int> lenses = shared_lenses(frames);
+  PhotometricOutcome out;
+  const bool complete = mesh.normals.size() == mesh.positions.size();
+  out.calibration = calibrate_photometric(
+      sample_photometric(complete ? mesh : with_normals(mesh), kPatch * voxel_size, views, frames,
+                         noise_sigma, progress),
+      lenses, {}, progress);
+  const PhotometricCalibration& c = out.calibration;
+  out.used = c.solved && (photometric == Photometric::kOn || c.pays);
+  if (out.used) apply_photometric(c, frames, lenses, views);
+  out.json = to_json(c, scene, lenses, out.used);
+  out.line = to_line(c, out.used);
+  if (photometric == Photometric::kOn && !c.solved)
+    out.warning =
+        "--photometric on: too few surface points are seen by several views to measure gains; "
+        "colours stay as photographed";
+  else if (out.used) {
+    std::string names;
+    int count = 0;
+    for (std::size_t i = 0; i < c.views.size(); ++i)
+      if (!c.views[i].solved && ++count <= 5)
+        names += (names.empty() ? "" : ", ") + scene.views[i].name;
+    if (count > 0)
+      out.warning = concat(count,
+                           " views show too little of the surface to measure their gains, "
+                           "and keep theirs: ",
+                           names, count > 5 ? ", ..." : "");
+  }
+  return out;
+}
+
+}  // namespace photohull::pipeline

@@ -1,0 +1,34 @@
+// Gains and vignetting of a scene's photographs, found from a surface, and what is reported.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calib/photometric.h"
+#include "core/image.h"
+#include "core/mesh.h"
+#include "core/scene.h"
+
+namespace photohull::pipeline {
+
+enum class Photometric { kOff, kAuto, kOn };
+
+const char* to_string(Photometric photometric);
+
+struct PhotometricOutcome {
+  PhotometricCalibration calibration;
+  bool used = false;    ///< the views' pixels were changed
+  std::string json;     ///< report.json's "photometric"
+  std::string line;     ///< one line for the screen
+  std::string warning;  ///< empty: none
+};
+
+/// Measures the views' gains on the mesh (`voxel_size` in world units: about its
+/// error; normals that it lacks come from its faces) and, where
+/// asked for (kOn) or where it pays (kAuto), divides their pixels by them. `views` are those of
+/// the scene, cropped or not. Not to be called with kOff. Throws Error, Cancelled.
+PhotometricOutcome correct_photometric(Photometric photometric, const Scene& scene,
+                                       const TriMesh& mesh, double voxel_size, double noise_sigma,
+                                       std::vector<View>& views, const Progress& progress);
+
+}  // namespace photohull::pipeline

@@ -1,0 +1,118 @@
+#include "pipeline/self_check.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "assess/silhouette_check.h"
+#include "assess/surface_probes.h"
+#include "carving/fit_grid.h"
+#include "raycast/ray_scene.h"
+
+namespace photohull::pipeline {
+namespace {
+
+constexpr std::size_t kProbes = 2000;
+constexpr double kLift = 0.75;        // voxels above the surface, to look past its own facets
+constexpr double kFar = 0.005;        // of the surface's diagonal
+constexpr double kContour = 2;        // pixels beside a silhouette's contour that do not count
+constexpr double kContourVoxels = 1;  // and voxels
+
+double diagonal(const TriMesh& mesh) {
+  glm::vec3 low = mesh.positions.front(), high = low;
+  for (const glm::vec3& p : mesh.positions) low = glm::min(low, p), high = glm::max(high, p);
+  return glm::distance(glm::dvec3(low), glm::dvec3(high));
+}
+
+double share_of(std::span<const assess::SurfaceProbe> probes, auto&& holds) {
+  return double(std::count_if(probes.begin(), probes.end(), holds)) /
+         double(std::max<std::size_t>(1, probes.size()));
+}
+
+void compare_silhouettes(const CheckedResult& result, const RayScene& rays,
+                         std::span<const Camera> cameras, assess::Signals& s) {
+  const double tolerance =
+      std::max(kContour, s.pixel_size > 0 ? kContourVoxels * result.voxel_size / s.pixel_size : 0);
+  const auto fits = assess::check_silhouettes(rays, *result.box, cameras,
+                                              pointers(result.silhouettes), tolerance);
+  int known = 0;
+  for (const assess::SilhouetteFit& fit : fits) {
+    known += fit.foreground > 0;
+    s.missed += fit.missed, s.excess += fit.excess;
+  }
+  if (known > 0) s.missed /= known, s.excess /= known;
+}
+
+}  // namespace
+
+std::vector<const SilhouetteDistance*> pointers(std::span<const SilhouetteDistance> silhouettes) {
+  std::vector<const SilhouetteDistance*> out;
+  for (const SilhouetteDistance& d : silhouettes) out.push_back(d.pixels.empty() ? nullptr : &d);
+  return out;
+}
+
+assess::Signals gather_signals(const CheckedResult& result) {
+  const TriMesh& mesh = *result.mesh;
+  std::vector<Camera> cameras;
+  for (const View& view : result.views) cameras.push_back(view.camera);
+  const RayScene rays(mesh);
+  const std::vector<assess::SurfaceProbe> probes =
+      assess::probe_surface(mesh, rays, cameras, kProbes, kLift * result.voxel_size);
+
+  assess::Signals s;
+  s.views = int(result.views.size());
+  s.pixel_size = carving::pixel_footprint(*result.box, cameras);
+  s.far = kFar * diagonal(mesh);
+  s.cameras_moved = result.cameras_moved;
+  s.mask_confidence = result.mask_confidence;
+  s.contradiction = result.contradiction;
+  s.masks = std::any_of(result.silhouettes.begin(), result.silhouettes.end(),
+                        [](const SilhouetteDistance& d) { return !d.pixels.empty(); });
+  for (const assess::SurfaceProbe& p : probes)
+    s.mean_confidence += double(p.confidence) / double(probes.size());
+  s.unsure = share_of(probes, [](const auto& p) { return p.confidence < 0.5f; });
+  s.unseen = share_of(probes, [](const auto& p) { return p.views.empty(); });
+  s.few_views = share_of(probes, [](const auto& p) { return p.views.size() < 3; });
+  s.at_box = share_of(probes, [&](const auto& p) {
+    const glm::dvec3 inside = glm::min(p.point - result.box->min, result.box->max - p.point);
+    return std::min({inside.x, inside.y, inside.z}) < result.voxel_size;
+  });
+  if (s.masks) compare_silhouettes(result, rays, cameras, s);
+  assess::MatchOptions options;
+  options.near = result.voxel_size;
+  options.far = s.far;
+  options.noise = 255 * result.noise_sigma;  // square roots are close to sRGB
+  s.match = assess::match_probes(probes, result.views, pointers(result.silhouettes), options);
+  return s;
+}
+
+std::string to_json(const assess::Verdict& verdict, const assess::Signals& s,
+                    std::span<const View> views) {
+  nlohmann::ordered_json j = {{"level", assess::to_string(verdict.level)},
+                              {"reasons", verdict.reasons},
+                              {"signals",
+                               {{"mean_confidence", s.mean_confidence},
+                                {"unsure", s.unsure},
+                                {"unseen", s.unseen},
+                                {"few_views", s.few_views},
+                                {"at_box", s.at_box},
+                                {"silhouettes_contradict", s.contradiction},
+                                {"silhouettes_missed", s.missed},
+                                {"silhouettes_excess", s.excess},
+                                {"pairs_seen", s.match.seen},
+                                {"textured", s.match.textured},
+                                {"matched", s.match.matched},
+                                {"offset", s.match.offset},
+                                {"offset_beyond_voxel", s.match.beyond_near},
+                                {"offset_beyond_half_percent", s.match.beyond_far},
+                                {"residual", s.match.residual},
+                                {"cameras_moved", s.cameras_moved},
+                                {"pixel_size", s.pixel_size},
+                                {"half_percent", s.far}}}};
+  for (std::size_t i = 0; i < views.size() && i < s.match.views.size(); ++i)
+    j["views"].push_back({{"name", views[i].name},
+                          {"residual", s.match.views[i].pixels},
+                          {"matches", s.match.views[i].matches}});
+  return j.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+}  // namespace photohull::pipeline

@@ -1,0 +1,38 @@
+// The result against its own photographs: what the verdict rests on, gathered from the job.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "assess/verdict.h"
+#include "core/image.h"
+#include "core/mesh.h"
+#include "core/scene.h"
+#include "core/silhouette.h"
+
+namespace photohull::pipeline {
+
+/// A job's coloured mesh and what it was made of; `silhouettes` are empty for views without mask.
+struct CheckedResult {
+  const TriMesh* mesh = nullptr;
+  const Box* box = nullptr;
+  double voxel_size = 0;  ///< world units
+  std::span<const View> views;
+  std::span<const SilhouetteDistance> silhouettes;
+  double mask_confidence = 0;
+  double noise_sigma = 0;    ///< of the images, on square roots of full scale
+  double contradiction = 0;  ///< of the silhouettes (assess::SilhouetteConsistency::uncovered_left)
+  double cameras_moved = 0;  ///< pixels, by --refine-cameras
+};
+
+assess::Signals gather_signals(const CheckedResult& result);
+
+/// JSON: level, reasons and signals.
+std::string to_json(const assess::Verdict& verdict, const assess::Signals& signals,
+                    std::span<const View> views);
+
+/// nullptr for views without mask.
+std::vector<const SilhouetteDistance*> pointers(std::span<const SilhouetteDistance> silhouettes);
+
+}  // namespace photohull::pipeline

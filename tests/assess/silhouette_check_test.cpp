@@ -1,0 +1,44 @@
+#include "assess/silhouette_check.h"
+
+#include <gtest/gtest.h>
+
+#include "meshes.h"
+#include "support/silhouettes.h"
+
+namespace photohull::assess {
+namespace {
+
+const Box kBox{{-1, -1, -1}, {1, 1, 1}};
+const std::vector<Camera> kCameras = test::cameras_around({0, 0, 0}, 5, 3, 180, 120, 90);
+
+std::vector<SilhouetteFit> check(const TriMesh& mesh, double radius, double tolerance = 1.5) {
+  std::vector<test::Outline> outlines;
+  std::vector<const SilhouetteDistance*> silhouettes;
+  for (const Camera& camera : kCameras)
+    outlines.push_back(test::sphere_outline(camera, {0, 0, 0}, radius));
+  for (const test::Outline& o : outlines) silhouettes.push_back(&o.distance);
+  silhouettes.back() = nullptr;
+  return check_silhouettes(RayScene(mesh), kBox, kCameras, silhouettes, tolerance);
+}
+
+TEST(SilhouetteCheck, TheRightSurfaceFillsTheSilhouettes) {
+  const auto fits = check(test::sphere_mesh({0, 0, 0}, 0.7, 60), 0.7);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(fits[i].missed, 0);
+    EXPECT_EQ(fits[i].excess, 0);
+    EXPECT_GT(fits[i].foreground, 1000);
+  }
+  EXPECT_EQ(fits[2].foreground, 0);  // nothing is known of it
+}
+
+TEST(SilhouetteCheck, SharesAreThoseOfTheAreas) {
+  for (const SilhouetteFit& fit : {check(test::sphere_mesh({0, 0, 0}, 0.5, 60), 0.7, 0)[0]})
+    EXPECT_NEAR(fit.missed, 1 - 0.25 / 0.49, 0.03);
+  for (const SilhouetteFit& fit : {check(test::sphere_mesh({0, 0, 0}, 0.9, 60), 0.7, 0)[0]}) {
+    EXPECT_NEAR(fit.excess, 1 - 0.49 / 0.81, 0.03);
+    EXPECT_EQ(fit.missed, 0);
+  }
+}
+
+}  // namespace
+}  // namespace photohull::assess

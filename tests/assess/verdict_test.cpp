@@ -1,0 +1,123 @@
+#include "assess/verdict.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace photohull::assess {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// Twenty views of a textured object, all in order.
+Signals in_order() {
+  Signals s;
+  s.views = 20;
+  s.masks = true;
+  s.mask_confidence = 1;
+  s.pixel_size = 0.01;
+  s.far = 0.01;  // half a percent of the diagonal is a pixel
+  s.mean_confidence = 0.95;
+  s.unsure = 0.03, s.unseen = 0.02, s.few_views = 0.05;
+  s.match.seen = 0.95, s.match.textured = 0.9, s.match.matched = 0.9;
+  s.match.residual = 0.1;
+  s.match.views.assign(20, {0.1, 50});
+  return s;
+}
+
+std::vector<std::string> names() {
+  std::vector<std::string> names;
+  for (int i = 0; i < 20; ++i) names.push_back("view" + std::to_string(i));
+  return names;
+}
+
+Verdict judged(const Signals& s) { return judge(s, names()); }
+
+void expect(const Verdict& v, Level level, const char* reason) {
+  EXPECT_EQ(v.level, level);
+  EXPECT_THAT(v.reasons, ElementsAre(HasSubstr(reason)));
+}
+
+TEST(Verdict, GoodHasNoReasons) {
+  const Verdict v = judged(in_order());
+  EXPECT_EQ(v.level, Level::kGood);
+  EXPECT_THAT(v.reasons, IsEmpty());
+}
+
+TEST(Verdict, NamesTheViewsThatDisagree) {
+  Signals s = in_order();
+  s.match.views[12].pixels = 4.1, s.match.views[13].pixels = 3.2;
+  s.match.views[14] = {9, 2};  // too few matches to accuse it
+  const Verdict v = judged(s);
+  expect(v, Level::kDoubtful, "view12, view13 disagree with the rest by up to 4.1 px");
+}
+
+TEST(Verdict, WhenAllViewsDisagreeNoneIsNamed) {
+  Signals s = in_order();
+  s.match.residual = 0.8;
+  for (std::size_t i = 0; i < 20; ++i) s.match.views[i].pixels = i % 2 ? 0.1 : 1.5;
+  expect(judged(s), Level::kDoubtful, "cameras disagree by 0.8 px");
+  s.match.residual = 2.5;
+  expect(judged(s), Level::kFailed, "cameras disagree by 2.5 px");
+}
+
+// The same pixels matter less where they are smaller.
+TEST(Verdict, ResidualsCountByWhatTheyCoverOfTheObject) {
+  Signals s = in_order();
+  s.match.residual = 0.8;
+  s.pixel_size = 0.002;
+  EXPECT_EQ(judged(s).level, Level::kGood);
+}
+
+TEST(Verdict, EveryFaultHasItsReason) {
+  const auto with = [](auto change) {
+    Signals s = in_order();
+    change(s);
+    return judged(s);
+  };
+  expect(with([](Signals& s) { s.cameras_moved = 3; }), Level::kDoubtful, "moved by 3 px");
+  expect(with([](Signals& s) { s.match.matched = 0.4; }), Level::kDoubtful,
+         "on 54 % of the surface");
+  expect(with([](Signals& s) { s.match.beyond_far = 0.7; }), Level::kFailed, "two views put 70 %");
+  expect(with([](Signals& s) { s.match.beyond_far = 0.3; }), Level::kDoubtful,
+         "two views put 30 %");
+  expect(with([](Signals& s) { s.contradiction = 0.1; }), Level::kDoubtful,
+         "contradict each other");
+  expect(with([](Signals& s) { s.missed = 0.2; }), Level::kDoubtful,
+         "20 % of the silhouettes empty");
+  expect(with([](Signals& s) { s.missed = 0.5; }), Level::kFailed, "50 % of the silhouettes empty");
+  expect(with([](Signals& s) { s.excess = 0.2; }), Level::kDoubtful, "lies on background");
+  expect(with([](Signals& s) { s.unseen = 0.5; }), Level::kDoubtful, "no view sees 50 %");
+  expect(with([](Signals& s) { s.unsure = 0.5, s.match.matched = 0.67; }), Level::kDoubtful,
+         "confidence is below one half");
+  EXPECT_EQ(with([](Signals& s) { s.unsure = 0.9; }).level, Level::kGood);  // colours alone differ
+  expect(with([](Signals& s) { s.at_box = 0.5; }), Level::kDoubtful, "lies on the box's sides");
+}
+
+TEST(Verdict, PlainSurfaceIsFineWhereSilhouettesShowIt) {
+  Signals s = in_order();
+  s.match.textured = 0.02, s.match.matched = 0;
+  EXPECT_EQ(judged(s).level, Level::kGood);
+  s.masks = false;
+  expect(judged(s), Level::kDoubtful, "too little texture on 98 %");
+}
+
+TEST(Verdict, SilhouettesDoNotCountWhereThereAreNone) {
+  Signals s = in_order();
+  s.masks = false;
+  s.missed = s.excess = s.contradiction = 1;
+  EXPECT_EQ(judged(s).level, Level::kGood);
+}
+
+TEST(Verdict, TheWorstReasonDecides) {
+  Signals s = in_order();
+  s.match.beyond_far = 0.3, s.unseen = 0.9;
+  const Verdict v = judged(s);
+  EXPECT_EQ(v.level, Level::kFailed);
+  EXPECT_THAT(v.reasons, ElementsAre(HasSubstr("no view sees 90 %"), HasSubstr("two views put")));
+  EXPECT_STREQ(to_string(v.level), "failed");
+}
+
+}  // namespace
+}  // namespace photohull::assess
