@@ -88,11 +88,9 @@ std::string table(const std::vector<Outcome>& outcomes, double threshold_percent
 
 }  // namespace
 
-std::string make_page(const std::string& title, const std::vector<std::string>& notes,
-                      const std::vector<Chart>& charts, const std::vector<Outcome>& outcomes,
-                      double threshold_percent) {
+std::string make_page(const PageParts& parts) {
   std::string note_items;
-  for (const std::string& note : notes) note_items += "<li>" + escaped(note) + "</li>\n";
+  for (const std::string& note : parts.notes) note_items += "<li>" + escaped(note) + "</li>\n";
   const std::string_view page = page_template();
   std::string html;
   std::size_t from = 0;
@@ -102,13 +100,25 @@ std::string make_page(const std::string& title, const std::vector<std::string>& 
     html.append(page.substr(from, end == page.npos ? page.npos : start - from));
     if (end == page.npos) return html;
     const std::string_view name = page.substr(start + 2, end - start - 2);
-    if (name == "TITLE") html += escaped(title);
+    if (name == "TITLE") html += escaped(parts.title);
     if (name == "NOTES") html += note_items;
     if (name == "ECHARTS") html += echarts_js();
-    if (name == "CHARTS") html += script_json(charts_json(charts));
-    if (name == "TABLE") html += table(outcomes, threshold_percent);
+    if (name == "CHARTS") html += script_json(charts_json(parts.charts));
+    if (name == "CHOICE") html += escaped(parts.choice);
+    if (name == "CAPTION") html += parts.caption;
+    if (name == "TABLE") html += parts.table;
     from = end + 2;
   }
+}
+
+std::string make_page(const std::string& title, const std::vector<std::string>& notes,
+                      const std::vector<Chart>& charts, const std::vector<Outcome>& outcomes,
+                      double threshold_percent) {
+  return make_page(
+      {title, notes, charts, "Scene",
+       "Distances and thresholds are in percent of the diagonal of the truth's bounding "
+       "box. Bold rows are on the Pareto front of their scene.",
+       table(outcomes, threshold_percent)});
 }
 
 }  // namespace photohull::chart

@@ -39,7 +39,7 @@ void ResultStore::open() {
                        "; choose another --out"));
   if (::flock(lock_, LOCK_EX | LOCK_NB) != 0)
     throw Error(concat(folder_.string(),
-                       ": another 'photohull chart' is at work there; wait for it or choose "
+                       ": another photohull is at work there; wait for it or choose "
                        "another --out"));
   for (const char* name : {"runs", "scenes", "work"}) make_folder(folder_ / name);
   std::error_code ignored;

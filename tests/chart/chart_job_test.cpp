@@ -300,7 +300,7 @@ TEST(ChartJob, RefusesAFolderThatIsInUse) {
   world.plan(R"({"scenes": ["ball"], "methods": ["hull"]})");
   ResultStore other(world.out());
   other.open();
-  EXPECT_THAT(error_of([&] { world.run(); }), HasSubstr("another 'photohull chart'"));
+  EXPECT_THAT(error_of([&] { world.run(); }), HasSubstr("another photohull is at work"));
 }
 
 }  // namespace

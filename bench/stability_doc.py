@@ -1,0 +1,60 @@
+#!/usr/bin/env python3
+"""Puts the tables and curves of `photohull stress` into docs/stability.md.
+
+    build/release/photohull stress bench/plans/stress.json --out out/stress
+    build/release/photohull stress bench/plans/stress_marks.json --out out/stress_marks
+    bench/stability_doc.py out/stress out/stress_marks
+
+Replaces what stands between the lines `<!-- stress:NAME -->` and `<!-- /stress:NAME -->` by the sections of the folders'
+summary.md, and copies the charts to docs/images. Without the second folder the promises in larger pictures stay as they are.
+"""
+import re
+import shutil
+import sys
+from pathlib import Path
+
+DOCS = Path(__file__).resolve().parent.parent / "docs"
+
+
+def section(folder, heading):
+    """The tables below a heading of summary.md; nothing where the heading is missing."""
+    text = (folder / "summary.md").read_text()
+    found = re.search(rf"^## {re.escape(heading)}\n(.*?)(?=^## |\Z)", text, re.S | re.M)
+    return found.group(1).strip() if found else ""
+
+
+def pictures(folder):
+    lines = []
+    for chart in sorted(folder.glob("stress--*.png")):
+        if chart.stem == "stress--marks":
+            continue
+        shutil.copy(chart, DOCS / "images" / chart.name)
+        lines.append(f"![Breakdown curves: {chart.stem[8:]}](images/{chart.name})")
+    return "\n\n".join(lines)
+
+
+def main():
+    if len(sys.argv) not in (2, 3):
+        sys.exit(__doc__)
+    curves = Path(sys.argv[1])
+    parts = {
+        "marks-small": section(curves, "Promises"),
+        "breakdown": section(curves, "Where it breaks"),
+        "bytes": section(curves, "Equal bytes"),
+        "verdicts": section(curves, "Verdicts"),
+        "curves": pictures(curves),
+    }
+    if len(sys.argv) == 3:
+        parts["marks"] = section(Path(sys.argv[2]), "Promises")
+    page = DOCS / "stability.md"
+    text = page.read_text()
+    for name, content in parts.items():
+        pattern = rf"(<!-- stress:{name} -->\n).*?(<!-- /stress:{name} -->)"
+        text, count = re.subn(pattern, lambda m: f"{m[1]}{content}\n{m[2]}", text, flags=re.S)
+        if count != 1:
+            sys.exit(f"{page}: no place <!-- stress:{name} --> for the tables")
+    page.write_text(text)
+
+
+if __name__ == "__main__":
+    main()
