@@ -2,7 +2,7 @@
 # Usage: scripts/test.sh [--asan]
 #
 # Sets photohull up (see scripts/setup.sh), runs all its tests, and then checks what tests cannot:
-# formatting, static analysis, scripts, citations, installation and the Debian package.
+# fuzzers, formatting, static analysis, scripts, citations, installation and the Debian package.
 #
 #   --asan   run the tests once more under the address and undefined-behaviour sanitizers
 #   --help   print this text
@@ -117,10 +117,11 @@ debian_package() {
 }
 
 scripts/setup.sh
-install_missing clang-format clang-tidy shellcheck dpkg-dev file
+install_missing clang clang-format clang-tidy shellcheck dpkg-dev file
 started=$SECONDS
 
 check_aloud "tests" run_tests release
+check_aloud "fuzzers" scripts/fuzz.sh --seconds 2
 check "clang-format" formatting
 check "clang-tidy" static_analysis
 check "shellcheck" shell_scripts
