@@ -1,153 +1,136 @@
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 
-#include "calib/calibrate_board.h"
+#include "calib/calibrate_rig.h"
+#include "calibration_json.h"
 #include "commands.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/parse_name.h"
+#include "io/board_images.h"
 #include "io/image_file.h"
+#include "number_list.h"
 #include "terminal_progress.h"
 
 namespace photohull::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::ordered_json;
 
 struct Arguments {
   std::vector<std::string> images;
   std::string board = "chess", lens = "brown", out, coverage;
+  std::optional<std::string> rig, angles;
+  std::optional<double> step;
   BoardSpec spec;
   bool turntable = false, json = false;
 };
 
-/// The files given, and the pictures of the folders given.
-std::vector<fs::path> list_images(const std::vector<std::string>& given) {
-  std::vector<fs::path> images;
-  for (const std::string& path : given) {
-    std::error_code failure;
-    if (!fs::is_directory(path, failure)) {
-      images.emplace_back(path);
-      continue;
-    }
-    std::vector<fs::path> inside;
-    for (const auto& entry : fs::directory_iterator(path, failure)) {
-      std::string e = entry.path().extension().string();
-      std::transform(e.begin(), e.end(), e.begin(),
-                     [](unsigned char c) { return std::tolower(c); });
-      if (e == ".png" || e == ".jpg" || e == ".jpeg" || e == ".tif" || e == ".tiff" || e == ".exr")
-        inside.push_back(entry.path());
-    }
-    if (failure) throw Error(concat(path, ": cannot be listed (", failure.message(), ")"));
-    std::sort(inside.begin(), inside.end());
-    images.insert(images.end(), inside.begin(), inside.end());
+/// Reads pictures one by one and looks for the board, with progress.
+class BoardFinder {
+ public:
+  BoardFinder(const BoardSpec& spec, std::size_t pictures) : spec_(spec), pictures_(pictures) {
+    progress_.stage("boards", 1);
   }
-  if (images.empty())
-    throw Error("no picture was found; give images or the folder that holds them");
-  return images;
+  BoardView find(const fs::path& image, const std::string& name) {
+    progress_.check_cancelled();
+    progress_.update(double(done_++) / double(pictures_));
+    return find_board(io::read_image(image), spec_, name);
+  }
+  void finish() { progress_.finish(); }
+
+ private:
+  BoardSpec spec_;
+  std::size_t pictures_, done_ = 0;
+  TerminalProgress progress_{1};
+};
+
+/// Degrees of each picture; none where they are to be found.
+std::vector<double> angles_of(const Arguments& a, std::size_t pictures) {
+  if (a.step && a.angles) throw UsageError("--step and --angles: give one of them");
+  if ((a.step || a.angles) && !a.turntable)
+    throw UsageError("--step and --angles are for --turntable");
+  if (a.angles) return parse_numbers("--angles", *a.angles);
+  std::vector<double> angles;
+  if (a.step)
+    for (std::size_t i = 0; i < pictures; ++i) angles.push_back(double(i) * *a.step);
+  return angles;
 }
 
-ordered_json vector_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
-
-ordered_json to_json(const Arguments& a, const std::vector<BoardView>& views,
-                     const Calibration& c) {
-  const Intrinsics& k = c.intrinsics;
-  ordered_json j;
-  j["image_width"] = k.width;
-  j["image_height"] = k.height;
-  j["camera_matrix"] = {{k.fx, 0.0, k.cx}, {0.0, k.fy, k.cy}, {0.0, 0.0, 1.0}};
-  j["model"] = a.lens;
-  j["distortion_coefficients"] = c.distortion.coefficients;
-  j["rms"] = c.all_rms;
-  j["focal_sigma"] = c.focal_sigma;
-  j["principal_point_sigma"] = c.principal_sigma;
-  if (c.turntable)
-    j["turntable"] = {{"axis", vector_json(c.turntable->direction)},
-                      {"point", vector_json(c.turntable->point)},
-                      {"axis_sigma_degrees", c.turntable->direction_sigma},
-                      {"angle_sigma_degrees", c.turntable->angle_sigma}};
-  j["views"] = ordered_json::array();
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    ordered_json view = {{"name", views[i].name},
-                         {"points", views[i].points.size()},
-                         {"rms", std::isnan(c.rms[i]) ? ordered_json() : ordered_json(c.rms[i])},
-                         {"left_out", bool(c.left_out[i])}};
-    if (!c.left_out[i]) {
-      const glm::dmat3& r = c.cam_from_board[i].rotation;
-      view["R"] = {
-          {r[0][0], r[1][0], r[2][0]}, {r[0][1], r[1][1], r[2][1]}, {r[0][2], r[1][2], r[2][2]}};
-      view["t"] = vector_json(c.cam_from_board[i].translation);
-      if (c.turntable) view["angle_degrees"] = c.turntable->angles[i];
-    }
-    j["views"].push_back(view);
-  }
-  return j;
-}
-
-void print_summary(const std::vector<BoardView>& views, const Calibration& c) {
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    if (views[i].points.empty())
-      std::printf("%-32s board not found\n", views[i].name.c_str());
-    else
-      std::printf("%-32s %7.3f px over %zu points%s\n", views[i].name.c_str(), c.rms[i],
-                  views[i].points.size(), c.left_out[i] ? ", left out" : "");
-  }
-  const Intrinsics& k = c.intrinsics;
-  std::printf("focal length     %.3f, %.3f +- %.3f px\n", k.fx, k.fy, c.focal_sigma);
-  std::printf("principal point  %.3f, %.3f +- %.3f px\n", k.cx, k.cy, c.principal_sigma);
-  std::printf("reprojection     %.4f px rms\n", c.all_rms);
-  if (c.turntable)
-    std::printf("axis             %.6f %.6f %.6f +- %.4f degrees through %g %g %g\n",
-                c.turntable->direction.x, c.turntable->direction.y, c.turntable->direction.z,
-                c.turntable->direction_sigma, c.turntable->point.x, c.turntable->point.y,
-                c.turntable->point.z);
-}
-
-void run(const Arguments& a) {
-  BoardSpec spec = a.spec;
-  spec.kind = parse_name("--board", a.board,
-                         std::array{BoardKind::kChess, BoardKind::kCharuco, BoardKind::kCircles});
-  spec.validate();
-  CalibrateOptions options;
-  options.turntable = a.turntable;
-  options.lens = parse_name("--lens", a.lens,
-                            std::array{LensModel::kPinhole, LensModel::kBrown, LensModel::kRational,
-                                       LensModel::kFisheye});
-  if (a.out.empty()) throw UsageError("--out is empty: give the JSON file for the calibration");
-  const std::vector<fs::path> images = list_images(a.images);
-  TerminalProgress progress(1);
-  progress.stage("boards", 1);
-  std::vector<BoardView> views;
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    progress.check_cancelled();
-    progress.update(double(i) / double(images.size()));
-    views.push_back(find_board(io::read_image(images[i]), spec, images[i].filename().string()));
-  }
-  progress.finish();
-  const Calibration calibration = calibrate(views, options);
-  const std::string text = to_json(a, views, calibration).dump(1) + "\n";
+void write_result(const Arguments& a, const std::string& text) {
   write_atomically(a.out, text);
+  if (a.json) std::fputs(text.c_str(), stdout);
+}
+
+void run_rig(const Arguments& a, LensModel lens) {
+  if (a.turntable) throw UsageError("--rig and --turntable: calibrate one at a time");
+  if (!a.coverage.empty()) throw UsageError("--coverage is for one camera, not for --rig");
+  if (a.images.size() != 1)
+    throw UsageError("--rig: give one folder, in which the pictures are found by their names");
+  const io::RigImages images = io::list_rig_images(a.images[0], *a.rig);
+  BoardFinder boards(a.spec, images.cameras.size() * images.moments.size());
+  std::vector<RigCameraViews> views;
+  for (std::size_t c = 0; c < images.cameras.size(); ++c) {
+    views.push_back({images.cameras[c], {}});
+    for (const fs::path& image : images.images[c])
+      views[c].views.push_back(
+          image.empty() ? BoardView()
+                        : boards.find(image, image.lexically_relative(a.images[0]).string()));
+  }
+  boards.finish();
+  const RigCalibration rig = calibrate_rig(views, lens);
+  write_result(a, rig_json(views, images.moments, rig, lens));
+  if (!a.json) print_rig(views, rig);
+}
+
+void run_camera(const Arguments& a, LensModel lens) {
+  const std::vector<fs::path> images = io::list_images(a.images);
+  CalibrateOptions options;
+  options.lens = lens;
+  options.turntable = a.turntable;
+  options.angles = angles_of(a, images.size());
+  options.validate(images.size());
+  BoardFinder boards(a.spec, images.size());
+  std::vector<BoardView> views;
+  for (const fs::path& image : images)
+    views.push_back(boards.find(image, image.filename().string()));
+  boards.finish();
+  const Calibration calibration = calibrate(views, options);
+  write_result(a, calibration_json(views, calibration, lens));
   if (!a.coverage.empty()) {
     const ColourImage picture = coverage_picture(views, calibration);
     io::write_png(a.coverage, picture.width, picture.height, 4, picture.bytes);
   }
-  if (a.json)
-    std::fputs(text.c_str(), stdout);
+  if (!a.json) print_calibration(views, calibration);
+}
+
+void run(Arguments a) {
+  a.spec.kind = parse_name("--board", a.board,
+                           std::array{BoardKind::kChess, BoardKind::kCharuco, BoardKind::kCircles});
+  a.spec.validate();
+  const LensModel lens = parse_name("--lens", a.lens,
+                                    std::array{LensModel::kPinhole, LensModel::kBrown,
+                                               LensModel::kRational, LensModel::kFisheye});
+  if (a.out.empty()) throw UsageError("--out is empty: give the JSON file for the calibration");
+  if ((a.rig || a.turntable) && a.spec.looks_same_turned())
+    throw UsageError(
+        "this board looks the same after half a turn, so that its corners cannot be told apart "
+        "between pictures: for --rig and --turntable use charuco, or a chessboard with an odd "
+        "number of inner corners one way and an even one the other");
+  if (a.rig)
+    run_rig(a, lens);
   else
-    print_summary(views, calibration);
+    run_camera(a, lens);
 }
 
 }  // namespace
 
 void add_calibrate(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* c = app.add_subcommand("calibrate", "find a camera's lens from photographs of a board");
+  CLI::App* c =
+      app.add_subcommand("calibrate", "find cameras' lenses and poses from photographs of a board");
   c->add_option("images", a->images, "photographs, or folders of them")->required();
   c->add_option("--out", a->out, "JSON file for the calibration")->required();
   c->add_option("--board", a->board, "chess, charuco or circles")->capture_default_str();
@@ -163,14 +146,24 @@ void add_calibrate(CLI::App& app) {
   c->add_option("--lens", a->lens, "pinhole, brown, rational or fisheye")->capture_default_str();
   c->add_flag("--turntable", a->turntable,
               "a fixed camera and a board that turns: find their common axis and the angles");
+  c->add_option("--step", a->step,
+                "turntable: degrees from each picture to the next (in natural order of names), "
+                "where they are known");
+  c->add_option("--angles", a->angles, "turntable: degrees of each picture, \"0 7.5 20 ...\"");
+  c->add_option("--rig", a->rig,
+                "several cameras that see the board at the same moments: how their pictures are "
+                "called below the folder given, such as \"{camera}/{moment}\"");
   c->add_option("--coverage", a->coverage, "PNG of where in the frame the board was seen");
   c->add_flag("--json", a->json, "print the calibration instead of a summary");
   c->footer(
-      "Views whose error is far from the others' are named and left out.\n\n"
+      "Views whose error is far from the others' are named and left out. The file serves "
+      "'photohull convert CALIB --images PHOTOGRAPHS', which makes a scene of photographs that the "
+      "same cameras took.\n\n"
       "Examples:\n"
       "  photohull calibrate boards/ --columns 9 --rows 6 --square 0.025 --out calib.json\n"
-      "  photohull calibrate table/*.jpg --board charuco --columns 8 --rows 6 --turntable --out "
-      "t.json");
+      "  photohull calibrate rig/ --rig \"{camera}/{moment}\" --square 0.025 --out rig.json\n"
+      "  photohull calibrate table/ --board charuco --columns 8 --rows 6 --turntable --step 10 "
+      "--out t.json");
   c->callback([a] { run(*a); });
 }
 

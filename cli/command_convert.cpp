@@ -4,6 +4,7 @@
 #include "commands.h"
 #include "core/error.h"
 #include "io/write_scene.h"
+#include "number_list.h"
 #include "pipeline/convert.h"
 #include "scene_arguments.h"
 #include "terminal_progress.h"
@@ -14,14 +15,29 @@ namespace {
 struct Arguments {
   SceneArguments scene;
   std::string to, out;
+  std::optional<std::string> images, angles, moment;
+  std::optional<double> step;
   bool undistort = false;
 };
+
+io::LoadSceneOptions options_of(const Arguments& a) {
+  io::LoadSceneOptions options = a.scene.options();
+  if (!a.images) {
+    if (a.step || a.angles || a.moment)
+      throw UsageError("--step, --angles and --moment are for calibrations with --images");
+    return options;
+  }
+  if (a.step && a.angles) throw UsageError("--step and --angles: give one of them");
+  options.calibrated = io::CalibratedImages{*a.images, a.step, {}, a.moment.value_or("")};
+  if (a.angles) options.calibrated->angles = parse_numbers("--angles", *a.angles);
+  return options;
+}
 
 void run(const Arguments& a) {
   const SceneFormat format = parse_format("--to", a.to);
   if (a.out.empty()) throw UsageError("--out is empty: give the folder for the converted scene");
-  Scene scene = io::load_scene(a.scene.scene, a.scene.options());
-  const std::string from = to_string(scene.format);
+  Scene scene = io::load_scene(a.scene.scene, options_of(a));
+  const std::string from = a.images ? a.scene.scene : to_string(scene.format);
   for (const std::string& text : scene.warnings)
     std::fprintf(stderr, "photohull: warning: %s\n", text.c_str());
   if (a.undistort) {
@@ -45,6 +61,12 @@ void add_convert(CLI::App& app) {
   c->add_option("--out", a->out, "folder for the result; made when it does not exist")->required();
   c->add_flag("--undistort", a->undistort,
               "resample the photographs and masks to pinhole cameras that any format can express");
+  c->add_option("--images", a->images,
+                "photographs by the cameras that 'photohull calibrate' calibrated; SCENE is its "
+                "file");
+  c->add_option("--moment", a->moment, "rig: which of each camera's photographs, by name");
+  c->add_option("--step", a->step, "turntable: degrees from each photograph to the next");
+  c->add_option("--angles", a->angles, "turntable: degrees of each photograph, \"0 7.5 20 ...\"");
   c->footer(
       "Cameras, box and sparse points are written in the format's own axes and pixel convention; "
       "images stay where they are, unless the format wants them at a place of its own. What a "
@@ -53,7 +75,9 @@ void add_convert(CLI::App& app) {
       "Examples:\n"
       "  photohull convert datasets/templeSparseRing --to colmap-text --out out/temple_colmap\n"
       "  photohull convert meshroom/cameras.sfm --to transforms --out out/nerf\n"
-      "  photohull convert scan/sparse/0 --to bundler --out out/bundler --undistort");
+      "  photohull convert scan/sparse/0 --to bundler --out out/bundler --undistort\n"
+      "  photohull convert rig.json --images pot/ --moment 0001 --to transforms --out out/pot\n"
+      "  photohull convert table.json --images pot/ --step 10 --to transforms --out out/pot");
   c->callback([a] { run(*a); });
 }
 

@@ -9,6 +9,7 @@
 #include "commands.h"
 #include "io/image_file.h"
 #include "pipeline/inspect.h"
+#include "pipeline/mask_policy.h"
 #include "scene_arguments.h"
 #include "terminal_progress.h"
 
@@ -17,7 +18,7 @@ namespace {
 
 struct Arguments {
   SceneArguments scene;
-  bool json = false, cameras = false;
+  bool json = false, cameras = false, masks = false;
 };
 
 struct Range {
@@ -170,21 +171,52 @@ nlohmann::ordered_json diagnosis_json(const CameraDiagnosis& d, const Scene& sce
   return j;
 }
 
-CameraDiagnosis diagnose(const Scene& scene, const SceneArguments& arguments) {
+PreparedViews prepare(const Scene& scene, const SceneArguments& arguments, Progress& progress) {
   const ViewLoader loader{[](const std::filesystem::path& path) { return io::read_image(path); },
                           [](const std::filesystem::path& path) { return io::read_mask(path); }};
-  PrepareOptions prepare;
-  if (arguments.masks == "none") prepare.masks = MaskPolicy::kNone;
-  TerminalProgress progress(4);
+  PrepareOptions options;
+  options.masks = pipeline::mask_policy(arguments.options().masks);
   progress.stage("views", 1);
-  const PreparedViews prepared = prepare_views(scene, loader, prepare, progress);
-  progress.stage("cameras", 3);
-  CameraDiagnosis diagnosis = diagnose_cameras(prepared.views, scene.box, progress);
-  progress.finish();
-  return diagnosis;
+  return prepare_views(scene, loader, options, progress);
 }
 
-void print_json(const pipeline::Inspection& info, const CameraDiagnosis* diagnosis) {
+CameraDiagnosis diagnose(const Scene& scene, const PreparedViews& prepared,
+                         TerminalProgress& progress) {
+  progress.stage("cameras", 3);
+  return diagnose_cameras(prepared.views, scene.box, progress);
+}
+
+void print_masks(const PreparedViews& prepared) {
+  std::printf("masks          %s", prepared.mask_source.c_str());
+  double least = 2, sum = 0;
+  std::size_t worst = 0, count = 0;
+  for (std::size_t i = 0; i < prepared.masks.size(); ++i) {
+    if (prepared.views[i].mask.empty()) continue;
+    const double c = prepared.masks[i].confidence;
+    sum += c, ++count;
+    if (c < least) least = c, worst = i;
+  }
+  if (count > 0)
+    std::printf(": confidence %.2f in the mean, %.2f at least (%s)", sum / double(count), least,
+                prepared.views[worst].name.c_str());
+  std::printf("\n");
+  for (const std::string& text : prepared.warnings) std::printf("warning: %s\n", text.c_str());
+}
+
+nlohmann::ordered_json masks_json(const PreparedViews& prepared) {
+  nlohmann::ordered_json j = {{"source", prepared.mask_source},
+                              {"confidence", prepared.mask_confidence},
+                              {"views", nlohmann::ordered_json::array()},
+                              {"warnings", prepared.warnings}};
+  for (std::size_t i = 0; i < prepared.masks.size(); ++i)
+    j["views"].push_back({{"name", prepared.views[i].name},
+                          {"source", prepared.masks[i].source},
+                          {"confidence", prepared.masks[i].confidence}});
+  return j;
+}
+
+void print_json(const pipeline::Inspection& info, const CameraDiagnosis* diagnosis,
+                const PreparedViews* masks) {
   nlohmann::ordered_json j;
   j["format"] = to_string(info.scene.format);
   for (const SourceView& v : info.scene.views) {
@@ -214,6 +246,7 @@ void print_json(const pipeline::Inspection& info, const CameraDiagnosis* diagnos
     j["cpu_seconds"] = info.cpu_seconds;
   }
   if (diagnosis) j["cameras"] = diagnosis_json(*diagnosis, info.scene);
+  if (masks) j["masks"] = masks_json(*masks);
   j["warnings"] = info.warnings;
   std::printf("%s\n",
               j.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
@@ -222,7 +255,13 @@ void print_json(const pipeline::Inspection& info, const CameraDiagnosis* diagnos
 void run(const Arguments& a) {
   const Scene scene = io::load_scene(a.scene.scene, a.scene.options());
   std::optional<CameraDiagnosis> diagnosis;
-  if (a.cameras) diagnosis = diagnose(scene, a.scene);
+  std::optional<PreparedViews> prepared;
+  if (a.cameras || a.masks) {
+    TerminalProgress progress(a.cameras ? 4 : 1);
+    prepared = prepare(scene, a.scene, progress);
+    if (a.cameras) diagnosis = diagnose(scene, *prepared, progress);
+    progress.finish();
+  }
   pipeline::Inspection info;
   std::exception_ptr failure;
   try {
@@ -235,9 +274,10 @@ void run(const Arguments& a) {
     info.scene.box.reset();
   }
   if (a.json) {
-    print_json(info, diagnosis ? &*diagnosis : nullptr);
+    print_json(info, diagnosis ? &*diagnosis : nullptr, a.masks ? &*prepared : nullptr);
   } else {
     print_text(info);
+    if (a.masks) print_masks(*prepared);
     if (diagnosis) print_diagnosis(*diagnosis, scene);
   }
   std::fflush(stdout);
@@ -254,6 +294,8 @@ void add_info(CLI::App& app) {
   c->add_flag("--cameras", a->cameras,
               "look for faults of the cameras in the photographs, too; takes about half a second "
               "a view");
+  c->add_flag("--check-masks", a->masks,
+              "find the masks, too, and tell how sure they are ('photohull masks' tells of each)");
   c->footer(
       "With --cameras, features are matched without the poses and tell how these must be read "
       "(inverse, axes flipped), which views disagree with the rest, whether the principal points "

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "commands.h"
+#include "core/error.h"
 #include "core/parse_name.h"
 #include "pipeline/reconstruct.h"
 #include "scene_arguments.h"
@@ -15,7 +16,7 @@ namespace {
 struct Arguments {
   SceneArguments scene;
   std::string out, quality = "normal", device = "auto", mesh_error = "0", unseen = "closed",
-                   refine_cameras = "off";
+                   refine_cameras = "off", mask_offset = "auto", photometric = "off";
   std::optional<std::string> method, sampler, consistency, visibility;
   std::optional<int> resolution, supersample;
   std::optional<double> voxel_size;
@@ -53,6 +54,10 @@ pipeline::ReconstructOptions to_options(const Arguments& a) {
       parse_name("--refine-cameras", a.refine_cameras,
                  std::array{RefineCameras::kOff, RefineCameras::kAuto, RefineCameras::kPoses,
                             RefineCameras::kPosesAndIntrinsics});
+  using pipeline::Photometric;
+  o.photometric = parse_name("--photometric", a.photometric,
+                             std::array{Photometric::kOff, Photometric::kAuto, Photometric::kOn});
+  o.mask_offset = pipeline::parse_mask_offset(a.mask_offset);
   o.device = a.device;
   o.threads = a.threads;
   o.evidence = a.evidence;
@@ -70,10 +75,19 @@ void print_summary(const pipeline::Report& report, const std::string& out) {
     std::printf("judged %lld voxels in %d sweeps, carved %lld\n",
                 static_cast<long long>(report.voxels_judged), report.sweeps,
                 static_cast<long long>(report.voxels_carved));
+  if (!report.photometric_line.empty()) std::printf("%s\n", report.photometric_line.c_str());
   std::printf("%.2f s (%.2f CPU s), peak memory %lld MiB, on %s\n", report.wall_seconds,
               report.cpu_seconds, static_cast<long long>(report.peak_memory_bytes >> 20),
               report.device.c_str());
   for (const std::string& file : report.files) std::printf("  %s/%s\n", out.c_str(), file.c_str());
+  std::printf("verdict: %s\n", assess::to_string(report.verdict.level));
+  for (const std::string& reason : report.verdict.reasons) std::printf("  %s\n", reason.c_str());
+}
+
+/// The files are there all the same, to look at.
+void throw_if_failed(const assess::Verdict& verdict) {
+  if (verdict.level != assess::Level::kFailed) return;
+  throw Error("the result failed its own checks: " + verdict.reasons.front(), assess::kFailedVerdict);
 }
 
 void run(const Arguments& a) {
@@ -85,6 +99,7 @@ void run(const Arguments& a) {
     std::fputs(report.to_json().c_str(), stdout);
   else
     print_summary(report, a.out);
+  throw_if_failed(report.verdict);
 }
 
 }  // namespace
@@ -124,6 +139,14 @@ void add_reconstruct(CLI::App& app) {
   c->add_option("--refine-cameras", a->refine_cameras,
                 "off, auto (where it pays), poses or poses+intrinsics: cameras made to agree with "
                 "the photographs first")
+      ->capture_default_str();
+  c->add_option("--photometric", a->photometric,
+                "off, auto (where the photographs differ by more than their noise) or on: gains, "
+                "white balance and vignetting of the photographs made alike, for colours")
+      ->capture_default_str();
+  c->add_option("--mask-offset", a->mask_offset,
+                "pixels by which the object's outline lies outside the masks' (negative: inside), "
+                "or auto: measured on the photographs")
       ->capture_default_str();
   c->add_option("--device", a->device, "auto, software, or an index from 'photohull devices'")
       ->capture_default_str();

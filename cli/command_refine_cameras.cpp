@@ -1,3 +1,4 @@
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -6,7 +7,9 @@
 #include "commands.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/parse_name.h"
 #include "io/image_file.h"
+#include "pipeline/mask_policy.h"
 #include "io/write_scene.h"
 #include "pipeline/refine_cameras.h"
 #include "scene_arguments.h"
@@ -21,7 +24,8 @@ struct Arguments {
   SceneArguments scene;
   std::string out;
   std::optional<std::string> to;
-  bool intrinsics = false, json = false;
+  std::string tracks = "both";
+  bool intrinsics = false, centre_offset = false, json = false;
 };
 
 void print_summary(const CameraRefinement& r, const Scene& scene) {
@@ -41,7 +45,8 @@ void print_summary(const CameraRefinement& r, const Scene& scene) {
     std::printf("the cameras stay as they were: nothing held out agreed better\n");
     return;
   }
-  std::printf("%d tracks, %d rounds, projections moved by %.3f px\n", r.tracks, r.rounds, r.moved);
+  std::printf("%d tracks (%d given, %d patches of the hull), %d rounds, moved by %.3f px\n",
+              r.tracks, r.given_tracks, r.patches, r.rounds, r.moved);
   if (r.focal_factor != 1 || r.principal != glm::dvec2(0))
     std::printf("focal lengths times %.6f, principal points moved by %.3f, %.3f px\n",
                 r.focal_factor, r.principal.x, r.principal.y);
@@ -54,14 +59,24 @@ void run(const Arguments& a) {
   const ViewLoader loader{[](const fs::path& path) { return io::read_image(path); },
                           [](const fs::path& path) { return io::read_mask(path); }};
   PrepareOptions prepare;
-  if (a.scene.masks == "none") prepare.masks = MaskPolicy::kNone;
+  prepare.masks = pipeline::mask_policy(a.scene.options().masks);
   TerminalProgress progress(4);
   progress.stage("views", 1);
   const PreparedViews prepared = prepare_views(scene, loader, prepare, progress);
   for (const std::string& text : prepared.warnings) progress.warn(text);
   progress.stage("refine", 3);
   RefineCamerasOptions options;
-  options.intrinsics = a.intrinsics;
+  if (a.intrinsics)
+    options.intrinsics = SharedIntrinsics::kAll;
+  else if (a.centre_offset)
+    options.intrinsics = SharedIntrinsics::kPixelCentre;
+  options.source =
+      parse_name("--tracks", a.tracks,
+                 std::array{TrackSource::kBoth, TrackSource::kGiven, TrackSource::kFound});
+  options.given = undistorted_tracks(scene, prepared.views);
+  if (options.source == TrackSource::kGiven && options.given.empty())
+    throw Error(concat(a.scene.scene, ": lists no tracks of features, which --tracks given needs"));
+  options.box = scene.box;
   const CameraRefinement refinement = refine_cameras(prepared.views, options, progress);
   progress.finish();
   pipeline::apply(refinement, scene);
@@ -86,6 +101,11 @@ void add_refine_cameras(CLI::App& app) {
   c->add_option("--to", a->to, "format to write (default: the scene's own): " + format_names());
   c->add_flag("--intrinsics", a->intrinsics,
               "refine focal length and principal point, the same for all views, too");
+  c->add_flag("--centre-offset", a->centre_offset,
+              "refine an offset of all principal points only (another pixel centre)");
+  c->add_option("--tracks", a->tracks,
+                "features: given (that the scene's file lists), found, or both")
+      ->capture_default_str();
   c->add_flag("--json", a->json, "print refinement.json on standard output instead of a summary");
   c->footer(
       "Needs cameras that are right to about ten pixels. Features of the photographs and tangents "

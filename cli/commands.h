@@ -10,9 +10,11 @@ void add_evaluate(CLI::App& app);
 void add_convert(CLI::App& app);
 void add_refine_cameras(CLI::App& app);
 void add_calibrate(CLI::App& app);
+void add_masks(CLI::App& app);
 void add_info(CLI::App& app);
 void add_synthesize(CLI::App& app);
 void add_chart(CLI::App& app);
+void add_stress(CLI::App& app);
 void add_bench(CLI::App& app);
 void add_devices(CLI::App& app);
 

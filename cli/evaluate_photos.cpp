@@ -1,15 +1,21 @@
 #include "evaluate_photos.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 
+#include "calib/noise.h"
 #include "calib/prepare_views.h"
 #include "core/error.h"
+#include "core/parse_name.h"
 #include "eval/agreement_picture.h"
 #include "io/image_file.h"
+#include "pipeline/mask_policy.h"
 #include "io/load_scene.h"
 #include "io/select_views.h"
+#include "pipeline/photometric.h"
+#include "volume/simplify_mesh.h"
 
 namespace photohull::cli {
 namespace {
@@ -42,6 +48,24 @@ Lists lists_of(const PhotoArguments& a, const std::vector<std::string>& names) {
     throw UsageError(concat("--views: all ", names.size(),
                             " views are held out, none is left to lend colour; hold out fewer"));
   return lists;
+}
+
+pipeline::Photometric parse_photometric(const std::string& text) {
+  using pipeline::Photometric;
+  return parse_name("--photometric", text,
+                    std::array{Photometric::kOff, Photometric::kAuto, Photometric::kOn});
+}
+
+/// The line that says what was done.
+std::string make_alike(pipeline::Photometric photometric, const Scene& scene, const TriMesh& mesh,
+                       PreparedViews& prepared, const Progress& progress) {
+  std::vector<double> noise;
+  for (const View& view : prepared.views) noise.push_back(estimate_image_noise(view.image));
+  std::nth_element(noise.begin(), noise.begin() + long(noise.size() / 2), noise.end());
+  const pipeline::PhotometricOutcome found = pipeline::correct_photometric(
+      photometric, scene, mesh, mean_edge(mesh), noise[noise.size() / 2], prepared.views, progress);
+  if (!found.warning.empty()) prepared.warnings.push_back(found.warning);
+  return found.line;
 }
 
 void write_picture(AtomicFile& file, const std::string& mesh_name, const View& view,
@@ -90,6 +114,11 @@ void PhotoArguments::add_to(CLI::App& command) {
   with_photos(command.add_option(
       "--picture", picture,
       "write a PNG of the worst view: photograph, prediction, difference, agreement"));
+  with_photos(command
+                  .add_option("--photometric", photometric,
+                              "off, auto or on: photographs made alike in exposure, white balance "
+                              "and vignetting first, by gains measured on the mesh")
+                  ->capture_default_str());
   for (CLI::Option* option : scene.add_reading_options(command)) with_photos(option);
 }
 
@@ -100,6 +129,7 @@ void PhotoArguments::check() const {
     throw UsageError("--photos needs --views: the views that were held out, e.g. 0,8,16");
   if (lenders && lenders->empty()) throw UsageError("--lenders is empty: write e.g. 1-7,9-15");
   options.validate();
+  parse_photometric(photometric);
 }
 
 eval::PhotoAgreement judge_photos(const PhotoArguments& a, const TriMesh& mesh,
@@ -115,8 +145,13 @@ eval::PhotoAgreement judge_photos(const PhotoArguments& a, const TriMesh& mesh,
   const ViewLoader loader{[](const fs::path& path) { return io::read_image(path); },
                           [](const fs::path& path) { return io::read_mask(path); }};
   PrepareOptions prepare;
-  if (load.masks == io::MaskSource::kNone) prepare.masks = MaskPolicy::kNone;
-  const PreparedViews prepared = prepare_views(scene, loader, prepare, progress);
+  prepare.masks = pipeline::mask_policy(load.masks);
+  PreparedViews prepared = prepare_views(scene, loader, prepare, progress);
+
+  const pipeline::Photometric photometric = parse_photometric(a.photometric);
+  std::string correction;
+  if (photometric != pipeline::Photometric::kOff)
+    correction = make_alike(photometric, scene, mesh, prepared, progress);
 
   progress.stage("predictions", 0.8 * kPhotoWeight);
   eval::PhotoMaps worst;
@@ -126,6 +161,7 @@ eval::PhotoAgreement judge_photos(const PhotoArguments& a, const TriMesh& mesh,
   result.result_name = mesh_name;
   result.scene = *a.photos;
   result.mask_source = prepared.mask_source;
+  result.photometric = correction;
   result.warnings.insert(result.warnings.begin(), prepared.warnings.begin(),
                          prepared.warnings.end());
   result.warnings.insert(result.warnings.begin(), scene.warnings.begin(), scene.warnings.end());
@@ -140,6 +176,7 @@ eval::PhotoAgreement judge_photos(const PhotoArguments& a, const TriMesh& mesh,
 void print_agreement(const eval::PhotoAgreement& a) {
   std::printf("photographs %s: %zu held out, %zu lend colour, masks from %s\n", a.scene.c_str(),
               a.views.size(), a.lenders, a.mask_source.c_str());
+  if (!a.photometric.empty()) std::printf("%s\n", a.photometric.c_str());
   std::printf("judged      %.2f %% of the foreground, by windows of %d x %d pixels\n\n",
               a.all.foreground ? 100 * double(a.all.judged) / double(a.all.foreground) : 0.0,
               a.options.window, a.options.window);

@@ -16,7 +16,7 @@ namespace photohull::cli {
 struct PhotoArguments {
   std::optional<std::string> photos, views, lenders;
   SceneArguments scene;  ///< how the photographs are read
-  std::string picture;
+  std::string picture, photometric = "off";
   eval::PhotoOptions options;
 
   void add_to(CLI::App& command);

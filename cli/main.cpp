@@ -36,22 +36,26 @@ int run(int argc, char** argv) {
       "  photohull info datasets/templeSparseRing\n"
       "  photohull reconstruct datasets/templeSparseRing --out out/temple --refine-cameras auto\n"
       "  photohull reconstruct scan/transforms.json --out out/scan --quality draft\n\n"
-      "Exit codes: 0 done, 1 failed, 2 wrong usage, 130 cancelled.");
+      "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 done, but the result failed its own checks, "
+      "130\n"
+      "cancelled.");
   photohull::cli::add_reconstruct(app);
   photohull::cli::add_info(app);
+  photohull::cli::add_masks(app);
   photohull::cli::add_convert(app);
   photohull::cli::add_calibrate(app);
   photohull::cli::add_refine_cameras(app);
   photohull::cli::add_synthesize(app);
   photohull::cli::add_evaluate(app);
   photohull::cli::add_chart(app);
+  photohull::cli::add_stress(app);
   photohull::cli::add_bench(app);
   photohull::cli::add_devices(app);
   try {
     app.parse(argc, argv);
     if (app.get_subcommands().empty())
       throw photohull::UsageError(
-          "a command is missing: reconstruct, evaluate, synthesize, convert, calibrate, "
+          "a command is missing: reconstruct, evaluate, masks, synthesize, convert, calibrate, "
           "refine-cameras, "
           "chart, bench, info or "
           "devices; "

@@ -43,9 +43,14 @@ std::vector<CLI::Option*> SceneArguments::add_reading_options(CLI::App& command)
   return {
       command.add_option("--format", format, format_names() + " (default: detected)"),
       command
-          .add_option("--masks", masks,
-                      "auto (files, alpha, else a background model), none, or a folder of masks")
+          .add_option(
+              "--masks", masks,
+              "auto (files, alpha, else a background model), background (always that), none, "
+              "or a folder of masks")
           ->capture_default_str(),
+      command.add_option("--background", background,
+                         "masks from photographs without the object: a file for a camera that "
+                         "stands still, or a folder with one for every view"),
       command.add_option("--pixel-center", pixel_center,
                          "coordinate of the top-left pixel's centre in the scene file, 0, 0.5 or 1 "
                          "(default: the format's)")};
@@ -73,10 +78,15 @@ io::LoadSceneOptions SceneArguments::options() const {
   out.hold_out = hold_out.value_or("");
   if (masks == "none") {
     out.masks = io::MaskSource::kNone;
+  } else if (masks == "background") {
+    out.masks = io::MaskSource::kBackground;
   } else if (masks != "auto") {
     out.masks = io::MaskSource::kDirectory;
     out.mask_directory = masks;
   }
+  if (background && background->empty())
+    throw UsageError("--background is empty: give a photograph without the object, or a folder");
+  out.background = background.value_or("");
   out.validate();
   return out;
 }

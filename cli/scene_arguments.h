@@ -19,6 +19,7 @@ SceneFormat parse_format(const std::string& option, const std::string& text);
 struct SceneArguments {
   std::string scene, masks = "auto";
   std::optional<std::string> format, box, views, hold_out;
+  std::optional<std::string> background;
   std::optional<double> pixel_center;
 
   void add_to(CLI::App& command);

@@ -60,11 +60,14 @@ TEST_F(BadMasks, VoxelsThatAreTooLargeAreNotBlamedOnTheMasks) {
   fail(1, reconstruct({"--resolution", "2"}), {"voxels of 1 are too large", "--resolution"});
 }
 
-TEST_F(BadMasks, OneEmptyMaskIsNamed) {
+TEST_F(BadMasks, OneEmptyMaskIsNamedAndLeftOut) {
   const std::vector<std::uint8_t> black(kWidth * kHeight, 0);
   io::write_png(mask_file(5), kWidth, kHeight, 1, black);
-  const Finished run = fail(1, reconstruct(), {"nothing is left of the box", "view5.png removes"});
+  const Finished run = succeed(reconstruct());
   EXPECT_THAT(run.err, HasSubstr("warning: view5.png: the mask is empty"));
+  EXPECT_THAT(run.err, HasSubstr("warning: view view5.png is left out"));
+  const auto report = nlohmann::json::parse(read_bytes(path("out/report.json")));
+  EXPECT_EQ(report["left_out"], nlohmann::json::array({"view5.png"}));
 }
 
 TEST_F(BadMasks, UniformPhotographsGiveTheHullAndAWarning) {

@@ -46,8 +46,9 @@ TEST_F(Reconstruct, ReportHasTheDocumentedFields) {
   const json schema = json::parse(R"({
     "photohull": "", "device": "", "noise_sigma": 0.1, "voxels_kept": 1, "wall_seconds": 0.1,
     "cpu_seconds": 0.1, "peak_memory_bytes": 1, "warnings": [], "files": [], "stages": [],
+    "left_out": [], "verdict": {"level": "good"},
     "options": {}, "scene": {"path": "", "format": "", "views": 1},
-    "box": {"min": [], "max": [], "source": ""}, "masks": {"source": "", "confidence": 0.1},
+    "box": {"min": [], "max": [], "source": ""}, "masks": {"source": "", "confidence": 0.1, "offset": 0.1},
     "grid": {"origin": [], "voxel_size": 0.1, "voxels": [], "bricks_stored": 1},
     "hull": {"nodes_tested": 1, "bricks_evaluated": 1},
     "photo": {"sweeps": 1, "voxels_judged": 1, "voxels_carved": 1, "voxels_undecided": 1},
@@ -72,7 +73,7 @@ TEST_F(Reconstruct, ReportHasTheDocumentedFields) {
   std::vector<std::string> stages;
   for (const json& stage : r["stages"]) stages.push_back(stage["name"]);
   EXPECT_THAT(stages, ElementsAre("scene", "device", "views", "hull", "images", "refine", "clean",
-                                  "mesh", "colour", "files", "preview"));
+                                  "mesh", "colour", "verdict", "files", "preview"));
 }
 
 TEST_F(Reconstruct, MeshErrorLeavesFewerTriangles) {
@@ -96,6 +97,26 @@ TEST_F(Reconstruct, MeshErrorLeavesFewerTriangles) {
   succeed(reconstruct({"--method", "hull", "--mesh-error", std::to_string(voxel) + "u"}));
   EXPECT_NEAR(report()["mesh"]["error_voxels"]["limit"], 1, 1e-3);
   EXPECT_LT(mesh().triangles.size(), simple.triangles.size());
+}
+
+TEST_F(Reconstruct, OutlinesMoveByTheMaskOffset) {
+  succeed(reconstruct({"--method", "hull", "--mask-offset", "0"}));
+  const std::int64_t kept = report()["voxels_kept"];
+  succeed(reconstruct({"--method", "hull", "--mask-offset", "2"}));
+  EXPECT_EQ(report()["masks"]["offset"], 2);
+  EXPECT_GT(std::int64_t(report()["voxels_kept"]), kept * 21 / 20);
+  succeed(reconstruct({"--method", "hull", "--mask-offset", "-2"}));
+  EXPECT_LT(std::int64_t(report()["voxels_kept"]), kept * 19 / 20);
+  for (const char* text : {"x", "nan", "1e9", "2px", ""})
+    fail(2, reconstruct({"--mask-offset", text}), {std::string("--mask-offset ") + text});
+}
+
+TEST_F(Reconstruct, ABoxMuchTooLargeIsMadeSmaller) {
+  const Finished run = succeed(reconstruct({"--box", "-60 -60 -60 60 60 60"}));  // cameras inside
+  EXPECT_THAT(run.err, HasSubstr("times larger than what the silhouettes leave"));
+  const auto box = report()["box"];
+  EXPECT_LT(double(box["max"][0]) - double(box["min"][0]), 10);
+  EXPECT_EQ(report()["verdict"]["level"], "good");
 }
 
 TEST_F(Reconstruct, UnseenOpenLeavesOutWhatNoCameraSees) {

@@ -41,7 +41,7 @@ TEST_F(Refine, StagesAndResult) {
   std::vector<std::string> stages;
   for (const json& stage : r["stages"]) stages.push_back(stage["name"]);
   EXPECT_THAT(stages, ElementsAre("scene", "device", "views", "hull", "images", "refine", "clean",
-                                  "mesh", "colour", "files", "preview"));
+                                  "mesh", "colour", "verdict", "files", "preview"));
 }
 
 TEST_F(Refine, SameBytesInEveryRunWhateverTheThreads) {

@@ -1,0 +1,146 @@
+#include "calibration_json.h"
+
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+namespace photohull::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json vector_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+
+void add_pose(const Pose& pose, ordered_json& j) {
+  const glm::dmat3& r = pose.rotation;
+  j["R"] = {{r[0][0], r[1][0], r[2][0]}, {r[0][1], r[1][1], r[2][1]}, {r[0][2], r[1][2], r[2][2]}};
+  j["t"] = vector_json(pose.translation);
+}
+
+void add_lens(const Intrinsics& k, const Distortion& distortion, LensModel lens, ordered_json& j) {
+  j["image_width"] = k.width;
+  j["image_height"] = k.height;
+  j["camera_matrix"] = {{k.fx, 0.0, k.cx}, {0.0, k.fy, k.cy}, {0.0, 0.0, 1.0}};
+  j["model"] = to_string(lens);
+  j["distortion_coefficients"] = distortion.coefficients;
+}
+
+ordered_json view_json(const BoardView& view, double rms, bool left_out) {
+  return {{"name", view.name},
+          {"points", view.points.size()},
+          {"rms", std::isnan(rms) ? ordered_json() : ordered_json(rms)},
+          {"left_out", left_out}};
+}
+
+std::string text_of(const ordered_json& j) {
+  return j.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+void print_view(const BoardView& view, double rms, bool left_out) {
+  if (view.points.empty())
+    std::printf("%-32s board not found\n", view.name.c_str());
+  else if (std::isnan(rms))
+    std::printf("%-32s only %zu points of the board found, left out\n", view.name.c_str(),
+                view.points.size());
+  else
+    std::printf("%-32s %7.3f px over %zu points%s\n", view.name.c_str(), rms, view.points.size(),
+                left_out ? ", left out" : "");
+}
+
+void print_lens(const Intrinsics& k, double focal_sigma, double principal_sigma, double rms) {
+  std::printf("focal length     %.3f, %.3f +- %.3f px\n", k.fx, k.fy, focal_sigma);
+  std::printf("principal point  %.3f, %.3f +- %.3f px\n", k.cx, k.cy, principal_sigma);
+  std::printf("reprojection     %.4f px rms\n", rms);
+}
+
+}  // namespace
+
+std::string calibration_json(const std::vector<BoardView>& views, const Calibration& c,
+                             LensModel lens) {
+  ordered_json j;
+  j["photohull_calibration"] = c.turntable ? "turntable" : "camera";
+  add_lens(c.intrinsics, c.distortion, lens, j);
+  j["rms"] = c.all_rms;
+  j["focal_sigma"] = c.focal_sigma;
+  j["principal_point_sigma"] = c.principal_sigma;
+  if (c.turntable)
+    j["turntable"] = {{"axis", vector_json(c.turntable->direction)},
+                      {"point", vector_json(c.turntable->point)},
+                      {"angles_given", c.turntable->angles_given},
+                      {"axis_sigma_degrees", c.turntable->direction_sigma},
+                      {"point_sigma", c.turntable->point_sigma},
+                      {"angle_sigma_degrees", c.turntable->angle_sigma}};
+  j["views"] = ordered_json::array();
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    ordered_json view = view_json(views[i], c.rms[i], c.left_out[i]);
+    if (!c.left_out[i]) {
+      add_pose(c.cam_from_board[i], view);
+      if (c.turntable) view["angle_degrees"] = c.turntable->angles[i];
+    }
+    j["views"].push_back(view);
+  }
+  return text_of(j);
+}
+
+std::string rig_json(const std::vector<RigCameraViews>& views,
+                     const std::vector<std::string>& moments, const RigCalibration& rig,
+                     LensModel lens) {
+  ordered_json j;
+  j["photohull_calibration"] = "rig";
+  j["rms"] = rig.all_rms;
+  j["cameras"] = ordered_json::array();
+  for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
+    const RigCamera& camera = rig.cameras[c];
+    ordered_json entry;
+    entry["name"] = camera.name;
+    add_lens(camera.intrinsics, camera.distortion, lens, entry);
+    add_pose(camera.cam_from_rig, entry);
+    entry["rms"] = camera.all_rms;
+    entry["focal_sigma"] = camera.focal_sigma;
+    entry["principal_point_sigma"] = camera.principal_sigma;
+    entry["rotation_sigma_degrees"] = camera.rotation_sigma;
+    entry["translation_sigma"] = camera.translation_sigma;
+    entry["views"] = ordered_json::array();
+    for (std::size_t m = 0; m < moments.size(); ++m) {
+      if (views[c].views[m].name.empty()) continue;  // no picture
+      ordered_json view = view_json(views[c].views[m], camera.rms[m], camera.left_out[m]);
+      view["moment"] = moments[m];
+      entry["views"].push_back(view);
+    }
+    j["cameras"].push_back(entry);
+  }
+  return text_of(j);
+}
+
+void print_calibration(const std::vector<BoardView>& views, const Calibration& c) {
+  for (std::size_t i = 0; i < views.size(); ++i) print_view(views[i], c.rms[i], c.left_out[i]);
+  print_lens(c.intrinsics, c.focal_sigma, c.principal_sigma, c.all_rms);
+  if (!c.turntable) return;
+  const TurntableAxis& t = *c.turntable;
+  std::printf("axis             %.6f %.6f %.6f +- %.4f degrees\n", t.direction.x, t.direction.y,
+              t.direction.z, t.direction_sigma);
+  std::printf("through          %g %g %g +- %.2g\n", t.point.x, t.point.y, t.point.z,
+              t.point_sigma);
+  if (t.angles_given)
+    std::printf("angles           as given\n");
+  else
+    std::printf("angles           found, +- %.4f degrees at most\n", t.angle_sigma);
+}
+
+void print_rig(const std::vector<RigCameraViews>& views, const RigCalibration& rig) {
+  for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
+    const RigCamera& camera = rig.cameras[c];
+    std::printf("camera %s\n", camera.name.c_str());
+    for (std::size_t m = 0; m < views[c].views.size(); ++m)
+      if (!views[c].views[m].name.empty())
+        print_view(views[c].views[m], camera.rms[m], camera.left_out[m]);
+    print_lens(camera.intrinsics, camera.focal_sigma, camera.principal_sigma, camera.all_rms);
+    const Pose& pose = camera.cam_from_rig;
+    const glm::dvec3 center = -(glm::transpose(pose.rotation) * pose.translation);
+    std::printf("centre           %g %g %g; turned +- %.4f degrees, moved +- %.2g\n", center.x,
+                center.y, center.z, camera.rotation_sigma, camera.translation_sigma);
+  }
+  std::printf("all              %.4f px rms\n", rig.all_rms);
+}
+
+}  // namespace photohull::cli

@@ -1,0 +1,151 @@
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "calib/prepare_views.h"
+#include "commands.h"
+#include "core/error.h"
+#include "io/image_file.h"
+#include "pipeline/mask_policy.h"
+#include "scene_arguments.h"
+#include "terminal_progress.h"
+
+namespace photohull::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  SceneArguments scene;
+  std::optional<std::string> out, compare;
+  bool cut = false, json = false;
+};
+
+/// Intersection over union, and the share of the true object that the mask leaves out.
+struct Overlap {
+  double iou = 0, missed = 0;
+};
+
+Overlap overlap(const Mask& mask, const Mask& truth) {
+  double both = 0, either = 0, object = 0;
+  for (std::size_t i = 0; i < truth.coverage.size(); ++i) {
+    const bool a = !mask.empty() && mask.coverage[i] >= 128, b = truth.coverage[i] >= 128;
+    both += a && b, either += a || b, object += b;
+  }
+  return {either > 0 ? both / either : 1, object > 0 ? 1 - both / object : 0};
+}
+
+fs::path file_name(const std::string& view) { return fs::path(view).filename().string() + ".png"; }
+
+/// Masks that are known, by the names that masks have.
+std::vector<Overlap> compare(const Arguments& a, const PreparedViews& prepared) {
+  SceneArguments reading = a.scene;
+  reading.background.reset();
+  reading.masks = *a.compare;
+  const Scene truth = io::load_scene(reading.scene, reading.options());
+  std::vector<Overlap> out;
+  for (std::size_t i = 0; i < truth.views.size(); ++i) {
+    const Mask mask = io::read_mask(truth.views[i].mask);
+    const View& view = prepared.views[i];
+    if (mask.width != view.image.width || mask.height != view.image.height)
+      throw Error(concat("--compare: ", view.name,
+                         " was undistorted to another size than its mask; compare views without "
+                         "lens distortion"));
+    out.push_back(overlap(view.mask, mask));
+  }
+  return out;
+}
+
+void write_masks(const fs::path& folder, const PreparedViews& prepared) {
+  std::error_code failure;
+  fs::create_directories(folder, failure);
+  if (failure)
+    throw Error(concat(folder.string(), ": the folder cannot be made (", failure.message(),
+                       "); choose another with --out"));
+  for (const View& view : prepared.views)
+    if (!view.mask.empty())
+      io::write_png(folder / file_name(view.name), view.mask.width, view.mask.height, 1,
+                    view.mask.coverage);
+}
+
+void print(const Arguments& a, const PreparedViews& prepared, const std::vector<Overlap>& known) {
+  std::printf("%-24s %-18s %10s %8s%s\n", "view", "mask from", "confidence", "object",
+              known.empty() ? "" : "      IoU   missed");
+  for (std::size_t i = 0; i < prepared.views.size(); ++i) {
+    const View& view = prepared.views[i];
+    double object = 0;
+    for (const std::uint8_t c : view.mask.coverage) object += c / 255.0;
+    if (!view.mask.empty()) object /= double(view.mask.coverage.size());
+    std::printf("%-24s %-18s %10.3f %6.2f %%", view.name.c_str(), prepared.masks[i].source.c_str(),
+                prepared.masks[i].confidence, 100 * object);
+    if (!known.empty()) std::printf("  %7.4f %6.2f %%", known[i].iou, 100 * known[i].missed);
+    std::printf("\n");
+  }
+  for (const std::string& text : prepared.warnings) std::printf("warning: %s\n", text.c_str());
+  if (a.out) std::printf("masks in %s\n", a.out->c_str());
+}
+
+void print_json(const PreparedViews& prepared, const std::vector<Overlap>& known) {
+  nlohmann::ordered_json j = {{"source", prepared.mask_source},
+                              {"confidence", prepared.mask_confidence}};
+  j["views"] = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < prepared.views.size(); ++i) {
+    j["views"].push_back({{"name", prepared.views[i].name},
+                          {"source", prepared.masks[i].source},
+                          {"confidence", prepared.masks[i].confidence}});
+    if (!known.empty())
+      j["views"].back()["iou"] = known[i].iou, j["views"].back()["missed"] = known[i].missed;
+  }
+  j["warnings"] = prepared.warnings;
+  std::printf("%s\n",
+              j.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
+}
+
+void run(const Arguments& a) {
+  if (a.out && a.out->empty()) throw UsageError("--out is empty: give a folder for the masks");
+  if (a.compare && a.compare->empty())
+    throw UsageError("--compare is empty: give a folder of masks that are known");
+  const io::LoadSceneOptions load = a.scene.options();
+  const Scene scene = io::load_scene(a.scene.scene, load);
+  const ViewLoader loader{[](const fs::path& path) { return io::read_image(path); },
+                          [](const fs::path& path) { return io::read_mask(path); }};
+  PrepareOptions options;
+  options.masks = pipeline::mask_policy(load.masks);
+  options.cut_masks = a.cut;
+  TerminalProgress progress(1);
+  progress.stage("masks", 1);
+  const PreparedViews prepared = prepare_views(scene, loader, options, progress);
+  progress.finish();
+  std::vector<Overlap> known;
+  if (a.compare) known = compare(a, prepared);
+  if (a.out) write_masks(*a.out, prepared);
+  if (a.json)
+    print_json(prepared, known);
+  else
+    print(a, prepared, known);
+}
+
+}  // namespace
+
+void add_masks(CLI::App& app) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* c = app.add_subcommand("masks", "find the object in photographs, as reconstruct does");
+  a->scene.add_to(*c);
+  c->add_option("--out", a->out, "folder to write the masks to (VIEW.png), to touch them up");
+  c->add_option("--compare", a->compare,
+                "folder of masks that are known: print how far they agree");
+  c->add_flag("--grabcut", a->cut, "let GrabCut place the contours");
+  c->add_flag("--json", a->json, "print JSON");
+  c->footer(
+      "Masks are of the undistorted photographs. Confidence is from 0 to 1; masks that were given "
+      "have 1.\n\n"
+      "Examples:\n"
+      "  photohull masks datasets/templeSparseRing --out out/masks\n"
+      "  photohull masks turntable --background empty.png\n"
+      "  photohull masks scan --masks background --compare scan/masks");
+  c->callback([a] { run(*a); });
+}
+
+}  // namespace photohull::cli

@@ -1,0 +1,127 @@
+// Masks made from the background, from the command line.
+#include <nlohmann/json.hpp>
+
+#include "io/image_file.h"
+#include "sphere_scene.h"
+
+namespace photohull::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::Each;
+using testing::HasSubstr;
+
+class MasksCommand : public SphereScene {
+ protected:
+  /// The wall without the sphere, as ray_cast takes it.
+  static std::vector<std::uint8_t> wall(int width = kWidth, int height = kHeight) {
+    std::vector<std::uint8_t> pixels;
+    for (int i = 0; i < width * height; ++i)
+      for (const double light : {0.01, 0.012, 0.03})
+        pixels.push_back(std::uint8_t(std::lround(255 * srgb_from_linear(light))));
+    return pixels;
+  }
+  void write_plates() const {
+    fs::create_directories(folder_ / "empty");
+    for (const SourceView& view : scene_.views)
+      io::write_png(folder_ / "empty" / view.name, kWidth, kHeight, 3, wall());
+  }
+  std::string plate(int view) const { return path("empty/" + scene_.views[view].name); }
+  Arguments masks(const Arguments& more) const {
+    Arguments all = {"masks", scene()};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+};
+
+TEST_F(MasksCommand, OnePlateServesAFixedCamera) {
+  io::write_png(folder_ / "wall.png", kWidth, kHeight, 3, wall());
+  const Finished run = succeed(masks(
+      {"--background", path("wall.png"), "--compare", path("cutouts"), "--out", out(), "--json"}));
+  const json j = json::parse(run.out);
+  EXPECT_EQ(j["source"], "background plate");
+  ASSERT_EQ(j["views"].size(), std::size_t(kViews));
+  for (const json& view : j["views"]) {
+    EXPECT_GT(double(view["iou"]), 0.93) << view;
+    EXPECT_LT(double(view["missed"]), 0.02) << view;
+    EXPECT_GT(double(view["confidence"]), 0.7) << view;
+    EXPECT_LT(double(view["confidence"]), 1) << view;
+  }
+  // What was written is what serves as masks.
+  EXPECT_EQ(listing(out()).size(), std::size_t(kViews));
+  const json given =
+      json::parse(succeed(masks({"--masks", out(), "--compare", path("cutouts"), "--json"})).out);
+  EXPECT_EQ(given["views"][5]["iou"], j["views"][5]["iou"]);
+  EXPECT_EQ(given["views"][5]["confidence"], 1.0);
+}
+
+TEST_F(MasksCommand, ReportsSayHowSureTheMasksAre) {
+  write_plates();
+  succeed({"reconstruct", scene(), "--out", out(), "--resolution", "32", "--method", "hull",
+           "--background", path("empty")});
+  const json r = json::parse(read_bytes(path("out/report.json")));
+  EXPECT_EQ(r["masks"]["source"], "background plate");
+  EXPECT_EQ(r["options"]["background"], path("empty"));
+  double least = 1;
+  ASSERT_EQ(r["masks"]["views"].size(), std::size_t(kViews));
+  for (const json& view : r["masks"]["views"]) least = std::min(least, double(view["confidence"]));
+  EXPECT_EQ(r["masks"]["confidence"], least);
+  const Finished info = succeed({"info", scene(), "--check-masks", "--background", path("empty")});
+  EXPECT_THAT(info.out, HasSubstr("masks          background plate: confidence "));
+  const json checked = json::parse(
+      succeed({"info", scene(), "--check-masks", "--background", path("empty"), "--json"}).out);
+  EXPECT_EQ(checked["masks"]["views"], r["masks"]["views"]);
+}
+
+TEST_F(MasksCommand, BackgroundModelIsUsedInPlaceOfMasksOnDemand) {
+  fs::rename(folder_ / "cutouts", folder_ / "masks");
+  EXPECT_EQ(json::parse(succeed(masks({"--json"})).out)["source"], "mask files");
+  EXPECT_EQ(json::parse(succeed(masks({"--masks", "background", "--json"})).out)["source"],
+            "background model");
+}
+
+TEST_F(MasksCommand, DoubtfulMasksAreNamed) {
+  write_plates();
+  // In this plate the sphere is there already, but for a trace.
+  const ColourImage taken = io::read_image(image(3));
+  std::vector<std::uint8_t> ghost = wall();
+  for (std::size_t i = 0; i < ghost.size(); ++i) {
+    const std::uint8_t there = taken.bytes[i / 3 * 4 + i % 3];
+    ghost[i] = std::uint8_t(there > ghost[i] ? there - (there - ghost[i]) / 12 : there);
+  }
+  io::write_png(plate(3), kWidth, kHeight, 3, ghost);
+  const Finished run = succeed(masks({"--background", path("empty")}));
+  EXPECT_THAT(run.out + run.err, HasSubstr("view3.png"));
+  EXPECT_THAT(run.out, HasSubstr("warning: the masks of 1 views are doubtful (view3.png)"));
+}
+
+TEST_F(MasksCommand, BadBackgroundsAreNamed) {
+  const auto refuse = [&](const std::vector<std::string>& parts) {
+    fail(1, masks({"--background", path("empty")}), parts);
+  };
+  refuse({path("empty"), "no such background"});
+  write_plates();
+  io::write_png(plate(2), 64, 48, 3, wall(64, 48));
+  refuse({plate(2), "64 x 48", "96 x 72", "view2.png"});
+  write_bytes(plate(2), "no picture");
+  refuse({plate(2)});
+  const std::string good = read_bytes(plate(1));
+  write_bytes(plate(2), good.substr(0, good.size() / 2));  // its header tells the size
+  refuse({plate(2)});
+  fs::remove(plate(2));
+  refuse({path("empty"), "no background for view2.png"});
+  // The photographs themselves are no backgrounds.
+  fail(1, masks({"--background", path("images")}), {"no background for view0.png"});
+  write_plates();
+  for (const char* given : {"none", "cutouts"})
+    fail(2,
+         masks({"--background", path("empty"), "--masks",
+                given == std::string("none") ? given : path(given)}),
+         {"--background and ", "exclude each other"});
+  fail(2, masks({"--background", ""}), {"--background is empty"});
+  fail(2, masks({"--out", ""}), {"--out is empty"});
+}
+
+}  // namespace
+}  // namespace photohull::test
