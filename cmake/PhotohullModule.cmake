@@ -11,15 +11,30 @@ function(photohull_module name)
   target_link_libraries(photohull_${name} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
 endfunction()
 
-# photohull_test(NAME SOURCES files... LIBS libs... [LABELS labels...])
-# One test program; every TEST becomes a ctest test of its own. Labels: unit, gl, golden, slow.
+# photohull_test(NAME SOURCES files... LIBS libs... [LABELS labels...] [SHARDS count])
+# One test program. ctest runs it whole, or in SHARDS parts that may run side by side: loading the
+# libraries takes a program half a second, which a process for every TEST would pay each time.
+# Labels: unit, gl, golden, slow.
 function(photohull_test name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LIBS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "" "SHARDS" "SOURCES;LIBS;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_compile_options(${name} PRIVATE ${PHOTOHULL_WARNINGS})
   target_compile_definitions(${name} PRIVATE
     PHOTOHULL_DATASETS="${PROJECT_SOURCE_DIR}/datasets"
     PHOTOHULL_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
   target_link_libraries(${name} PRIVATE ${ARG_LIBS} GTest::gtest_main GTest::gmock)
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 600)
+  if(NOT ARG_SHARDS)
+    set(ARG_SHARDS 1)
+  endif()
+  foreach(shard RANGE 1 ${ARG_SHARDS})
+    set(test ${name})
+    if(ARG_SHARDS GREATER 1)
+      string(APPEND test ".${shard}of${ARG_SHARDS}")
+    endif()
+    math(EXPR index "${shard} - 1")
+    add_test(NAME ${test} COMMAND ${name} --gtest_brief=1)
+    # Shards are the long ones: they start first.
+    set_tests_properties(${test} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 1200 COST ${ARG_SHARDS}
+      ENVIRONMENT "GTEST_TOTAL_SHARDS=${ARG_SHARDS};GTEST_SHARD_INDEX=${index}")
+  endforeach()
 endfunction()
