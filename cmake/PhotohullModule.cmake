@@ -9,6 +9,22 @@ function(photohull_module name)
   target_compile_features(photohull_${name} PUBLIC cxx_std_20)
   target_compile_options(photohull_${name} PRIVATE ${PHOTOHULL_WARNINGS})
   target_link_libraries(photohull_${name} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+  photohull_precompile(photohull_${name} photohull_core
+    <algorithm> <filesystem> <functional> <glm/glm.hpp> <span> <string> <vector>)
+endfunction()
+
+# photohull_precompile(TARGET OWNER headers...): compiles the headers once, for OWNER, and all other
+# targets take them from there. Only with PHOTOHULL_PRECOMPILE: the other builds notice headers that
+# a file forgets to include, and ccache serves them better.
+function(photohull_precompile target owner)
+  if(NOT PHOTOHULL_PRECOMPILE)
+    return()
+  endif()
+  if(target STREQUAL owner)
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+  else()
+    target_precompile_headers(${target} REUSE_FROM ${owner})
+  endif()
 endfunction()
 
 # photohull_test(NAME SOURCES files... LIBS libs... [LABELS labels...] [SHARDS count])
@@ -23,6 +39,7 @@ function(photohull_test name)
     PHOTOHULL_DATASETS="${PROJECT_SOURCE_DIR}/datasets"
     PHOTOHULL_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
   target_link_libraries(${name} PRIVATE ${ARG_LIBS} GTest::gtest_main GTest::gmock)
+  photohull_precompile(${name} photohull_test_support)
   if(NOT ARG_SHARDS)
     set(ARG_SHARDS 1)
   endif()
