@@ -13,7 +13,7 @@ namespace photohull::cli {
 namespace {
 
 struct Arguments {
-  std::string spec, out;
+  std::string spec, out, device = "auto";
   std::optional<std::string> size;
   std::optional<int> views;
   std::optional<std::uint64_t> seed;
@@ -58,7 +58,8 @@ void run(const Arguments& a) {
   if (a.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, a.threads);
   const synth::Spec spec = read_spec(a);
   TerminalProgress progress(synth::total_weight(spec));
-  const synth::SynthesizedScene made = synth::synthesize(spec, a.out, progress);
+  const synth::SynthesizedScene made =
+      synth::synthesize(spec, a.out, progress, a.device, a.threads);
   progress.finish();
   std::printf("%d views of %zu triangles, %g across; the object covers up to %.0f %% of a frame\n",
               made.views, made.triangles, made.diagonal, 100 * made.largest_fill);
@@ -79,6 +80,10 @@ void add_synthesize(CLI::App& app) {
   c->add_option("--views", a->views, "number of views in place of the spec's");
   c->add_option("--size", a->size, "image size in place of the spec's, such as 640x480");
   c->add_option("--seed", a->seed, "seed of everything random in place of the spec's");
+  c->add_option("--device", a->device,
+                "for shadows by maps (light.shadow_test): auto, software, or an index from "
+                "'photohull devices'")
+      ->capture_default_str();
   c->add_option("--threads", a->threads, "threads to use (0: one a core)")->capture_default_str();
   c->add_flag("--list", a->list, "print the built-in shapes with their parameters and stop");
   c->footer(

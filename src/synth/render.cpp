@@ -11,6 +11,8 @@
 namespace photohull::synth {
 namespace {
 
+constexpr int kRaysAtOnce = 200000;  ///< whose hits wait for the maps' answers
+
 /// Pixels of the frame that the object can touch, ends excluded.
 struct Frame {
   int x0, y0, x1, y1;
@@ -34,6 +36,13 @@ Frame find_frame(const Surface& surface, const LensCamera& lens) {
           clamped(std::ceil(high.x) + 2, k.width), clamped(std::ceil(high.y) + 2, k.height)};
 }
 
+/// Rays of a run of pixels, what they met and, where maps were asked, how it is lit.
+struct Traced {
+  std::vector<Ray> rays;
+  std::vector<Hit> hits;
+  LightShares shares;
+};
+
 class RowRenderer {
  public:
   static constexpr int kBlock = 16;  ///< pixels whose rays are traced at once
@@ -50,22 +59,31 @@ class RowRenderer {
         n_(samples),
         seed_(seed) {}
 
-  void render(int y, Picture& picture) const {
-    const std::vector<glm::dvec2> above = edge(y - 0.5), below = edge(y + 0.5);
+  bool touched(int y) const { return y >= frame_.y0 && y < frame_.y1 && frame_.x0 < frame_.x1; }
+
+  /// All rays of a row that is touched.
+  void trace_row(int y, Traced& traced) const {
+    trace(frame_.x0, frame_.x1, y, edge(y - 0.5), edge(y + 0.5), traced);
+  }
+
+  /// `ready`: the row's rays, where they have been traced before.
+  void render(int y, Picture& picture, const Traced* ready) const {
     std::vector<Ray> centers;
     for (int x = 0; x < picture.width; ++x) centers.push_back(ray(undistorted({x, y})));
     std::vector<Hit> hits(centers.size());
-    const bool touched = y >= frame_.y0 && y < frame_.y1 && frame_.x0 < frame_.x1;
-    if (touched)
+    if (touched(y))
       surface_.rays->closest(std::span(centers).subspan(frame_.x0, frame_.x1 - frame_.x0),
                              std::span(hits).subspan(frame_.x0, frame_.x1 - frame_.x0));
     for (int x = 0; x < picture.width; ++x) {
       const std::size_t i = std::size_t(y) * picture.width + x;
       write_center(centers[x], hits[x], i, picture);
     }
-    if (touched)
-      for (int x = frame_.x0; x < frame_.x1; x += kBlock)
-        trace(x, std::min(x + kBlock, frame_.x1), y, above, below, picture);
+    if (touched(y)) {
+      if (ready)
+        shade(frame_.x0, frame_.x1, y, *ready, picture);
+      else
+        render_blocks(y, picture);
+    }
     for (int x = 0; x < picture.width; ++x) {
       const std::size_t i = std::size_t(y) * picture.width + x;
       // The background has no edges finer than a pixel: one look is enough.
@@ -107,24 +125,38 @@ class RowRenderer {
       }
   }
 
-  /// Light and coverage of the pixels from `first` to before `last`, all at once.
+  void render_blocks(int y, Picture& picture) const {
+    thread_local Traced block;
+    const std::vector<glm::dvec2> above = edge(y - 0.5), below = edge(y + 0.5);
+    for (int x = frame_.x0; x < frame_.x1; x += kBlock) {
+      const int last = std::min(x + kBlock, frame_.x1);
+      trace(x, last, y, above, below, block);
+      shade(x, last, y, block, picture);
+    }
+  }
+
+  /// The rays of the pixels from `first` to before `last`.
   void trace(int first, int last, int y, const std::vector<glm::dvec2>& above,
-             const std::vector<glm::dvec2>& below, Picture& picture) const {
-    thread_local std::vector<Ray> rays;
-    thread_local std::vector<Hit> hits;
-    thread_local std::vector<glm::vec3> light;
+             const std::vector<glm::dvec2>& below, Traced& traced) const {
     const std::size_t each = std::size_t(n_ * n_), count = each * std::size_t(last - first);
-    rays.resize(count), hits.resize(count), light.resize(count);
+    traced.rays.resize(count), traced.hits.resize(count);
     for (int x = first; x < last; ++x)
-      sample_rays(x, y, above, below, rays.data() + each * std::size_t(x - first));
-    surface_.rays->closest(rays, hits);
-    shading_.shade(rays, hits, light);
+      sample_rays(x, y, above, below, traced.rays.data() + each * std::size_t(x - first));
+    surface_.rays->closest(traced.rays, traced.hits);
+  }
+
+  /// Light and coverage of these pixels, all at once.
+  void shade(int first, int last, int y, const Traced& traced, Picture& picture) const {
+    thread_local std::vector<glm::vec3> light;
+    const std::size_t each = std::size_t(n_ * n_);
+    light.resize(traced.rays.size());
+    shading_.shade(traced.rays, traced.hits, traced.shares, light);
     for (int x = first; x < last; ++x) {
       glm::vec3 sum(0);
       int covered = 0;
       const std::size_t start = each * std::size_t(x - first);
       for (std::size_t i = start; i < start + each; ++i)
-        if (hits[i]) sum += light[i], ++covered;
+        if (traced.hits[i]) sum += light[i], ++covered;
       const std::size_t pixel = std::size_t(y) * picture.width + x;
       picture.colour[pixel] = sum / float(each);
       picture.coverage[pixel] = float(covered) / float(each);
@@ -150,11 +182,32 @@ class RowRenderer {
   std::uint64_t seed_;
 };
 
+/// Bands of rows: their rays from all threads, the maps' answers from this one, then the light.
+void render_with_maps(const RowRenderer& rows, LightMaps& maps, int samples, Picture& picture,
+                      const std::function<void()>& row_done) {
+  const int height = std::max(1, kRaysAtOnce / std::max(1, picture.width * samples * samples));
+  std::vector<Traced> band(static_cast<std::size_t>(height));
+  for (int first = 0; first < picture.height; first += height) {
+    const int last = std::min(first + height, picture.height);
+    tbb::parallel_for(first, last, [&](int y) {
+      if (rows.touched(y)) rows.trace_row(y, band[std::size_t(y - first)]);
+    });
+    for (int y = first; y < last; ++y) {
+      Traced& row = band[std::size_t(y - first)];
+      if (rows.touched(y)) row.shares = maps.shares(row.rays, row.hits);
+    }
+    tbb::parallel_for(first, last, [&](int y) {
+      rows.render(y, picture, &band[std::size_t(y - first)]);
+      row_done();
+    });
+  }
+}
+
 }  // namespace
 
 Picture render(const Surface& surface, const Shading& shading, const LensCamera& lens,
                std::size_t view, int samples, std::uint64_t seed,
-               const std::function<void()>& row_done) {
+               const std::function<void()>& row_done, LightMaps* maps) {
   Picture picture;
   picture.width = lens.camera.intrinsics.width, picture.height = lens.camera.intrinsics.height;
   const std::size_t pixels = std::size_t(picture.width) * picture.height;
@@ -163,10 +216,15 @@ Picture render(const Surface& surface, const Shading& shading, const LensCamera&
   picture.depth.resize(pixels);
   picture.normal.resize(pixels);
   const RowRenderer rows(surface, shading, lens, view, samples, seed);
-  tbb::parallel_for(0, picture.height, [&](int y) {
-    rows.render(y, picture);
-    row_done();
-  });
+  if (maps) {
+    maps->look_from(lens.camera);
+    render_with_maps(rows, *maps, samples, picture, row_done);
+  } else {
+    tbb::parallel_for(0, picture.height, [&](int y) {
+      rows.render(y, picture, nullptr);
+      row_done();
+    });
+  }
   return picture;
 }
 

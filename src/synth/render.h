@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "synth/lens.h"
+#include "synth/light_maps.h"
 #include "synth/shading.h"
 
 namespace photohull::synth {
@@ -20,10 +21,11 @@ struct Picture {
 
 /// Traces samples x samples rays a pixel, stratified with a jitter that depends on seed, view and
 /// pixel only. `row_done` is called after every row, from several threads; what it throws ends
-/// the work.
+/// the work. With `maps` shadows come from them, else from rays; they belong to the calling thread.
 Picture render(
     const Surface& surface, const Shading& shading, const LensCamera& lens, std::size_t view,
-    int samples, std::uint64_t seed, const std::function<void()>& row_done = [] {});
+    int samples, std::uint64_t seed, const std::function<void()>& row_done = [] {},
+    LightMaps* maps = nullptr);
 
 /// The same view without the object: one look at the background a pixel.
 Picture render_background(const Shading& shading, const LensCamera& lens, std::size_t view);

@@ -127,7 +127,7 @@ glm::vec3 Shading::highlight(const glm::vec3& normal, const glm::vec3& to_eye,
   return glm::vec3(float(spec_.material.gloss) * a2 * a2 / (below * below));
 }
 
-void Shading::shade(std::span<const Ray> rays, std::span<const Hit> hits,
+void Shading::shade(std::span<const Ray> rays, std::span<const Hit> hits, const LightShares& shares,
                     std::span<glm::vec3> out) const {
   thread_local std::vector<Point> points;
   thread_local std::vector<Ray> shadow;
@@ -145,7 +145,8 @@ void Shading::shade(std::span<const Ray> rays, std::span<const Hit> hits,
   set_albedo(points, hits);
   const glm::vec3 ambient(spec_.light.ambient);
   for (const Point& p : points) out[p.index] = ambient * p.albedo * (0.8f + 0.2f * p.normal.z);
-  for (const Light& light : lights_) {
+  for (std::size_t k = 0; k < lights_.size(); ++k) {
+    const Light& light = lights_[k];
     shadow.resize(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
       shadow[i].origin = points[i].origin;
@@ -153,12 +154,13 @@ void Shading::shade(std::span<const Ray> rays, std::span<const Hit> hits,
       shadow[i].tfar = light.directional ? INFINITY : 1.0;
     }
     blocked.assign(shadow.size(), 0);
-    if (spec_.light.shadows) surface_.rays->occluded(shadow, blocked);
+    if (spec_.light.shadows && shares.empty()) surface_.rays->occluded(shadow, blocked);
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Point& p = points[i];
       const glm::vec3 to_light(normalize(shadow[i].direction));
       const float cosine = dot(p.normal, to_light);
-      if (blocked[i] || cosine <= 0) continue;
+      const float share = shares.empty() ? float(!blocked[i]) : shares[k][p.index];
+      if (share <= 0 || cosine <= 0) continue;
       glm::vec3 arriving = light.colour;
       if (!light.directional) {
         const double distance = length(shadow[i].direction) / surface_.diagonal;
@@ -166,7 +168,7 @@ void Shading::shade(std::span<const Ray> rays, std::span<const Hit> hits,
       }
       glm::vec3 reflected = p.albedo;
       if (spec_.material.gloss > 0) reflected += highlight(p.normal, p.to_eye, to_light);
-      out[p.index] += cosine * arriving * reflected;
+      out[p.index] += share * cosine * arriving * reflected;
     }
   }
 }

@@ -7,23 +7,31 @@
 
 namespace photohull::synth {
 
+struct Light {
+  glm::dvec3 place;  ///< position, or unit direction towards it
+  glm::vec3 colour;
+  bool directional;
+};
+
+/// Of each light, the share that reaches each ray's hit.
+using LightShares = std::vector<std::vector<float>>;
+
 /// What the surface reflects at every point, and how much light reaches it. Linear light.
 class Shading {
  public:
   /// `pixel` is the world size of the mean camera's pixel at the middle of the box.
   Shading(const Spec& spec, const Surface& surface, double pixel);
 
-  /// Radiance of hits towards where their rays came from; as many as rays, misses left alone.
-  void shade(std::span<const Ray> rays, std::span<const Hit> hits, std::span<glm::vec3> out) const;
+  /// Directional ones first, in the spec's order.
+  const std::vector<Light>& lights() const { return lights_; }
+  /// Radiance of hits towards where their rays came from; as many as rays, misses left alone. Where
+  /// `shares` is empty, rays to the lights are cast.
+  void shade(std::span<const Ray> rays, std::span<const Hit> hits, const LightShares& shares,
+             std::span<glm::vec3> out) const;
   /// What is seen past the object along a ray of view `view`.
   glm::vec3 background(const Ray& ray, std::size_t view) const;
 
  private:
-  struct Light {
-    glm::dvec3 place;  ///< position, or unit direction towards it
-    glm::vec3 colour;
-    bool directional;
-  };
   /// Where a ray met the surface.
   struct Point {
     glm::dvec3 position, origin;  ///< origin: off the surface, for shadow rays

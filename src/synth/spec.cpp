@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "synth/spec_reader.h"
 #include "synth/spec_visit.h"
+#include "visibility/technique.h"
 
 namespace photohull::synth {
 namespace fs = std::filesystem;
@@ -107,6 +108,12 @@ void check_together(const Spec& s, const std::string& source) {
 }
 
 }  // namespace
+
+std::vector<std::string> shadow_tests() {
+  std::vector<std::string> names{kShadowRays};
+  for (const auto& technique : visibility::named_techniques()) names.push_back(technique.name);
+  return names;
+}
 
 Spec parse_spec(const std::string& text, const std::string& source, const fs::path& folder) {
   nlohmann::json root;

@@ -48,11 +48,15 @@ struct PointLight {
   glm::dvec3 colour{0.5};    ///< as it arrives a diagonal away; falls with distance squared
 };
 
+constexpr const char* kShadowRays = "rays";
+
 struct LightSpec {
   glm::dvec3 ambient{0.45};
   std::vector<DirectionalLight> directional = {DirectionalLight{}};
   std::vector<PointLight> point;
   bool shadows = true;
+  std::string shadow_test = kShadowRays;  ///< exact rays, or a technique of visibility maps
+  int shadow_texels = 1024;               ///< of a map, along each side
 };
 
 struct BackgroundSpec {

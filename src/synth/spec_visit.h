@@ -31,6 +31,9 @@ void visit_material(Visitor& v, MaterialSpec& m) {
   v.number("haze_depth", m.haze_depth, 0, 1);
 }
 
+/// Exact rays, and every named technique of visibility maps.
+std::vector<std::string> shadow_tests();
+
 template <typename Visitor>
 void visit_light(Visitor& v, LightSpec& l) {
   v.vector("ambient", l.ambient, 0, 100);
@@ -43,6 +46,8 @@ void visit_light(Visitor& v, LightSpec& l) {
     v.vector("colour", p.colour, 0, 10000);
   });
   v.flag("shadows", l.shadows);
+  v.choice("shadow_test", l.shadow_test, shadow_tests());
+  v.integer("shadow_texels", l.shadow_texels, 16, 8192);
 }
 
 template <typename Visitor>

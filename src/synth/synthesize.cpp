@@ -5,14 +5,17 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <optional>
 
 #include "core/error.h"
 #include "synth/degrade_cameras.h"
 #include "synth/degrade_image.h"
 #include "synth/degrade_mask.h"
+#include "synth/light_maps.h"
 #include "synth/place_cameras.h"
 #include "synth/random.h"
 #include "synth/scene_files.h"
@@ -121,16 +124,19 @@ void check_wrong_masks(const Spec& spec, const std::vector<std::size_t>& kept, P
 /// Renders and writes all views; returns the largest share of a frame that is covered.
 double write_views(const Spec& spec, const Surface& surface, const std::vector<LensCamera>& cameras,
                    const std::vector<std::size_t>& indices, const std::vector<std::string>& names,
-                   const SceneFiles& files, SharedProgress& progress) {
+                   const SceneFiles& files, SharedProgress& progress, gpu::Context* context) {
   const Shading shading(spec, surface, mean_pixel(cameras, surface.box.center()));
+  std::optional<LightMaps> maps;
+  if (context) maps.emplace(*context, spec.light, surface, shading.lights());
   const std::uint64_t seed = degradation_seed(spec);
   const double rows = double(cameras.size()) * spec.image.height;
   std::atomic<long> rows_done = 0;
   std::vector<double> fill(cameras.size());
   std::vector<Mask> masks(cameras.size());
-  tbb::parallel_for(std::size_t(0), cameras.size(), [&](std::size_t i) {
-    const Picture picture = render(surface, shading, cameras[i], indices[i], spec.image.samples,
-                                   spec.seed, [&] { progress.update(double(++rows_done) / rows); });
+  const auto write_view = [&](std::size_t i) {
+    const Picture picture = render(
+        surface, shading, cameras[i], indices[i], spec.image.samples, spec.seed,
+        [&] { progress.update(double(++rows_done) / rows); }, maps ? &*maps : nullptr);
     masks[i] = exact_mask(picture);
     const auto& coverage = masks[i].coverage;
     fill[i] =
@@ -151,7 +157,11 @@ double write_views(const Spec& spec, const Surface& surface, const std::vector<L
     const Picture empty = render_background(shading, cameras[i], indices[i]);
     files.write_plate(names[i], empty.width, empty.height,
                       expose(empty, spec.degradations, seed, indices[i], true));
-  });
+  };
+  if (maps)
+    for (std::size_t i = 0; i < cameras.size(); ++i) write_view(i);
+  else
+    tbb::parallel_for(std::size_t(0), cameras.size(), write_view);
   if (!spec.image.masks) return *std::max_element(fill.begin(), fill.end());
   const auto& wrong = spec.degradations.mask_wrong;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
@@ -192,7 +202,10 @@ double render_weight(const Spec& spec) {
 double total_weight(const Spec& spec) { return 1 + render_weight(spec) + truth_weight(spec); }
 
 SynthesizedScene synthesize(const Spec& spec, const std::filesystem::path& folder,
-                            Progress& progress) {
+                            Progress& progress, const std::string& device, int threads) {
+  std::unique_ptr<gpu::Context> context;
+  if (spec.light.shadows && spec.light.shadow_test != kShadowRays)
+    context = gpu::Context::create(device, threads);
   progress.stage("surface", 1);
   const Surface surface = make_surface(spec.geometry);
   check_orientation(surface.mesh, progress);
@@ -214,7 +227,8 @@ SynthesizedScene synthesize(const Spec& spec, const std::filesystem::path& folde
   SharedProgress shared(progress);
   progress.stage("photographs", render_weight(spec));
   SynthesizedScene result;
-  result.largest_fill = write_views(spec, surface, cameras, indices, names, files, shared);
+  result.largest_fill =
+      write_views(spec, surface, cameras, indices, names, files, shared, context.get());
 
   progress.stage("truth", truth_weight(spec));
   std::vector<TruthSample> samples = sample_surface(surface, spec.truth_samples, spec.seed);

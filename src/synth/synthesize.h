@@ -29,8 +29,10 @@ double total_weight(const Spec& spec);
 /// gt_visible.ply, the cameras in every format and bbox.txt, spec.json last. The same spec gives
 /// the same bytes, whatever the number of threads. Throws Error when the spec's mesh, cameras or
 /// folder do not serve, and when a view sees nothing of the object; Cancelled when asked to stop,
-/// the folder then being marked INCOMPLETE.
+/// the folder then being marked INCOMPLETE. Shadows by maps (light.shadow_test) are drawn on
+/// `device`; another device may round them otherwise.
 SynthesizedScene synthesize(const Spec& spec, const std::filesystem::path& folder,
-                            Progress& progress);
+                            Progress& progress, const std::string& device = "auto",
+                            int threads = 0);
 
 }  // namespace photohull::synth

@@ -9,6 +9,7 @@
 #include "visibility/study_parts.h"
 #include "visibility/study_receivers.h"
 #include "visibility/truth.h"
+#include "visibility/viewpoints.h"
 
 namespace photohull::visibility {
 namespace {

@@ -1,4 +1,5 @@
 #include "visibility/study_scenes.h"
+#include "visibility/viewpoints.h"
 
 #include <cmath>
 #include <functional>
@@ -188,19 +189,6 @@ const std::map<std::string, Recipe>& recipes() {
 }
 
 }  // namespace
-
-Camera frame_sphere(const dvec3& eye, const dvec3& target, double radius, int width, int height) {
-  Camera c;
-  const dvec3 z = glm::normalize(target - eye);
-  const dvec3 down = std::abs(z.z) > 0.999 ? dvec3(0, 1, 0) : dvec3(0, 0, -1);
-  const dvec3 x = glm::normalize(glm::cross(down, z)), y = glm::cross(z, x);
-  c.cam_from_world.rotation = glm::transpose(glm::dmat3(x, y, z));
-  c.cam_from_world.translation = -(c.cam_from_world.rotation * eye);
-  const double distance = glm::length(target - eye), sine = std::min(radius / distance, 0.9);
-  const double focal = 0.5 * std::min(width, height) * std::sqrt(1 - sine * sine) / sine;
-  c.intrinsics = {width, height, focal, focal, 0, 0.5 * (width - 1), 0.5 * (height - 1)};
-  return c;
-}
 
 const std::vector<std::string>& study_scene_names() {
   static const std::vector<std::string> names{"assembly_250k", "assembly_480k", "dense",

@@ -25,8 +25,4 @@ const std::vector<std::string>& study_scene_names();
 /// Throws UsageError for other names.
 StudyScene make_study_scene(const std::string& name);
 
-/// A square camera at `eye` towards `target` that has a sphere of `radius` around it in view.
-Camera frame_sphere(const glm::dvec3& eye, const glm::dvec3& target, double radius, int width,
-                    int height);
-
 }  // namespace photohull::visibility

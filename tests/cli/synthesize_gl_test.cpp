@@ -33,6 +33,24 @@ TEST_F(Synthesize, SceneIsUnderstoodAndReconstructed) {
   EXPECT_NE(score.out, "");
 }
 
+TEST_F(Synthesize, LightsLookThroughMaps) {
+  const auto make = [&](const std::string& test, const std::string& name) {
+    const std::string file = spec(R"({"geometry": {"shape": "block"}, "truth_samples": 1000,
+        "light": {"shadow_test": ")" +
+                                  test + R"("}, "image": {"samples": 2}})");
+    succeed({"synthesize", file, "--out", path(name), "--views", "4", "--size", "96x72", "--device",
+             "software"});
+  };
+  make("rays", "rays");
+  make("recommended", "maps");
+  make("recommended", "again");
+  const std::string view = "/images/0001.png";
+  EXPECT_EQ(read_bytes(path("maps" + view)), read_bytes(path("again" + view)));
+  EXPECT_NE(read_bytes(path("maps" + view)), read_bytes(path("rays" + view)));
+  EXPECT_EQ(read_bytes(path("maps/gt.ply")), read_bytes(path("rays/gt.ply")));
+  EXPECT_THAT(read_bytes(path("maps/spec.json")), HasSubstr("\"shadow_test\": \"recommended\""));
+}
+
 TEST_F(Synthesize, ShapesAreListed) {
   const Finished list = succeed({"synthesize", "--list"});
   for (const char* word : {"gyroid", "plant", "radius", "0.01 to 100"})

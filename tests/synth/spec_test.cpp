@@ -68,6 +68,11 @@ TEST(Spec, WrongTypesAndRangesAreNamed) {
   EXPECT_THAT(message_of(R"({"material": {"pattern": "nois"}})"),
               AllOf(HasSubstr("noise, checker"), HasSubstr("did you mean noise?")));
   EXPECT_THAT(message_of(R"({"light": {"shadows": 1}})"), HasSubstr("true or false"));
+  EXPECT_THAT(message_of(R"({"light": {"shadow_test": "varianc"}})"),
+              AllOf(HasSubstr("light.shadow_test"), HasSubstr("rays, plain"), HasSubstr("lists"),
+                    HasSubstr("did you mean variance?")));
+  EXPECT_THAT(message_of(R"({"light": {"shadow_texels": 9000}})"),
+              AllOf(HasSubstr("light.shadow_texels"), HasSubstr("8192")));
   EXPECT_THAT(message_of(R"({"seed": -1})"), HasSubstr("seed"));
   EXPECT_THAT(message_of(R"({"cameras": {"distances": []}})"), HasSubstr("one number at least"));
   EXPECT_THAT(message_of(R"({"cameras": {"rings": []}})"), HasSubstr("cameras.rings"));
