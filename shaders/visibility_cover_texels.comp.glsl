@@ -17,6 +17,7 @@ layout(std430, binding = 0) readonly buffer Large { uint large_count; uint large
 layout(std430, binding = 1) buffer Depths { uint depth_bits[]; };  // a texel
 layout(std430, binding = 5) buffer Words { uint words[]; };        // a texel: ids, counts or where to write
 layout(std430, binding = 6) buffer List { uint list[]; };
+layout(std430, binding = 7) buffer ListRest { uint list_rest[]; };
 layout(location = 0) uniform int part;
 
 const int kLargeRows = 64;
@@ -35,7 +36,12 @@ void cover(uint triangle, MapTriangle t, ivec2 texel) {
   if (depth_range(t, part, texel).x > uintBitsToFloat(depth_bits[at])) return;
   uint place = atomicAdd(words[at], 1u);
 #if defined(COVER_FILL)
-  list[place] = triangle;
+#if defined(LISTS_IN_TWO_BLOCKS)
+  if (place >= map_info.lists.x)
+    list_rest[place - map_info.lists.x] = triangle;
+  else
+#endif
+    list[place] = triangle;
 #endif
 #endif
 }

@@ -20,16 +20,27 @@ bool holds_corner(MapTriangle t, ivec2 texel) {
   return false;
 }
 
+ivec2 beside(int k) { return ivec2(k % 3 - 1, k / 3 - 1); }
+
 void main() {
   ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
   int part = int(gl_GlobalInvocationID.z);
   if (any(greaterThanEqual(texel, map_info.size.xy))) return;
   uvec4 found = uvec4(nearest_at(part, texel), kNoTriangle, kNoTriangle, kNoTriangle);
   int count = found.x == kNoTriangle ? 0 : 1;
-  for (int k = 0; k < 9 && count < kMaxLinks; ++k) {
-    uint triangle = nearest_at(part, texel + ivec2(k % 3 - 1, k / 3 - 1));
-    if (triangle == kNoTriangle || any(equal(found, uvec4(triangle)))) continue;
-    if (holds_corner(triangle_of(part, triangle), texel)) found[count++] = triangle;
+  // Most texels have the triangle of all their neighbours: only others are looked at, one a turn.
+  uint others = 0u;
+  for (int k = 0; k < 9; ++k) {
+    uint triangle = nearest_at(part, texel + beside(k));
+    if (triangle != kNoTriangle && triangle != found.x) others |= 1u << k;
   }
+  do {
+    int k = others == 0u ? 4 : findLSB(others);
+    others &= others - 1u;
+    uint triangle = nearest_at(part, texel + beside(k));
+    if (triangle != kNoTriangle && !any(equal(found, uvec4(triangle))) &&
+        holds_corner(triangle_of(part, triangle), texel))
+      found[count++] = triangle;
+  } while (others != 0u && count < kMaxLinks);
   imageStore(links, ivec3(texel, part), found);
 }

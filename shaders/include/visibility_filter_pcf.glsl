@@ -44,11 +44,22 @@ float tap_weight(vec2 offset) {
 #endif
 }
 
-bool is_outer(int i, int j) {
 #if defined(PCF_CIRCULAR) || defined(PCF_CIRCULAR_JITTERED)
-  return j == kTaps - 1;
+const int kOuterTaps = kTaps;
 #else
-  return i == 0 || j == 0 || i == kTaps - 1 || j == kTaps - 1;
+const int kOuterTaps = 4 * (kTaps - 1);
+#endif
+
+// The k-th tap, those of the rim or of the outermost circle first.
+ivec2 from_outside(int k) {
+#if defined(PCF_CIRCULAR) || defined(PCF_CIRCULAR_JITTERED)
+  return ivec2(k % kTaps, kTaps - 1 - k / kTaps);
+#else
+  const int last = kTaps - 1, within = max(kTaps - 2, 1);
+  if (k >= kOuterTaps) return 1 + ivec2((k - kOuterTaps) % within, (k - kOuterTaps) / within);
+  int side = k / last, along = k - side * last;
+  ivec2 at = (side & 1) == 0 ? ivec2(along, 0) : ivec2(last, along);
+  return side < 2 ? at : last - at;
 #endif
 }
 
@@ -61,27 +72,28 @@ vec2 tap_position(Receiver r, MapPoint m, vec2 offset) {
 #endif
 }
 
-void add_taps(Receiver r, vec2 prepared, MapPoint m, bool outer, bool all_taps, inout float passed, inout float weight) {
-  for (int j = 0; j < kTaps; ++j)
-    for (int i = 0; i < kTaps; ++i) {
-      if (!all_taps && is_outer(i, j) != outer) continue;
-      vec2 offset = tap_offset(m.at, i, j);
-      float w = tap_weight(offset);
-      weight += w;
-      if (lit(r, prepared, m, tap_position(r, m, offset))) passed += w;
-    }
+void add_tap(Receiver r, vec2 prepared, MapPoint m, ivec2 tap, inout float passed, inout float weight) {
+  vec2 offset = tap_offset(m.at, tap.x, tap.y);
+  float w = tap_weight(offset);
+  weight += w;
+  if (lit(r, prepared, m, tap_position(r, m, offset))) passed += w;
 }
 
 float fraction_visible(Receiver r, MapPoint m) {
   vec2 prepared = prepare(r, m);
   float passed = 0.0, weight = 0.0;
 #if defined(PCF_ADAPTIVE)
-  add_taps(r, prepared, m, true, false, passed, weight);
-  if (passed == 0.0) return 0.0;
-  if (passed == weight) return 1.0;
-  add_taps(r, prepared, m, false, false, passed, weight);
+  // One loop, for software devices leave loops early but run both sides of a branch.
+  int k = 0;
+  bool agreed;
+  do {
+    add_tap(r, prepared, m, from_outside(k), passed, weight);
+    ++k;
+    agreed = k == kOuterTaps && (passed == 0.0 || passed == weight);
+  } while (k < kTaps * kTaps && !agreed);
 #else
-  add_taps(r, prepared, m, true, true, passed, weight);
+  for (int j = 0; j < kTaps; ++j)
+    for (int i = 0; i < kTaps; ++i) add_tap(r, prepared, m, ivec2(i, j), passed, weight);
 #endif
   return passed / weight;
 }

@@ -41,6 +41,7 @@ struct MapInfo {
                     // maps cut off
   vec4 view_x;      // homogeneous position on the viewpoint's image, in units of the image: (s, t) /
   vec4 view_y;      //   depth lies in [0, 1] on it
+  uvec4 lists;      // x: words of all texels' lists that the first storage block holds
 };
 
 struct Receiver {  // a point whose visibility is asked
@@ -62,7 +63,7 @@ struct MapTriangle {
 
 #ifdef __cplusplus
 static_assert(sizeof(MapProjection) == 80);
-static_assert(sizeof(MapInfo) == 80 * kMaxMapParts + 112);
+static_assert(sizeof(MapInfo) == 80 * kMaxMapParts + 128);
 static_assert(sizeof(Receiver) == 80);
 static_assert(sizeof(MapTriangle) == 48);
 }  // namespace photohull::shaders

@@ -141,6 +141,9 @@ std::vector<SweepRate> measure_sweeps(gpu::Context& context, Progress& progress)
           {to_string(sampler), 1, layer.time(context, program, images.size(), bind), 0});
       if (sampler == Sampler::kBilinear)
         rates.back().share_of_raw = time_raw(context, 0, 0, bind) / rates.back().nanoseconds;
+      if (sampler == Sampler::kBilinear || sampler == Sampler::kAnisotropic)
+        rates.push_back(
+            {to_string(sampler), between, coarse.time(context, program, images.size(), bind), 0});
       if (sampler == Sampler::kTrilinear) {
         const double uniform = time_raw(context, 0.4f, 0, bind);
         const double raw = time_raw(context, 0.4f, 1e-3f, bind);

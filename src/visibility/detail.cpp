@@ -9,6 +9,12 @@
 #include "core/error.h"
 
 namespace photohull::visibility {
+namespace {
+
+/// Compiles in the second storage block of the lists.
+constexpr const char* kTwoBlocks = "#define LISTS_IN_TWO_BLOCKS\n";
+
+}  // namespace
 
 class DetailRenderer {
  public:
@@ -51,6 +57,7 @@ class DetailRenderer {
     map_.triangles_.bind_storage(4);
     words.bind_storage(5);
     (map_.list_.id() ? map_.list_ : large_).bind_storage(6);
+    if (map_.list_rest_.id()) map_.list_rest_.bind_storage(7);
   }
 
   /// Runs a pass of visibility_cover_texels over all triangles of a partition.
@@ -61,7 +68,8 @@ class DetailRenderer {
       program->set("part", part);
       program->dispatch(context_, "visibility_cover_texels", groups);
     };
-    const std::string defines = concat("#define COVER_", mode, "\n");
+    std::string defines = concat("#define COVER_", mode, "\n");
+    if (map_.list_rest_.id()) defines += kTwoBlocks;
     launch(defines, gpu::group_count(triangle_count_, 64));
     launch(defines + "#define COVER_LARGE\n", large_triangles);
   }
@@ -113,19 +121,29 @@ class DetailRenderer {
       const std::size_t start = total;
       total += count;
       count = std::uint32_t(start);
-      check_size(total * 4);
     }
+    check_size((total - std::min<std::size_t>(total, map_.technique_.list_block)) * 4);
     counts.write(0, texels_ * 4, ends.data());
     ends.push_back(std::uint32_t(total));
     map_.list_ends_ = gpu::Buffer::of(ends);
-    map_.list_ = gpu::Buffer(std::max<std::size_t>(total, 1) * 4);
-    map_.linked_ = total;
+    make_lists(total);
     bind(counts);
     for (int part = 0; part < int(parts_); ++part) {
       const auto& list = large_lists_[std::size_t(part)];
       if (!list.empty()) large_.write(4, list.size() * 4, list.data());
       cover("FILL", part, large[std::size_t(part)]);
     }
+  }
+
+  /// Room for all lists together, in two storage blocks where one is too small.
+  void make_lists(std::size_t total) {
+    const std::size_t first = std::min<std::size_t>(total, map_.technique_.list_block);
+    map_.linked_ = total;
+    map_.list_ = gpu::Buffer(std::max<std::size_t>(first, 1) * 4);
+    if (total == first) return;
+    map_.list_rest_ = gpu::Buffer((total - first) * 4);
+    map_.test_ = gpu::Program::shared_compute(context_, "visibility_test_receivers.comp.glsl",
+                                              technique_defines(map_.technique_) + kTwoBlocks);
   }
 
   gpu::Context& context_;

@@ -231,6 +231,7 @@ shaders::MapInfo to_info(const MapLayout& layout, const Technique& technique,
   info.range = {float(layout.near), float(layout.far), float(technique.bleeding_cut), 0};
   info.view_x = glm::vec4(layout.view_x);
   info.view_y = glm::vec4(layout.view_y);
+  info.lists.x = technique.list_block;
   return info;
 }
 

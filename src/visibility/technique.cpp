@@ -26,6 +26,16 @@ void pcf(Technique& t, int size) {
   t.filter_size = size;
 }
 
+void adaptive_pcf(Technique& t, int size) {
+  pcf(t, size);
+  t.adaptive = true;
+}
+
+void variance(Technique& t, int size) {
+  t.filter = Filter::kVariance;
+  t.filter_size = size;
+}
+
 void warp(Technique& t, Warp warp, int partitions = 1) {
   virtual_normal(t);
   t.warp = warp;
@@ -56,18 +66,12 @@ std::vector<Technique> make_techniques() {
              t.virtual_samples = VirtualSamples::kDerivatives;
              t.bias_texels = 0.25;
            }),
-      made("variance",
-           [](T& t) {
-             t.filter = Filter::kVariance;
-             t.filter_size = 5;
-           }),
+      made("variance3", [](T& t) { variance(t, 3); }),
+      made("variance", [](T& t) { variance(t, 5); }),
       made("pcf3", [](T& t) { pcf(t, 3); }),
+      made("pcf3-adaptive", [](T& t) { adaptive_pcf(t, 3); }),
       made("pcf5", [](T& t) { pcf(t, 5); }),
-      made("pcf5-adaptive",
-           [](T& t) {
-             pcf(t, 5);
-             t.adaptive = true;
-           }),
+      made("pcf5-adaptive", [](T& t) { adaptive_pcf(t, 5); }),
       made("pcf5-circular",
            [](T& t) {
              pcf(t, 5);
@@ -168,6 +172,7 @@ void Technique::validate() const {
   require(!march || (warp == Warp::kNone && detail == Detail::kNone && bias != Bias::kSlope &&
                      !needs_second_depth()),
           "march gives the nearest depth of an unwarped map only");
+  require(list_block >= 1, "list_block must not be 0");
   require(detail == Detail::kNone || filter == Filter::kNone,
           "sub-pixel maps decide exactly where they know; no filter applies");
 }

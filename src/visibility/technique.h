@@ -1,6 +1,7 @@
 // The techniques of visibility maps and their options.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -60,6 +61,8 @@ struct Technique {
   Warp warp = Warp::kNone;        ///< other than kNone: render_map needs the receivers' camera
   int partitions = 1;             ///< in the receivers' depth; 1 to 4
   Detail detail = Detail::kNone;  ///< other than kNone: triangles decide, filters do not apply
+  std::uint32_t list_block = 1u << 25;  ///< kLists: words in the first of two storage blocks; every
+                                        ///< device has room for 2^25
   bool march = false;  ///< volumes: rays through bricks instead of rasterised faces; needs constant
                        ///< bias or ids, no warp and no detail
 

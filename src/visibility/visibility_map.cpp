@@ -15,7 +15,7 @@ std::size_t texel_bytes(const gpu::TextureArray& texture, std::size_t each) {
 std::size_t VisibilityMap::bytes() const {
   return texel_bytes(first_, 4) + texel_bytes(second_, 4) + texel_bytes(ids_, 4) +
          texel_bytes(moments_, 8) + texel_bytes(links_, 16) + triangles_.bytes() +
-         list_ends_.bytes() + list_.bytes();
+         list_ends_.bytes() + list_.bytes() + list_rest_.bytes();
 }
 
 std::vector<float> VisibilityMap::depths(bool second) const {
@@ -36,7 +36,14 @@ std::vector<std::uint32_t> VisibilityMap::triangles_at(int part, const glm::ivec
   std::vector<std::uint32_t> out;
   if (technique_.detail == Detail::kLists) {
     const auto ends = list_ends_.download<std::uint32_t>(2, at);
-    out = list_.download<std::uint32_t>(ends[1] - ends[0], ends[0]);
+    const std::uint32_t block = technique_.list_block;
+    const auto append = [&](const gpu::Buffer& words, std::uint32_t first, std::uint32_t end) {
+      if (first >= end) return;
+      const auto ids = words.download<std::uint32_t>(end - first, first);
+      out.insert(out.end(), ids.begin(), ids.end());
+    };
+    append(list_, ends[0], std::min(ends[1], block));
+    append(list_rest_, std::max(ends[0], block) - block, std::max(ends[1], block) - block);
   } else if (technique_.detail == Detail::kCoverage) {
     out.resize(shaders::kMaxLinks);
     links_.read_texel(texel.x, texel.y, part, out.size() * 4, out.data());
@@ -56,6 +63,7 @@ void VisibilityMap::bind() const {
   if (triangles_.id()) triangles_.bind_storage(4);
   if (list_ends_.id()) list_ends_.bind_storage(5);
   if (list_.id()) list_.bind_storage(6);
+  if (list_rest_.id()) list_rest_.bind_storage(7);
 }
 
 std::vector<float> visible(gpu::Context& context, const VisibilityMap& map,

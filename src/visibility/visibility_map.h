@@ -42,7 +42,7 @@ class VisibilityMap {
   std::size_t linked() const { return linked_; }
 
   /// Binds what include/visibility_test.glsl reads: uniform block 1, textures 0 to 4, storage 4 to
-  /// 6.
+  /// 7.
   void bind() const;
 
  private:
@@ -57,6 +57,7 @@ class VisibilityMap {
   gpu::Buffer triangles_;  ///< sub-pixel maps
   gpu::Buffer list_ends_;  ///< a texel: where its list begins, or its nearest triangle
   gpu::Buffer list_;       ///< of all texels, one after another
+  gpu::Buffer list_rest_;  ///< what goes beyond a storage block
   std::size_t linked_ = 0;
   std::shared_ptr<const gpu::Program> test_;
 };

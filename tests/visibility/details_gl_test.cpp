@@ -75,6 +75,22 @@ TEST_F(DetailMaps, MoreThanFourTrianglesATexelAreAllKept) {
   EXPECT_LE(links.triangles_at(0, {8, 8}).size(), 4u);
 }
 
+TEST_F(DetailMaps, ListsMayReachOverTwoStorageBlocks) {
+  const TriMesh mesh = random_triangles(rng_, 200, 0.4);
+  const Camera viewpoint = test::random_camera(rng_, kBox, 40, 40);
+  Technique t = named("lists", 24);
+  const Geometry geometry = Geometry::of_mesh(mesh);
+  const VisibilityMap whole = render_map(context_, viewpoint, geometry, t);
+  t.list_block = std::uint32_t(whole.linked() / 2 + 1);
+  const VisibilityMap halves = render_map(context_, viewpoint, geometry, t);
+  EXPECT_EQ(halves.linked(), whole.linked());
+  for (int y = 0; y < 24; ++y)
+    for (int x = 0; x < 24; ++x)
+      EXPECT_EQ(halves.triangles_at(0, {x, y}), whole.triangles_at(0, {x, y})) << x << ", " << y;
+  const std::vector<Sample> samples = random_samples(rng_, mesh, 500);
+  EXPECT_EQ(visible(context_, halves, samples), visible(context_, whole, samples));
+}
+
 TEST_F(DetailMaps, NearestTrianglesAndLinksAreTheReferences) {
   const TriMesh mesh = random_triangles(rng_, 60);
   const Camera viewpoint = test::random_camera(rng_, kBox, 40, 40);

@@ -188,13 +188,13 @@ TEST_P(EveryTechnique, ATriangleLargerThanTheMapHidesAllBehindIt) {
     behind.push_back({p + glm::dvec3(2.5, 0, 0), {-1, 0, 0}, {0, 0.01, 0}, {0, 0, 0.01}});
     before.push_back({p - glm::dvec3(1, 0, 0), {-1, 0, 0}, {0, 0.01, 0}, {0, 0, 0.01}});
   }
-  // Depths reach to 120: a texel of bias at their middle is wide, and so are variances.
-  Technique t = GetParam();
-  if (t.filter == Filter::kVariance) return;
   const std::vector<float> hidden = visible(context_, map, behind);
+  const std::vector<float> seen = visible(context_, map, before);
+  // Chebyshev's bound is one from above and never quite 0.
+  const float most = GetParam().filter == Filter::kVariance ? 1e-3f : 0;
   for (std::size_t i = 0; i < hidden.size(); ++i) {
-    EXPECT_EQ(hidden[i], 0) << i;
-    EXPECT_EQ(visible(context_, map, before)[i], 1) << i;
+    EXPECT_LE(hidden[i], most) << i;
+    EXPECT_EQ(seen[i], 1) << i;
   }
 }
 
