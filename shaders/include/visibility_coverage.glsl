@@ -1,12 +1,13 @@
 // Maps with coverage detection [Li17]: the triangles linked to the receiver's texel decide where they lie
 // at its position. Between triangles that both end near it, a sliver was lost and is filled (border
 // recovery); else the texels around decide. Reference: visibility::reference::Map::coverage.
+#include "include/visibility_links.glsl"
 
 const float kWidestGap = 1.0;  // texels
 
 // Does a triangle linked at a position beside the receiver's hide it?
 bool hidden_beside(Receiver r, MapPoint m, vec2 at, float slack) {
-  uvec4 linked = texelFetch(links, texel_at(m, at), 0);
+  uvec4 linked = links_of(m.part, texel_at(m, at).xy);
   for (int i = 0; i < kMaxLinks; ++i)
     if (hides(r, m, linked[i], at, slack)) return true;
   return false;
@@ -33,7 +34,7 @@ bool in_gap(Receiver r, MapPoint m, uvec4 linked) {
 }
 
 float fraction_visible(Receiver r, MapPoint m) {
-  uvec4 linked = texelFetch(links, texel_at(m, m.at), 0);
+  uvec4 linked = links_of(m.part, texel_at(m, m.at).xy);
   for (int i = 0; i < kMaxLinks; ++i)
     if (hides(r, m, linked[i], m.at, map_info.bias.x)) return 0.0;
   return in_gap(r, m, linked) || surrounded(r, m) ? 0.0 : 1.0;

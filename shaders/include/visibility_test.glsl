@@ -8,7 +8,6 @@ layout(binding = 0) uniform sampler2DArray first_depth;
 layout(binding = 1) uniform sampler2DArray second_depth;
 layout(binding = 2) uniform usampler2DArray nearest_ids;
 layout(binding = 3) uniform sampler2DArray depth_moments;
-layout(binding = 4) uniform usampler2DArray links;
 
 #if defined(DETAIL_SUB_PIXEL) || defined(DETAIL_COVERAGE)
 #include "include/visibility_nearest.glsl"

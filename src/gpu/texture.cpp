@@ -88,12 +88,6 @@ void TextureArray::read(int level, std::size_t bytes, void* pixels) const {
   glGetTextureImage(id_, level, f.layout, f.type, GLsizei(bytes), pixels);
 }
 
-void TextureArray::read_texel(int x, int y, int layer, std::size_t bytes, void* pixel) const {
-  const FormatInfo f = info_of(format_);
-  glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
-  glGetTextureSubImage(id_, 0, x, y, layer, 1, 1, 1, f.layout, f.type, GLsizei(bytes), pixel);
-}
-
 void TextureArray::generate_mipmaps() { glGenerateTextureMipmap(id_); }
 
 void TextureArray::set_filter(bool trilinear) {

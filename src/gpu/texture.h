@@ -37,7 +37,6 @@ class TextureArray {
   /// type of the format (bytes for 8-bit formats, half or float for the others).
   void upload(int layer, int width, int height, const void* pixels, int level = 0);
   void read(int level, std::size_t bytes, void* pixels) const;
-  void read_texel(int x, int y, int layer, std::size_t bytes, void* pixel) const;
   /// Builds all levels below 0 by box filtering in linear light.
   void generate_mipmaps();
   /// Filtering of `bind`: trilinear between levels, or bilinear at the nearest level.

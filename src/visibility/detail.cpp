@@ -95,13 +95,6 @@ class DetailRenderer {
       cover("NEAREST", part, large);
       cover("ID", part, large);
     }
-    if (map_.technique_.detail != Detail::kCoverage) return;
-    const glm::ivec2 size = map_.layout_.size;
-    map_.links_ = gpu::TextureArray(gpu::TextureFormat::kRgba32ui, size.x, size.y, int(parts_));
-    map_.links_.bind_image(0, 0, true);
-    gpu::Program::shared_compute(context_, "visibility_link_triangles.comp.glsl")
-        ->dispatch(context_, "visibility_link_triangles", gpu::group_count(std::size_t(size.x), 8),
-                   gpu::group_count(std::size_t(size.y), 8), parts_);
   }
 
   void list_all() {

@@ -89,7 +89,7 @@ std::vector<DetectionCell> detect_triangles(gpu::Context& context, const StudySc
       for (int tries = 0; int(texels.size()) < kTexels && tries < 100 * kTexels; ++tries) {
         const ivec2 t(int(random() % std::uint64_t(resolution)),
                       int(random() % std::uint64_t(resolution)));
-        if (!map.triangles_at(0, t).empty()) texels.push_back(t);
+        if (!map.triangles_at(context, 0, t).empty()) texels.push_back(t);
       }
       const Candidates candidates(map.layout(), scene.mesh, texels);
       Technique exact = parse_technique("technique", "lists");
@@ -102,7 +102,7 @@ std::vector<DetectionCell> detect_triangles(gpu::Context& context, const StudySc
     }
     std::size_t total = 0, found = 0;
     for (std::size_t i = 0; i < texels.size(); ++i) {
-      const auto known = map.triangles_at(0, texels[i]);
+      const auto known = map.triangles_at(context, 0, texels[i]);
       total += seen[i].size();
       for (const std::uint32_t triangle : seen[i])
         found += std::binary_search(known.begin(), known.end(), triangle);

@@ -14,8 +14,8 @@ std::size_t texel_bytes(const gpu::TextureArray& texture, std::size_t each) {
 
 std::size_t VisibilityMap::bytes() const {
   return texel_bytes(first_, 4) + texel_bytes(second_, 4) + texel_bytes(ids_, 4) +
-         texel_bytes(moments_, 8) + texel_bytes(links_, 16) + triangles_.bytes() +
-         list_ends_.bytes() + list_.bytes() + list_rest_.bytes();
+         texel_bytes(moments_, 8) + triangles_.bytes() + list_ends_.bytes() + list_.bytes() +
+         list_rest_.bytes();
 }
 
 std::vector<float> VisibilityMap::depths(bool second) const {
@@ -31,7 +31,8 @@ std::vector<std::uint32_t> VisibilityMap::ids() const {
   return out;
 }
 
-std::vector<std::uint32_t> VisibilityMap::triangles_at(int part, const glm::ivec2& texel) const {
+std::vector<std::uint32_t> VisibilityMap::triangles_at(gpu::Context& context, int part,
+                                                       const glm::ivec2& texel) const {
   const std::size_t at = (std::size_t(part) * layout_.size.y + texel.y) * layout_.size.x + texel.x;
   std::vector<std::uint32_t> out;
   if (technique_.detail == Detail::kLists) {
@@ -45,8 +46,14 @@ std::vector<std::uint32_t> VisibilityMap::triangles_at(int part, const glm::ivec
     append(list_, ends[0], std::min(ends[1], block));
     append(list_rest_, std::max(ends[0], block) - block, std::max(ends[1], block) - block);
   } else if (technique_.detail == Detail::kCoverage) {
-    out.resize(shaders::kMaxLinks);
-    links_.read_texel(texel.x, texel.y, part, out.size() * 4, out.data());
+    const gpu::Buffer links(sizeof(glm::uvec4));
+    bind();
+    links.bind_storage(1);
+    const auto program =
+        gpu::Program::shared_compute(context, "visibility_link_triangles.comp.glsl");
+    program->set("texel", glm::ivec3(texel, part));
+    program->dispatch(context, "visibility_link_triangles", 1);
+    out = links.download<std::uint32_t>(shaders::kMaxLinks);
   } else if (technique_.detail == Detail::kSubPixel) {
     out = list_ends_.download<std::uint32_t>(1, at);
   }
@@ -57,8 +64,8 @@ std::vector<std::uint32_t> VisibilityMap::triangles_at(int part, const glm::ivec
 
 void VisibilityMap::bind() const {
   info_.bind_uniform(1);
-  const gpu::TextureArray* units[] = {&first_, &second_, &ids_, &moments_, &links_};
-  for (unsigned i = 0; i < 5; ++i)
+  const gpu::TextureArray* units[] = {&first_, &second_, &ids_, &moments_};
+  for (unsigned i = 0; i < 4; ++i)
     if (units[i]->id()) units[i]->bind(i);
   if (triangles_.id()) triangles_.bind_storage(4);
   if (list_ends_.id()) list_ends_.bind_storage(5);

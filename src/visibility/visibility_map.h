@@ -37,11 +37,12 @@ class VisibilityMap {
   std::vector<float> depths(bool second = false) const;
   std::vector<std::uint32_t> ids() const;
   /// Detail::kLists: triangles of one texel, ascending. Others: up to kMaxLinks (kCoverage) or one.
-  std::vector<std::uint32_t> triangles_at(int part, const glm::ivec2& texel) const;
+  std::vector<std::uint32_t> triangles_at(gpu::Context& context, int part,
+                                          const glm::ivec2& texel) const;
   /// Detail::kLists: length of all lists together.
   std::size_t linked() const { return linked_; }
 
-  /// Binds what include/visibility_test.glsl reads: uniform block 1, textures 0 to 4, storage 4 to
+  /// Binds what include/visibility_test.glsl reads: uniform block 1, textures 0 to 3, storage 4 to
   /// 7.
   void bind() const;
 
@@ -53,7 +54,7 @@ class VisibilityMap {
   MapLayout layout_;
   glm::dvec3 origin_{0.0};
   gpu::Buffer info_{sizeof(shaders::MapInfo)};
-  gpu::TextureArray first_, second_, ids_, moments_, links_;
+  gpu::TextureArray first_, second_, ids_, moments_;
   gpu::Buffer triangles_;  ///< sub-pixel maps
   gpu::Buffer list_ends_;  ///< a texel: where its list begins, or its nearest triangle
   gpu::Buffer list_;       ///< of all texels, one after another

@@ -41,7 +41,7 @@ TEST_F(DetailMaps, ListsHoldEveryTriangleThatIsSeenInATexelAndNoneThatIsNotThere
     std::size_t seen = 0, all = 0, strangers = 0;
     for (int y = 0; y < 16; ++y)
       for (int x = 0; x < 16; ++x) {
-        const auto found = map.triangles_at(0, {x, y});
+        const auto found = map.triangles_at(context_, 0, {x, y});
         EXPECT_THAT(found, IsSupersetOf(expected.seen_in(0, {x, y}))) << x << ", " << y;
         const auto there = expected.triangles_in(0, {x, y});
         for (const std::uint32_t i : found) strangers += !std::count(there.begin(), there.end(), i);
@@ -68,11 +68,12 @@ TEST_F(DetailMaps, MoreThanFourTrianglesATexelAreAllKept) {
       render_map(context_, viewpoint, Geometry::of_mesh(mesh), named("lists", 16));
   std::size_t most = 0;
   for (int y = 7; y <= 8; ++y)
-    for (int x = 7; x <= 8; ++x) most = std::max(most, lists.triangles_at(0, {x, y}).size());
+    for (int x = 7; x <= 8; ++x)
+      most = std::max(most, lists.triangles_at(context_, 0, {x, y}).size());
   EXPECT_EQ(most, 64u);
   const VisibilityMap links =
       render_map(context_, viewpoint, Geometry::of_mesh(mesh), named("coverage", 16));
-  EXPECT_LE(links.triangles_at(0, {8, 8}).size(), 4u);
+  EXPECT_LE(links.triangles_at(context_, 0, {8, 8}).size(), 4u);
 }
 
 TEST_F(DetailMaps, ListsMayReachOverTwoStorageBlocks) {
@@ -86,7 +87,8 @@ TEST_F(DetailMaps, ListsMayReachOverTwoStorageBlocks) {
   EXPECT_EQ(halves.linked(), whole.linked());
   for (int y = 0; y < 24; ++y)
     for (int x = 0; x < 24; ++x)
-      EXPECT_EQ(halves.triangles_at(0, {x, y}), whole.triangles_at(0, {x, y})) << x << ", " << y;
+      EXPECT_EQ(halves.triangles_at(context_, 0, {x, y}), whole.triangles_at(context_, 0, {x, y}))
+          << x << ", " << y;
   const std::vector<Sample> samples = random_samples(rng_, mesh, 500);
   EXPECT_EQ(visible(context_, halves, samples), visible(context_, whole, samples));
 }
@@ -103,7 +105,7 @@ TEST_F(DetailMaps, NearestTrianglesAndLinksAreTheReferences) {
       auto links = expected.links_of(0, {x, y});
       linked += links.size() > 1;
       std::sort(links.begin(), links.end());
-      different += links != map.triangles_at(0, {x, y});
+      different += links != map.triangles_at(context_, 0, {x, y});
     }
   EXPECT_GT(linked, 20);
   EXPECT_LE(different, 4);  // of 400: corners on a texel's border
