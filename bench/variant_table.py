@@ -16,9 +16,11 @@ def main():
     with open(options.results, encoding="utf-8") as file:
         runs = json.load(file)["runs"]
     scenes = list(dict.fromkeys(run["scene"] for run in runs))
+    several = len({run["resolution"] for run in runs}) > 1
     rows = {}
     for run in runs:
-        row = rows.setdefault(run["variant"], {"seconds": 0.0})
+        name = f"{run['variant']}, {run['resolution']}" if several else run["variant"]
+        row = rows.setdefault(name, {"seconds": 0.0})
         if run["status"] != "ok":
             continue
         scores = {round(100 * f["t"], 6): 100 * f["f"] for f in run["evaluation"]["seen"]["f"]}
