@@ -1,12 +1,10 @@
 #include "chart/json_fields.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <numeric>
 
 #include "core/error.h"
+#include "core/read_file.h"
 
 namespace photohull::chart {
 namespace {
@@ -40,11 +38,7 @@ std::string read_file(const std::filesystem::path& path, std::size_t limit) {
     throw Error(concat(path.string(), ": there is no such file"));
   if (std::filesystem::file_size(path, status) > limit)
     throw Error(concat(path.string(), ": larger than ", limit >> 20, " MiB"));
-  std::ifstream in(path, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in.good() && !in.eof())
-    throw Error(concat(path.string(), ": cannot be read: ", std::strerror(errno)));
-  return text;
+  return read_whole_file(path);
 }
 
 Json read_json(const std::filesystem::path& path) {

@@ -1,13 +1,17 @@
 #include "core/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <mutex>
+#include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "core/error.h"
@@ -54,18 +58,55 @@ void check_replaceable(const fs::path& target) {
                        "; choose another name."));
 }
 
+constexpr std::string_view kPartial = ".partial-";
+
 /// A name that no other file of this or another running process has.
 fs::path temporary_name(const fs::path& target) {
   static std::atomic<unsigned> counter{0};
   fs::path name = target;
-  name += concat(".partial-", ::getpid(), "-", counter++);
+  name += concat(kPartial, ::getpid(), "-", counter++);
   return name;
+}
+
+/// Is it NAME.partial-PROCESS-COUNT?
+bool is_temporary(const std::string& name) {
+  const std::size_t at = name.rfind(kPartial);
+  if (at == std::string::npos || at == 0) return false;
+  const std::string_view rest = std::string_view(name).substr(at + kPartial.size());
+  const std::size_t dash = rest.find_first_not_of("0123456789");
+  return dash != 0 && dash != std::string_view::npos && rest[dash] == '-' &&
+         dash + 1 < rest.size() &&
+         rest.find_first_not_of("0123456789", dash + 1) == std::string_view::npos;
+}
+
+/// Removes temporaries of processes that were killed: those whose lock nobody holds any more.
+void remove_abandoned(const fs::path& folder) {
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    if (!is_temporary(entry.path().filename().string())) continue;
+    const int descriptor = ::open(entry.path().c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
+    if (descriptor < 0) continue;
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) ::unlink(entry.path().c_str());
+    ::close(descriptor);
+  }
+}
+
+/// Once for every folder that the process writes to: looking takes time where there are many files.
+void tidy_once(const fs::path& folder) {
+  static std::mutex mutex;
+  static std::set<fs::path> seen;
+  std::error_code ignored;
+  const std::lock_guard lock(mutex);
+  if (seen.insert(fs::weakly_canonical(folder, ignored)).second) remove_abandoned(folder);
+}
+
+fs::path folder_of(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
 /// Makes the rename itself durable; some file systems cannot sync a folder, which is no failure.
 void sync_folder(const fs::path& file) {
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const int descriptor = ::open(folder_of(file).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;
   ::fsync(descriptor);
   ::close(descriptor);
@@ -80,9 +121,16 @@ AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
     const fs::path resolved = fs::weakly_canonical(target_, ignored);
     if (!ignored) target_ = resolved;
   }
-  temporary_ = temporary_name(target_);
-  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) throw_write_error(target_, errno);
+  tidy_once(folder_of(target_));
+  struct stat status {};
+  do {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    temporary_ = temporary_name(target_);
+    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) throw_write_error(target_, errno);
+    ::flock(descriptor_, LOCK_EX);  // shows that its process lives
+    // Another process may have taken it for abandoned before the lock was there.
+  } while (::fstat(descriptor_, &status) == 0 && status.st_nlink == 0);
 }
 
 AtomicFile::~AtomicFile() {

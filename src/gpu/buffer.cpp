@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "gpu/gl.h"
+#include "gpu/gl_error.h"
 
 namespace photohull::gpu {
 
@@ -12,11 +13,10 @@ Buffer::Buffer(std::size_t bytes, const void* data) : bytes_(bytes) {
   // A zero-sized store is illegal in GL, an empty list is not: keep at least one vector.
   glNamedBufferStorage(id_, GLsizeiptr(std::max<std::size_t>(bytes, 16)),
                        bytes >= 16 ? data : nullptr, GL_DYNAMIC_STORAGE_BIT);
-  const GLenum error = glGetError();
+  const unsigned error = pending_error();
   if (error != GL_NO_ERROR) {
     glDeleteBuffers(1, &id_);
-    throw Error(
-        concat("the device cannot hold a buffer of ", bytes >> 20, " MiB; lower --resolution"));
+    throw_gl_error(error, concat("a buffer of ", bytes >> 20, " MiB"));
   }
   if (data && bytes > 0 && bytes < 16) write(0, bytes, data);
 }
@@ -41,7 +41,9 @@ void Buffer::write(std::size_t offset, std::size_t size, const void* data) {
 void Buffer::read(std::size_t offset, std::size_t size, void* data) const {
   PHOTOHULL_CHECK_OP(offset + size, <=, bytes_);
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  if (size) glGetNamedBufferSubData(id_, GLintptr(offset), GLsizeiptr(size), data);
+  if (size == 0) return;
+  glGetNamedBufferSubData(id_, GLintptr(offset), GLsizeiptr(size), data);
+  check_gl("reading a buffer");
 }
 
 void Buffer::fill(unsigned word) {

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "gpu/egl_devices.h"
 #include "gpu/gl.h"
+#include "gpu/gl_error.h"
 #include "gpu/program.h"
 
 namespace photohull::gpu {
@@ -26,25 +27,6 @@ std::int64_t cpu_ns() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return std::int64_t(now.tv_sec) * 1000000000 + now.tv_nsec;
-}
-
-const char* error_name(GLenum error) {
-  switch (error) {
-    case GL_OUT_OF_MEMORY:
-      return "the device is out of memory; lower --resolution";
-    case GL_CONTEXT_LOST:
-      return "the device was lost";
-    case GL_INVALID_ENUM:
-      return "invalid enum";
-    case GL_INVALID_VALUE:
-      return "invalid value";
-    case GL_INVALID_OPERATION:
-      return "invalid operation";
-    case GL_INVALID_FRAMEBUFFER_OPERATION:
-      return "invalid framebuffer operation";
-    default:
-      return "unknown error";
-  }
 }
 
 }  // namespace
@@ -78,10 +60,7 @@ Context::~Context() {
 }
 
 void Context::check_errors(const char* where) const {
-  const GLenum error = glGetError();
-  if (error != GL_NO_ERROR)
-    throw Error(
-        concat("OpenGL failed in ", where, " on ", device_.renderer, ": ", error_name(error)));
+  check_gl(concat(where, " on ", device_.renderer));
 }
 
 void Context::release_deleted() {

@@ -2,6 +2,7 @@
 // EGL_KHR_surfaceless_context, EGL_MESA_device_software.
 #include "gpu/device.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cstring>
 
@@ -56,15 +57,21 @@ EglHandles make_context(EGLDeviceEXT device, DeviceInfo& info) {
   EGLConfig config = nullptr;
   EGLint configs = 0;
   eglChooseConfig(handles.display, config_attributes, &config, 1, &configs);
-  const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
-                               4,
-                               EGL_CONTEXT_MINOR_VERSION,
-                               5,
-                               EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                               EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                               EGL_NONE};
-  handles.context = eglCreateContext(handles.display, configs > 0 ? config : EGL_NO_CONFIG_KHR,
-                                     EGL_NO_CONTEXT, attributes);
+  EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                         4,
+                         EGL_CONTEXT_MINOR_VERSION,
+                         5,
+                         EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                         EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                         EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
+                         EGL_LOSE_CONTEXT_ON_RESET,
+                         EGL_NONE};
+  const EGLConfig chosen = configs > 0 ? config : EGL_NO_CONFIG_KHR;
+  handles.context = eglCreateContext(handles.display, chosen, EGL_NO_CONTEXT, attributes);
+  if (handles.context == EGL_NO_CONTEXT) {  // perhaps it cannot tell of resets
+    std::copy(std::end(attributes) - 1, std::end(attributes), std::end(attributes) - 3);
+    handles.context = eglCreateContext(handles.display, chosen, EGL_NO_CONTEXT, attributes);
+  }
   if (handles.context == EGL_NO_CONTEXT) throw Error("it gives no OpenGL 4.5 core context");
   if (!eglMakeCurrent(handles.display, EGL_NO_SURFACE, EGL_NO_SURFACE, handles.context)) {
     eglDestroyContext(handles.display, handles.context);

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "gpu/gl.h"
+#include "gpu/gl_error.h"
 
 namespace photohull::gpu {
 namespace {
@@ -48,10 +49,11 @@ TextureArray::TextureArray(TextureFormat format, int width, int height, int laye
   levels_ = levels == 0 ? full : std::min(levels, full);
   glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &id_);
   glTextureStorage3D(id_, levels_, info_of(format).internal, width, height, layers);
-  if (glGetError() != GL_NO_ERROR) {
+  const unsigned error = pending_error();
+  if (error != GL_NO_ERROR) {
     glDeleteTextures(1, &id_);
-    throw Error(concat("the device cannot hold ", layers, " images of ", width, "x", height,
-                       "; use fewer views (--views) or smaller images"));
+    throw_gl_error(error, concat(layers, " images of ", width, "x", height),
+                   "use fewer views (--views) or smaller images");
   }
   glTextureParameteri(id_, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   glTextureParameteri(id_, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
@@ -86,6 +88,7 @@ void TextureArray::read(int level, std::size_t bytes, void* pixels) const {
   const FormatInfo f = info_of(format_);
   glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
   glGetTextureImage(id_, level, f.layout, f.type, GLsizei(bytes), pixels);
+  check_gl("reading a texture");
 }
 
 void TextureArray::generate_mipmaps() { glGenerateTextureMipmap(id_); }

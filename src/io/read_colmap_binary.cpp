@@ -31,7 +31,8 @@ class BinaryFile {
   T read(const char* field) {
     T value;
     require(sizeof value, field);
-    in_.read(reinterpret_cast<char*>(&value), sizeof value);
+    if (!in_.read(reinterpret_cast<char*>(&value), sizeof value))
+      throw Error(concat(where(), ": ", field, " cannot be read; check the disk"));
     offset_ += sizeof value;
     return value;
   }
@@ -89,7 +90,6 @@ class BinaryFile {
     if (bytes > size_ - offset_)
       throw Error(concat(where(), ": the file ends within ", field, " (", bytes, " bytes needed, ",
                          size_ - offset_, " left); it was cut short, copy it again"));
-    if (!in_) throw Error(concat(where(), ": ", field, " cannot be read"));
   }
 
   fs::path path_;

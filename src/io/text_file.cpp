@@ -2,9 +2,9 @@
 
 #include <charconv>
 #include <cmath>
-#include <fstream>
 
 #include "core/error.h"
+#include "core/read_file.h"
 
 namespace photohull::io {
 namespace fs = std::filesystem;
@@ -51,12 +51,7 @@ std::string read_text_file(const fs::path& path) {
     throw Error(concat(path.string(), ": ", size >> 20,
                        " MiB are too much for a text file (at most ", kMaxTextFileBytes >> 20,
                        "); use a binary format or fewer views"));
-  std::ifstream in(path, std::ios::binary);
-  if (failure || !in)
-    throw Error(concat(path.string(), ": cannot be opened; check its permissions"));
-  std::string text(size, '\0');
-  in.read(text.data(), std::streamsize(size));
-  text.resize(std::size_t(in.gcount()));
+  std::string text = read_whole_file(path);
   if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
   return text;
 }

@@ -5,11 +5,11 @@
 
 #include <charconv>
 #include <cstring>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/read_file.h"
 #include "io/image_file.h"
 #include "io/write_scene.h"
 #include "volume/write_mesh.h"
@@ -25,9 +25,9 @@ constexpr const char* kPlates = "plates";
 
 /// View names of the synthesized scene that a JSON file describes; nothing where it does not.
 std::optional<std::vector<std::string>> described_views(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return std::nullopt;
-  const auto j = nlohmann::json::parse(in, nullptr, false);
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) return std::nullopt;
+  const auto j = nlohmann::json::parse(read_whole_file(file), nullptr, false);
   if (!j.is_object() || !j.contains("result") || !j["result"].is_object()) return std::nullopt;
   const auto& result = j["result"];
   if (result.value("writer", nlohmann::json()) != "photohull synthesize") return std::nullopt;

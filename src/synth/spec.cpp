@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
 #include "core/error.h"
+#include "core/read_file.h"
 #include "synth/spec_reader.h"
 #include "synth/spec_visit.h"
 #include "visibility/technique.h"
@@ -144,10 +143,7 @@ Spec read_spec(const fs::path& file) {
                        "datasets/synthetic"));
   if (size > kLargestFile)
     throw Error(concat(file.string(), ": larger than any spec; give a JSON spec"));
-  std::ifstream in(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in) throw Error(concat(file.string(), ": cannot be read"));
-  return parse_spec(text, file.string(), file.parent_path());
+  return parse_spec(read_whole_file(file), file.string(), file.parent_path());
 }
 
 std::string spec_text(const Spec& spec, const std::string& extra) {

@@ -4,10 +4,9 @@
 
 #include <bit>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 
 #include "core/error.h"
+#include "core/read_file.h"
 #include "volume/mesh_soup.h"
 
 namespace photohull {
@@ -17,11 +16,6 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 static_assert(std::endian::native == std::endian::little, "numbers are read as they lie");
-
-std::string contents(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 /// 0 to 63; -1 for what is no digit.
 int base64_digit(char c) {
@@ -39,7 +33,7 @@ void GltfFile::fail(const std::string& what) const {
 
 GltfFile::GltfFile(fs::path path) : path_(std::move(path)) {
   constexpr int kMostLevels = 64;
-  const std::string bytes = contents(path_);
+  const std::string bytes = read_whole_file(path_);
   const std::string text = bytes.starts_with("glTF") ? split_binary(bytes) : bytes;
   const auto guard = [&](int depth, Json::parse_event_t, Json&) {
     if (depth > kMostLevels) fail(concat("it has more than ", kMostLevels, " levels"));
@@ -142,7 +136,7 @@ std::string GltfFile::decode(const std::string& uri) const {
     const fs::path file = path_.parent_path() / uri;
     std::error_code ignored;
     if (!fs::is_regular_file(file, ignored)) fail("its buffer " + file.string() + " is missing");
-    return contents(file);
+    return read_whole_file(file);
   }
   constexpr std::string_view kMark = ";base64,";
   const std::size_t mark = uri.find(kMark);

@@ -5,8 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,6 +12,7 @@
 
 #include "core/error.h"
 #include "core/image.h"
+#include "core/read_file.h"
 #include "volume/write_mesh.h"
 
 namespace photohull {
@@ -288,18 +287,8 @@ void read_faces(const Element& element, bool ascii, Reader& reader, TriMesh& mes
   }
 }
 
-std::string read_bytes(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored))
-    throw Error(concat("cannot read ", path.string(), ": it is no file; check the path."));
-  std::ifstream in(path, std::ios::binary);
-  std::string bytes(std::istreambuf_iterator<char>(in), {});
-  if (!in) throw Error(concat("cannot read ", path.string(), ": check its permissions."));
-  return bytes;
-}
-
 TriMesh read(const std::filesystem::path& path, VertexScalars* scalars) {
-  const std::string bytes = read_bytes(path);
+  const std::string bytes = read_whole_file(path);
   Reader reader(bytes, path.string());
   const Header header = parse_header(reader);
   TriMesh mesh;

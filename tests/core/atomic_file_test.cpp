@@ -1,8 +1,11 @@
 #include "core/atomic_file.h"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "core/error.h"
 #include "support/scratch_folder.h"
@@ -43,6 +46,22 @@ TEST(AtomicFile, AbandonedLeavesTheOldFile) {
   { AtomicFile(folder / "a.bin").write("new", 3); }
   EXPECT_EQ(read_text(folder / "a.bin"), "old");
   EXPECT_EQ(folder.file_count(), 1u);
+}
+
+TEST(AtomicFile, TakesAwayWhatKilledProcessesLeft) {
+  const ScratchFolder folder;
+  for (const char* name : {"a.bin.partial-1-0", "b.bin.partial-77-12", "b.bin.partial-7-x",
+                           "b.bin.partial-", ".partial-1-1", "live.partial-1-2"})
+    write_text(folder / name, "half of it");
+  const int live = ::open((folder / "live.partial-1-2").c_str(), O_RDONLY | O_CLOEXEC);
+  ::flock(live, LOCK_EX);
+  write_atomically(folder / "a.bin", "new");
+  for (const char* name : {"a.bin.partial-1-0", "b.bin.partial-77-12"})
+    EXPECT_FALSE(std::filesystem::exists(folder / name)) << name;
+  for (const char* name :
+       {"b.bin.partial-7-x", "b.bin.partial-", ".partial-1-1", "live.partial-1-2"})
+    EXPECT_TRUE(std::filesystem::exists(folder / name)) << name;
+  ::close(live);
 }
 
 TEST(AtomicFile, ReplacesTheOldFileWhole) {
