@@ -16,9 +16,16 @@ struct RunOptions {
   std::optional<rlim_t> file_size_limit;
   /// Standard output goes to this file (/dev/full, say) instead of a pipe.
   std::string output_file;
-  /// `signal` is sent once, as soon as this text has come on standard error.
+  /// `signal` is sent once, so many seconds after this text has come on standard error.
   std::string signal_after;
+  double signal_delay_seconds = 0;
   int signal = 0;
+  /// The child may end before it gets the signal.
+  bool may_end_before_signal = false;
+  /// NAME=VALUE, each added to the child's environment.
+  std::vector<std::string> environment;
+  /// Where the child works; the test's own folder when empty.
+  std::string working_folder;
   /// The child is killed after this time, which fails the test.
   double timeout_seconds = 120;
 };

@@ -10,6 +10,10 @@
 #include "chart/external.h"
 #include "chart/plan.h"
 #include "chart/results_file.h"
+#include "chart/stress_plan.h"
+#include "chart/stress_record.h"
+#include "cli/number_list.h"
+#include "cli/scene_arguments.h"
 #include "core/error.h"
 #include "io/image_file.h"
 #include "io/load_scene.h"
@@ -111,14 +115,48 @@ void read_chart_files(std::string_view bytes) {
     expect_success_or_error([&] { chart::read_external(folder / name); });
 }
 
-/// Assignments of --tune, one a line.
-void read_tuning(std::string_view bytes) {
-  std::vector<std::string> assignments(1);
+/// A plan of degradations, and the record of one of its runs.
+void read_stress_files(std::string_view bytes) {
+  const fs::path& folder = empty_folder();
+  unpack(bytes, folder);
+  expect_success_or_error([&] { chart::read_stress_plan(folder / "plan.json"); });
+  const fs::path record = folder / "record.json";
+  expect_success_or_error(
+      [&] { chart::figures_of(chart::StressRecord::from_json(record, chart::read_json(record))); });
+}
+
+std::vector<std::string> lines_of(std::string_view bytes) {
+  std::vector<std::string> lines(1);
   for (const char c : bytes)
     if (c == '\n')
-      assignments.emplace_back();
+      lines.emplace_back();
     else
-      assignments.back() += c;
+      lines.back() += c;
+  return lines;
+}
+
+/// The words of a command line about a scene, one a line.
+void read_scene_arguments(std::string_view bytes) {
+  std::vector<std::string> words = lines_of(bytes);
+  for (const std::string& word : words)
+    expect_success_or_error([&] { cli::parse_numbers("--angles", word); });
+  expect_success_or_error([&] {
+    CLI::App command;
+    cli::SceneArguments arguments;
+    arguments.add_to(command);
+    try {
+      std::reverse(words.begin(), words.end());  // as the parser takes them
+      command.parse(words);
+    } catch (const CLI::ParseError&) {
+      return;  // the program prints its message
+    }
+    arguments.options();
+  });
+}
+
+/// Assignments of --tune, one a line.
+void read_tuning(std::string_view bytes) {
+  const std::vector<std::string> assignments = lines_of(bytes);
   expect_success_or_error([&] {
     carving::PhotoOptions options;
     pipeline::tune(assignments, options);
@@ -193,6 +231,8 @@ std::vector<Target> make_targets() {
                    }});
   all.push_back({"spec", read_synthetic_spec});
   all.push_back({"chart", read_chart_files});
+  all.push_back({"stress", read_stress_files});
+  all.push_back({"scene-arguments", read_scene_arguments});
   all.push_back({"tune", read_tuning});
   all.push_back({"view-list", read_view_list});
   all.push_back({"checkpoint", read_level});

@@ -1,0 +1,77 @@
+// Scene after scene in one process: what each takes it must give back.
+#include <gtest/gtest.h>
+#include <malloc.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <numeric>
+
+#include "core/error.h"
+#include "eval/evaluate.h"
+#include "random_scene.h"
+#include "support/effort.h"
+#include "support/scratch_folder.h"
+#include "synth/synthesize.h"
+#include "volume/read_mesh.h"
+
+namespace photohull::test {
+namespace {
+
+constexpr int kScenes = 10;
+constexpr double kMostGrowth = 16;  // MiB
+
+/// Of the process, without what the allocator keeps for the next scene.
+double resident_mib() {
+  ::malloc_trim(0);
+  long total = 0, resident = 0;
+  std::ifstream("/proc/self/statm") >> total >> resident;
+  return double(resident) * double(::sysconf(_SC_PAGESIZE)) / (1 << 20);
+}
+
+/// A scene from spec to judgement; false where the program says that it cannot be reconstructed.
+bool run_scene(std::uint64_t number) {
+  const ScratchFolder folder;
+  Progress silent;
+  synth::synthesize(random_spec(number), folder / "scene", silent);
+  try {
+    pipeline::reconstruct(random_job(number, folder / "scene", folder / "out"), silent);
+  } catch (const Error& e) {
+    std::printf("scene %llu: %s\n", static_cast<unsigned long long>(number), e.what());
+    return false;
+  }
+  const TriMesh mesh = read_mesh(folder / "out/mesh.ply", Faces::kNeeded);
+  eval::EvaluateOptions options;
+  options.samples = 2000;
+  options.columns = 32;
+  eval::evaluate(mesh, eval::read_truth(folder / "scene"), options, &silent);
+  return true;
+}
+
+double mean(const std::vector<double>& values, std::size_t first, std::size_t last) {
+  return std::accumulate(values.begin() + long(first), values.begin() + long(last), 0.0) /
+         double(last - first);
+}
+
+TEST(Soak, MemoryDoesNotGrow) {
+  std::vector<double> resident;
+  int done = 0;
+  const int scenes = kScenes * effort();
+  for (int i = 1; i <= scenes; ++i) {
+    done += run_scene(std::uint64_t(i));
+    resident.push_back(resident_mib());
+    if (i % std::max(1, scenes / 10) == 0)
+      std::printf("%d scenes: %.0f MiB resident\n", i, resident.back()), std::fflush(stdout);
+  }
+  // The first third loads libraries and fills caches.
+  const std::size_t third = resident.size() / 3;
+  const double middle = mean(resident, third, 2 * third);
+  const double end = mean(resident, resident.size() - third, resident.size());
+  std::printf(
+      "%d of %d scenes reconstructed; mean of the middle third %.1f MiB, of the last %.1f\n", done,
+      scenes, middle, end);
+  EXPECT_LT(end - middle, kMostGrowth);
+  EXPECT_GT(done, scenes * 3 / 4);
+}
+
+}  // namespace
+}  // namespace photohull::test
