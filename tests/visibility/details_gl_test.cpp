@@ -197,6 +197,30 @@ TEST_F(DetailMaps, MarchedAndRasterisedVoxelsAgreeWithTheVoxelWalk) {
   }
 }
 
+TEST_F(DetailMaps, VolumesThatAreEmptyOrBehindHideNothing) {
+  SparseVolume empty;
+  empty.grid = {{0, 0, 0}, 0.1, {2, 1, 1}};
+  empty.table = {SparseVolume::kOutside, SparseVolume::kOutside};
+  SparseVolume solid = empty;
+  solid.table = {SparseVolume::kInside, SparseVolume::kInside};
+  const Camera towards = test::look_at({-2, 0.3, 0.4}, {0, 0.3, 0.4}, 60, 64, 64);
+  const Camera away = test::look_at({-2, 0.3, 0.4}, {-4, 0.3, 0.4}, 60, 64, 64);
+  const auto seen = [&](const SparseVolume& volume, const Camera& viewpoint, bool march, double x) {
+    Technique t;
+    t.resolution = 32;
+    t.march = march;
+    const VisibilityMap map = render_map(context_, viewpoint, Geometry::of_volume(volume), t);
+    const Sample sample{{x, 0.35, 0.35}, {-1, 0, 0}};
+    return visible(context_, map, std::vector{sample})[0];
+  };
+  for (const bool march : {false, true}) {
+    EXPECT_EQ(seen(empty, towards, march, 3), 1) << march;
+    EXPECT_EQ(seen(solid, towards, march, 3), 0) << march;
+    EXPECT_EQ(seen(solid, away, march, -3), 1) << march;
+    EXPECT_EQ(seen(solid, away, march, 3), 0) << march;  // behind the viewpoint
+  }
+}
+
 TEST_F(DetailMaps, ASingleVoxel) {
   SparseVolume volume;
   volume.grid = {{0, 0, 0}, 0.1, {1, 1, 1}};
