@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "raycast/check_mesh.h"
+#include "raycast/commit_scene.h"
 
 namespace photohull {
 namespace {
@@ -87,7 +88,7 @@ void ClosestPoint::Data::build() {
     std::memcpy(faces, triangles.data(), triangles.size() * 3 * sizeof(std::uint32_t));
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene, geometry);
-    rtcCommitScene(scene);
+    commit_scene(scene);
   }
   rtcReleaseGeometry(geometry);
   const RTCError failure = rtcGetDeviceError(device);

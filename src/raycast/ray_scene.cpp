@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "raycast/check_mesh.h"
+#include "raycast/commit_scene.h"
 
 namespace photohull {
 namespace {
@@ -75,7 +76,7 @@ struct RayScene::Device {
                   mesh.triangles.size() * 3 * sizeof(std::uint32_t));
       rtcCommitGeometry(geometry);
       rtcAttachGeometry(scene, geometry);
-      rtcCommitScene(scene);
+      commit_scene(scene);
     }
     rtcReleaseGeometry(geometry);
     const RTCError failure = rtcGetDeviceError(device);

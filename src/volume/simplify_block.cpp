@@ -75,6 +75,10 @@ class Inspection {
 
   /// Marks of the block's vertices; empty when nothing is wrong.
   Flags run(const Flags& kept) {
+    if (result_.triangles.empty()) {  // something of a few voxels, folded away
+      faults_.assign(faults_.size(), 1);
+      return faults_;
+    }
     check_shapes();
     check_edges();
     check_distance_to_block();

@@ -1,11 +1,13 @@
 #include "raycast/ray_scene.h"
 
 #include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
 
 #include <cmath>
 #include <random>
 
 #include "core/error.h"
+#include "raycast/closest_point.h"
 
 namespace photohull {
 namespace {
@@ -114,6 +116,24 @@ TEST(RayScene, RefusesWhatIsNoMesh) {
   } catch (const Error& e) {
     EXPECT_NE(std::string(e.what()).find("vertex 4"), std::string::npos) << e.what();
   }
+}
+
+// Embree's own tasks would be cancelled with those around them, and leave scenes without a tree.
+TEST(RayScene, IsBuiltWhileATaskBesideItFails) {
+  constexpr std::size_t kTasks = 8;
+  const TriMesh mesh = triangle_soup(12);
+  const Ray ray{mesh.origin + glm::dvec3(5), glm::dvec3(-1), 0, 1e30};
+  const bool expected = RayScene(mesh).occluded(ray.origin, ray.direction, 0, 1e30);
+  for (std::size_t i = 0; i < 200; ++i)
+    EXPECT_THROW(
+        tbb::parallel_for(std::size_t(0), kTasks,
+                          [&](std::size_t task) {
+                            if (task == i % kTasks) throw Error("another task's");
+                            EXPECT_EQ(RayScene(mesh).occluded(ray.origin, ray.direction, 0, 1e30),
+                                      expected);
+                            EXPECT_LT(ClosestPoint(mesh).nearest(mesh.world(0)).distance, 1e-6);
+                          }),
+        Error);
 }
 
 }  // namespace

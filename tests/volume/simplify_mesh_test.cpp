@@ -216,5 +216,14 @@ TEST(MeasureDistance, OfConcentricSpheres) {
   EXPECT_LT(measure_distance(small, small, 1).max, 1e-9);
 }
 
+// Everything of such a body may collapse, which is no surface near to it any more.
+TEST(SimplifyMesh, BodiesSmallerThanTheErrorStay) {
+  for (const double radius : {0.6, 0.9, 1.5, 3.0})
+    for (const double error : {0.25, 1.0, 4.0, 100.0}) {
+      const TriMesh mesh = surface_of(sphere(kCenter, radius));
+      EXPECT_FALSE(simplify_mesh(mesh, error).triangles.empty()) << radius << " " << error;
+    }
+}
+
 }  // namespace
 }  // namespace photohull
