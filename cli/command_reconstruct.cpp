@@ -16,8 +16,8 @@ namespace {
 struct Arguments {
   SceneArguments scene;
   std::string out, quality = "normal", device = "auto", mesh_error = "0", unseen = "closed",
-                   refine_cameras = "off", mask_offset = "auto", photometric = "off";
-  std::optional<std::string> method, sampler, consistency, visibility;
+                   mask_offset = "auto", photometric = "off";
+  std::optional<std::string> method, refine_cameras, sampler, consistency, visibility;
   std::optional<int> resolution, supersample;
   std::optional<double> voxel_size;
   std::vector<std::string> tune;
@@ -50,10 +50,11 @@ pipeline::ReconstructOptions to_options(const Arguments& a) {
   o.unseen = parse_name("--unseen", a.unseen,
                         std::array{pipeline::Unseen::kOpen, pipeline::Unseen::kClosed});
   using pipeline::RefineCameras;
-  o.refine_cameras =
-      parse_name("--refine-cameras", a.refine_cameras,
-                 std::array{RefineCameras::kOff, RefineCameras::kAuto, RefineCameras::kPoses,
-                            RefineCameras::kPosesAndIntrinsics});
+  if (a.refine_cameras)
+    o.refine_cameras =
+        parse_name("--refine-cameras", *a.refine_cameras,
+                   std::array{RefineCameras::kOff, RefineCameras::kAuto, RefineCameras::kPoses,
+                              RefineCameras::kPosesAndIntrinsics});
   using pipeline::Photometric;
   o.photometric = parse_name("--photometric", a.photometric,
                              std::array{Photometric::kOff, Photometric::kAuto, Photometric::kOn});
@@ -87,7 +88,8 @@ void print_summary(const pipeline::Report& report, const std::string& out) {
 /// The files are there all the same, to look at.
 void throw_if_failed(const assess::Verdict& verdict) {
   if (verdict.level != assess::Level::kFailed) return;
-  throw Error("the result failed its own checks: " + verdict.reasons.front(), assess::kFailedVerdict);
+  throw Error("the result failed its own checks: " + verdict.reasons.front(),
+              assess::kFailedVerdict);
 }
 
 void run(const Arguments& a) {
@@ -138,8 +140,8 @@ void add_reconstruct(CLI::App& app) {
       ->capture_default_str();
   c->add_option("--refine-cameras", a->refine_cameras,
                 "off, auto (where it pays), poses or poses+intrinsics: cameras made to agree with "
-                "the photographs first")
-      ->capture_default_str();
+                "the photographs first (default: off for draft, else auto where masks' outlines "
+                "show that cameras are wrong)");
   c->add_option("--photometric", a->photometric,
                 "off, auto (where the photographs differ by more than their noise) or on: gains, "
                 "white balance and vignetting of the photographs made alike, for colours")

@@ -236,28 +236,4 @@ std::vector<Camera> adjust_bundle(const BundleInput& input, std::span<const Came
   return result;
 }
 
-std::vector<Camera> with_world_moved(std::span<const Camera> cameras,
-                                     std::span<const glm::dvec3> from,
-                                     std::span<const glm::dvec3> to) {
-  Eigen::Matrix3Xd a(3, from.size()), b(3, to.size());
-  for (std::size_t i = 0; i < from.size(); ++i)
-    for (int k = 0; k < 3; ++k) a(k, long(i)) = from[i][k], b(k, long(i)) = to[i][k];
-  const Eigen::Matrix4d similarity = Eigen::umeyama(a, b, true);
-  glm::dmat3 m;
-  glm::dvec3 shift;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) m[j][i] = similarity(i, j);
-    shift[i] = similarity(i, 3);
-  }
-  const double scale = std::cbrt(glm::determinant(m));
-  const glm::dmat3 rotation = m / scale;
-  std::vector<Camera> result(cameras.begin(), cameras.end());
-  for (Camera& camera : result) {
-    Pose& pose = camera.cam_from_world;
-    pose.rotation = pose.rotation * glm::transpose(rotation);
-    pose.translation = scale * pose.translation - pose.rotation * shift;
-  }
-  return result;
-}
-
 }  // namespace photohull

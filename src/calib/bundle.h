@@ -29,9 +29,4 @@ struct BundleInput {
 std::vector<Camera> adjust_bundle(const BundleInput& input, std::span<const Camera> start,
                                   std::span<const Camera> prior, std::array<double, 3>& shared);
 
-/// The similarity that brings `from` nearest to `to` [Umeyama91], applied to the world of cameras.
-std::vector<Camera> with_world_moved(std::span<const Camera> cameras,
-                                     std::span<const glm::dvec3> from,
-                                     std::span<const glm::dvec3> to);
-
 }  // namespace photohull

@@ -8,6 +8,7 @@
 
 #include "calib/bundle.h"
 #include "calib/frontier.h"
+#include "calib/gauge.h"
 #include "calib/grey_image.h"
 #include "calib/surface_patches.h"
 #include "core/error.h"
@@ -17,6 +18,7 @@ namespace photohull {
 namespace {
 
 constexpr int kFewestTracks = 30;            // for the similarity that fixes the gauge
+constexpr std::size_t kGaugePoints = 200;    // that fix it, at most
 constexpr double kOutlier = 4;               // spreads
 constexpr double kLeastSigma = 0.03;         // pixels: nothing is measured better
 constexpr double kLeastTangentSigma = 0.15;  // pixels: contours err alike where they touch
@@ -70,14 +72,24 @@ bool is_held_out(std::size_t index, double share) {
   return std::fmod(double(index + 1) * 0.6180339887498949, 1.0) < share;
 }
 
+std::vector<Outline> outlines_of(std::span<const View> views) {
+  std::vector<Outline> outlines(views.size());
+  tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
+    if (!views[i].mask.empty()) outlines[i] = outline_of(views[i].mask);
+  });
+  return outlines;
+}
+
 class Refiner {
  public:
   /// `given`: what the result is compared with, and held near to; `start`: where it begins.
   Refiner(std::span<const View> views, Cameras given, Cameras start,
           const RefineCamerasOptions& options, std::vector<Track> tracks, Progress& progress)
-      : options_(options), progress_(progress), given_(std::move(given)), start_(std::move(start)) {
-    for (const View& view : views)
-      outlines_.push_back(view.mask.empty() ? Outline() : outline_of(view.mask));
+      : options_(options),
+        progress_(progress),
+        given_(std::move(given)),
+        start_(std::move(start)),
+        outlines_(outlines_of(views)) {
     for (std::size_t i = 0; i < tracks.size(); ++i)
       (is_held_out(i, options.held_out) ? judging_ : adjusting_).push_back(std::move(tracks[i]));
   }
@@ -207,22 +219,22 @@ class Refiner {
   /// to the given cameras.
   Cameras fix_gauge(const Cameras& cameras) const {
     const Triangulated now = triangulate_all(cameras, adjusting_);
-    const Triangulated before = triangulate_all(given_, adjusting_);
     const double limit = kOutlier * spread_of_lengths(now.rms);
-    std::vector<glm::dvec3> from, to;
+    std::vector<glm::dvec3> points;
     for (std::size_t i = 0; i < adjusting_.size(); ++i)
-      if (now.rms[i] < limit && std::isfinite(before.rms[i])) {
-        from.push_back(now.points[i]);
-        to.push_back(before.points[i]);
-      }
-    if (from.size() < std::size_t(kFewestTracks)) {
-      from.clear(), to.clear();
+      if (now.rms[i] < limit) points.push_back(now.points[i]);
+    if (points.size() < std::size_t(kFewestTracks)) {
+      std::vector<glm::dvec3> from, to;
       for (std::size_t i = 0; i < cameras.size(); ++i) {
         from.push_back(cameras[i].center());
         to.push_back(given_[i].center());
       }
+      return with_world_moved(cameras, from, to);
     }
-    return with_world_moved(cameras, from, to);
+    const std::size_t step = (points.size() + kGaugePoints - 1) / kGaugePoints;
+    std::vector<glm::dvec3> some;
+    for (std::size_t i = 0; i < points.size(); i += step) some.push_back(points[i]);
+    return with_world_as_given(cameras, given_, some, middle_);
   }
 
   void report(const Cameras& cameras, CameraRefinement& result) const {
@@ -345,6 +357,14 @@ CameraRefinement refine_cameras(std::span<const View> views, const RefineCameras
   result.given_tracks = int(others.size());
   result.patches = int(patches.size());
   return result;
+}
+
+double tangent_disagreement(std::span<const View> views) {
+  Cameras cameras;
+  for (const View& view : views) cameras.push_back(view.camera);
+  const std::vector<double> distances =
+      tangent_distances(cameras, frontier_pairs(cameras, outlines_of(views)));
+  return distances.empty() ? NAN : median(distances);
 }
 
 }  // namespace photohull

@@ -70,4 +70,9 @@ struct CameraRefinement {
 CameraRefinement refine_cameras(std::span<const View> views, const RefineCamerasOptions& options,
                                 Progress& progress);
 
+/// Median distance in pixels of the outlines' tangents from each other's epipolar lines, over all
+/// pairs of views with masks (frontier_pairs); NaN where there is no pair. Says in some hundredths
+/// of a second whether refine_cameras may pay.
+double tangent_disagreement(std::span<const View> views);
+
 }  // namespace photohull

@@ -8,22 +8,15 @@
 #include <memory>
 
 #include "assess/verdict.h"
-#include "assess/wrong_views.h"
-#include "calib/crop.h"
-#include "calib/mask_bias.h"
-#include "calib/noise.h"
-#include "calib/prepare_views.h"
-#include "calib/silhouette.h"
 #include "carving/fit_grid.h"
 #include "carving/hull.h"
-#include "carving/object_box.h"
 #include "carving/photo.h"
 #include "carving/thin_parts.h"
 #include "core/error.h"
 #include "io/image_file.h"
 #include "pipeline/checks.h"
+#include "pipeline/inputs.h"
 #include "pipeline/job_identity.h"
-#include "pipeline/mask_policy.h"
 #include "pipeline/result_files.h"
 #include "pipeline/self_check.h"
 #include "pipeline/stage_clock.h"
@@ -59,94 +52,54 @@ constexpr double kDoubtfulRim = 2;
 constexpr double kLeastEvidence = 0.1;    // share of the surface below which a result is doubtful
 constexpr double kDebrisFraction = 5e-4;  // of the largest part's voxels
 constexpr int kPhotometricVoxels = 160;   // along the box, of the hull that gains are measured on
-constexpr double kOversized = 1.8;        // times the object's box: the box is made smaller
-constexpr int kCropMargin = 24;           // pixels around the box's projection: patches, mip levels
 constexpr double kDetail = 1.5;           // pixels: what refinement resolves, by its patches
 constexpr std::size_t kFewestThinVoxels = 32;  // a hull of fewer, all of them thin, is none
 constexpr double kBoxSlack = 0.5;              // voxels that the surface may stand out of the box
 
-double longest_side(const Box& box) {
-  const glm::dvec3 size = box.size();
-  return std::max({size.x, size.y, size.z});
-}
-
-double voxel_size_of(const ReconstructOptions& options, const Box& box,
-                     std::span<const Camera> cameras) {
-  if (options.resolution) return carving::voxel_size_for(box, *options.resolution);
-  const double largest = carving::voxel_size_for(box, 2);
-  if (options.voxel_size) {
-    if (*options.voxel_size > largest)
-      throw UsageError(concat("--voxel-size ", *options.voxel_size, ": at most ", largest,
-                              ", half of the box's longest side"));
-    return *options.voxel_size;
-  }
-  const double footprint = carving::pixel_footprint(box, cameras);
-  if (!(footprint > 0)) throw Error("no camera has the box's centre in front of it");
-  const double size = footprint * footprint_factor(options.quality);
-  if (size > largest)
-    throw Error(concat("a pixel is ", footprint,
-                       " world units large at the box's centre, too much for a box whose longest "
-                       "side is ",
-                       2 * largest, "; check the box's units, or give --voxel-size"));
-  return size;
-}
-
-std::vector<Camera> cameras_of(std::span<const SourceView> views) {
-  std::vector<Camera> cameras;
-  for (const SourceView& view : views) cameras.push_back(view.camera);
-  return cameras;
-}
-
-double median_noise(std::span<const View> views) {
-  std::vector<double> values(views.size());
-  tbb::parallel_for(std::size_t(0), views.size(),
-                    [&](std::size_t i) { values[i] = estimate_image_noise(views[i].image); });
-  std::nth_element(values.begin(), values.begin() + long(values.size() / 2), values.end());
-  // Quantisation to 8 bits alone leaves about this much.
-  return std::max(values[values.size() / 2], 1.0 / 255 / std::sqrt(12.0));
-}
-
 class Job {
  public:
   Job(const ReconstructOptions& options, Progress& progress)
-      : options_(options), progress_(progress), clock_(report_, progress) {
+      : options_(options),
+        progress_(progress),
+        clock_(report_, progress),
+        in_(options, report_, progress) {
     report_.version = PHOTOHULL_VERSION;
     report_.options = named_options(options);
   }
 
   Report run() {
     const auto start = std::chrono::steady_clock::now();
-    clock_.run("scene", Weights::kScene, [&] { load(); });
+    clock_.run("scene", Weights::kScene, [&] { in_.load(); });
     // What can fail at once does so before the photographs are decoded.
     std::vector<std::string> names = {"volume.vdb", "mesh.ply", "preview.png", "report.json"};
     if (options_.evidence) names.emplace_back("evidence.ply");
     ResultFiles files(options_.output, std::move(names));
     report_.files = files.names();
     clock_.run("device", Weights::kDevice, [&] { open_device(); });
-    clock_.run("views", Weights::kViews, [&] { prepare(); });
-    if (options_.refine_cameras != RefineCameras::kOff)
-      clock_.run("cameras", Weights::kCameras, [&] { refine_cameras(); });
-    tighten_box();
-    fit_grid();
-    crop();
+    clock_.run("views", Weights::kViews, [&] { in_.prepare(); });
+    if (const double weight = Weights::cameras(options_); weight > 0)
+      clock_.run("cameras", weight, [&] { in_.refine_cameras(); });
+    in_.tighten_box();
+    in_.fit_grid();
+    in_.crop();
     const bool refining = options_.effective_method() == Method::kRefine;
     SparseVolume volume = clock_.run("hull", Weights::kHull, [&] {
-      measure_silhouettes();
-      correct_masks();
-      leave_out_wrong_views();
+      in_.measure_silhouettes();
+      in_.correct_masks();
+      in_.leave_out_wrong_views();
       return refining ? SparseVolume() : carve_hull();
     });
     // Before colours are compared, where silhouettes give a surface.
     const bool photometric = options_.photometric != Photometric::kOff;
-    const bool on_hull = photometric && any_mask();
+    const bool on_hull = photometric && in_.any_mask();
     if (on_hull)
       clock_.run("photometric", Weights::kPhotometric, [&] { correct_photometric_on_hull(); });
     // The other samplers weight by the masks.
     if (!refining && sampler() == projtex::Sampler::kMipmap)
-      for (View& view : views_) std::vector<std::uint8_t>().swap(view.mask.coverage);
+      for (View& view : in_.views) std::vector<std::uint8_t>().swap(view.mask.coverage);
     context_->release_deleted();
     images_ = clock_.run("images", Weights::kImages,
-                         [&] { return std::make_unique<projtex::ImageSet>(views_); });
+                         [&] { return std::make_unique<projtex::ImageSet>(in_.views); });
     if (refining)
       volume = clock_.run("refine", Weights::kRefine, [&] { return refine(); });
     else if (options_.effective_method() != Method::kHull)
@@ -155,10 +108,10 @@ class Job {
     TriMesh mesh = clock_.run("mesh", Weights::kMesh, [&] { return extract(volume); });
     if (photometric && !on_hull)
       clock_.run("photometric", Weights::kPhotometric, [&] {
-        if (!correct_photometric(mesh, grid_.voxel_size)) return;
+        if (!correct_photometric(mesh, in_.grid.voxel_size)) return;
         images_.reset();
         context_->release_deleted();
-        images_ = std::make_unique<projtex::ImageSet>(views_);
+        images_ = std::make_unique<projtex::ImageSet>(in_.views);
       });
     VolumeAttributes attributes = clock_.run("colour", Weights::kColour, [&] {
       colour(mesh, files);
@@ -187,106 +140,21 @@ class Job {
   }
 
  private:
-  void warn(const std::string& text) {
-    report_.warnings.push_back(text);
-    progress_.warn(text);
-  }
-
-  void load() {
-    scene_ = io::load_scene(options_.scene, options_.load);
-    report_.scene = scene_.path.string();
-    report_.format = to_string(scene_.format);
-    report_.views = int(scene_.views.size());
-    for (const std::string& text : scene_.warnings) warn(text);
-    if (!scene_.box)
-      throw Error(concat(scene_.path.string(),
-                         ": nothing tells where the object is: give --box "
-                         "\"x0 y0 z0 x1 y1 z1\" or a bbox.txt beside the scene"));
-    report_.box = *scene_.box;
-    report_.box_source = scene_.box_source;
-    for (const std::string& text : check_box(*scene_.box, scene_.box_source, scene_.views))
-      warn(text);
-    // Else the voxels' size follows the box, which may become smaller.
-    if (options_.resolution || options_.voxel_size) check_memory(lattice(cameras_of(scene_.views)));
-  }
-
-  /// A box that is much larger than the object would waste the voxels, and far from the object few
-  /// views see what silhouettes do not reject.
-  void tighten_box() {
-    if (!carving::box_is_oversized(*scene_.box, views_)) return;
-    const Box box = carving::object_box(*scene_.box, views_);
-    const double factor = longest_side(*scene_.box) / longest_side(box);
-    if (factor < kOversized) return;
-    warn(concat("the box from ", scene_.box_source, " is ", std::round(10 * factor) / 10,
-                " times larger than what the silhouettes leave: the object's own box is taken, "
-                "and --resolution counts along that"));
-    scene_.box = report_.box = box;
-    scene_.box_source = report_.box_source += ", made smaller by the silhouettes";
-  }
-
-  GridSpec lattice(std::span<const Camera> cameras) const {
-    return carving::fit_grid(*scene_.box, voxel_size_of(options_, *scene_.box, cameras));
-  }
-
-  void fit_grid() {
-    check_cameras_outside(*scene_.box, scene_.box_source, scene_.views);
-    cameras_ = projtex::cameras_of(views_);
-    grid_ = lattice(cameras_);
-    check_memory(grid_);
-    report_.grid = grid_;
-  }
-
-  void prepare() {
-    const ViewLoader loader{[](const fs::path& path) { return io::read_image(path); },
-                            [](const fs::path& path) { return io::read_mask(path); }};
-    PrepareOptions prepare_options;
-    prepare_options.masks = mask_policy(options_.load.masks);
-    PreparedViews prepared = prepare_views(scene_, loader, prepare_options, progress_);
-    views_ = std::move(prepared.views);
-    report_.noise_sigma = median_noise(views_);
-    for (const std::string& text : prepared.warnings) warn(text);
-    report_.mask_source = prepared.mask_source;
-    report_.mask_confidence = prepared.mask_confidence;
-    for (std::size_t i = 0; i < views_.size(); ++i)
-      report_.masks.push_back(
-          {views_[i].name, prepared.masks[i].source, prepared.masks[i].confidence});
-  }
-
-  void refine_cameras() {
-    RefineCamerasOptions o;
-    if (options_.refine_cameras == RefineCameras::kPosesAndIntrinsics)
-      o.intrinsics = SharedIntrinsics::kAll;
-    o.given = undistorted_tracks(scene_, views_);
-    o.box = scene_.box;
-    const CameraRefinement found = photohull::refine_cameras(views_, o, progress_);
-    const bool use =
-        found.changed && (options_.refine_cameras != RefineCameras::kAuto || pays(found));
-    report_.camera_refinement = to_json(found, scene_, use);
-    if (!use) return;
-    cameras_moved_ = found.moved;
-    apply(found, scene_);
-    for (std::size_t i = 0; i < views_.size(); ++i) views_[i].camera = found.cameras[i];
-  }
-
   void correct_photometric_on_hull() {
-    const double coarse = carving::voxel_size_for(*scene_.box, kPhotometricVoxels);
-    const GridSpec grid = carving::fit_grid(*scene_.box, std::max(coarse, grid_.voxel_size));
+    const double coarse = carving::voxel_size_for(*in_.scene.box, kPhotometricVoxels);
+    const GridSpec grid = carving::fit_grid(*in_.scene.box, std::max(coarse, in_.grid.voxel_size));
     correct_photometric(extract_mesh(hull_at(grid)), grid.voxel_size);
   }
 
   /// Whether the views' pixels changed.
   bool correct_photometric(const TriMesh& mesh, double voxel_size) {
-    const PhotometricOutcome found = pipeline::correct_photometric(
-        options_.photometric, scene_, mesh, voxel_size, report_.noise_sigma, views_, progress_);
+    const PhotometricOutcome found =
+        pipeline::correct_photometric(options_.photometric, in_.scene, mesh, voxel_size,
+                                      report_.noise_sigma, in_.views, progress_);
     report_.photometric = found.json;
     report_.photometric_line = found.line;
-    if (!found.warning.empty()) warn(found.warning);
+    if (!found.warning.empty()) in_.warn(found.warning);
     return found.used;
-  }
-
-  void crop() {
-    for (View& view : views_) crop_to_box(scene_.box.value(), kCropMargin, view);
-    cameras_ = projtex::cameras_of(views_);
   }
 
   void open_device() {
@@ -294,78 +162,32 @@ class Job {
     report_.device = context_->device().renderer;
   }
 
-  bool any_mask() const {
-    return std::any_of(views_.begin(), views_.end(), [](const View& v) { return !v.mask.empty(); });
-  }
-
-  void measure_silhouettes() {
-    silhouette_distances_.resize(views_.size());
-    tbb::parallel_for(std::size_t(0), views_.size(), [&](std::size_t i) {
-      if (!views_[i].mask.empty()) silhouette_distances_[i] = silhouette_distance(views_[i].mask);
-    });
-  }
-
-  /// Masks that are all too small carve the object itself away.
-  void correct_masks() {
-    double offset = options_.mask_offset.value_or(0);
-    if (!options_.mask_offset) {
-      const MaskBias bias = measure_mask_bias(views_, silhouette_distances_);
-      if (bias.counts()) offset = bias.pixels;
-    }
-    report_.mask_offset = offset;
-    if (offset == 0) return;
-    if (!options_.mask_offset)
-      warn(concat("the masks are about ", std::round(10 * std::abs(offset)) / 10, " px too ",
-                  offset > 0 ? "small" : "large",
-                  ": outlines are taken from where the photographs' edges are (--mask-offset 0 "
-                  "takes the masks as they are)"));
-    for (std::size_t i = 0; i < views_.size(); ++i)
-      if (!views_[i].mask.empty()) move_outline(offset, views_[i].mask, silhouette_distances_[i]);
-  }
-
-  /// One view that is far off carves away what all others have.
-  void leave_out_wrong_views() {
-    const assess::SilhouetteConsistency found =
-        assess::find_wrong_views(*scene_.box, cameras_, pointers(silhouette_distances_));
-    contradiction_ = found.uncovered_left;
-    for (auto i = found.wrong.rbegin(); i != found.wrong.rend(); ++i) {
-      warn(concat("view ", views_[*i].name,
-                  " is left out: without it the other views' silhouettes agree; check its camera "
-                  "and its mask"));
-      report_.left_out.push_back(views_[*i].name);
-      views_.erase(views_.begin() + *i);
-      scene_.views.erase(scene_.views.begin() + *i);
-      cameras_.erase(cameras_.begin() + *i);
-      silhouette_distances_.erase(silhouette_distances_.begin() + *i);
-    }
-  }
-
   std::vector<carving::Silhouette> silhouettes() const {
     std::vector<carving::Silhouette> out;
-    for (std::size_t i = 0; i < views_.size(); ++i)
+    for (std::size_t i = 0; i < in_.views.size(); ++i)
       out.push_back(
-          {&views_[i].mask, views_[i].mask.empty() ? nullptr : &silhouette_distances_[i]});
+          {&in_.views[i].mask, in_.views[i].mask.empty() ? nullptr : &in_.silhouettes[i]});
     return out;
   }
 
   SparseVolume hull_at(const GridSpec& grid) {
     const std::vector<carving::Silhouette> silhouettes = this->silhouettes();
     carving::HullOptions hull_options;
-    hull_options.min_views = any_mask() ? 1 : 2;
-    Box box = *scene_.box;
+    hull_options.min_views = in_.any_mask() ? 1 : 2;
+    Box box = *in_.scene.box;
     box.min -= kBoxSlack * grid.voxel_size;
     box.max += kBoxSlack * grid.voxel_size;
     carving::HullReport counts;
     Progress silent;
-    SparseVolume volume = carving::carve_silhouette(*context_, grid, box, cameras_, silhouettes,
+    SparseVolume volume = carving::carve_silhouette(*context_, grid, box, in_.cameras, silhouettes,
                                                     hull_options, silent, &counts);
     const std::size_t thin =
-        carving::keep_thin_parts(volume, box, cameras_, silhouettes, hull_options);
+        carving::keep_thin_parts(volume, box, in_.cameras, silhouettes, hull_options);
     const std::size_t inside = volume.inside_voxels();
-    const bool specks = grid.voxel_size == grid_.voxel_size && inside == thin &&
+    const bool specks = grid.voxel_size == in_.grid.voxel_size && inside == thin &&
                         thin < kFewestThinVoxels;  // coarse grids may hold no more of it
     if (inside == 0 || specks)
-      throw Error(explain_empty_hull(*scene_.box, views_, grid.voxel_size));
+      throw Error(explain_empty_hull(*in_.scene.box, in_.views, grid.voxel_size));
     report_.nodes_tested += counts.nodes_tested;
     report_.bricks_evaluated += counts.bricks_evaluated;
     hull_samples_ += counts.samples;
@@ -382,17 +204,17 @@ class Job {
     }
     if (report_.mask_confidence < 1) {
       o.restore.least_views =
-          std::max(o.restore.least_views, int(cameras_.size()) / kDoubtingViews);
+          std::max(o.restore.least_views, int(in_.cameras.size()) / kDoubtingViews);
       o.restore.least_inside = kDoubtfulRim;
     }
     tune(options_.tune, o, sharpen_);
-    const refine::CheckpointFile checkpoint{checkpoint_path(),
-                                            job_identity(options_, scene_, grid_, report_.device)};
+    const refine::CheckpointFile checkpoint{
+        checkpoint_path(), job_identity(options_, in_.scene, in_.grid, report_.device)};
     if (options_.fresh) remove_checkpoint();
     refine::RefineReport counts;
     SparseVolume volume = refine::refine_surface(
-        *context_, grid_, [&](const GridSpec& grid) { return hull_at(grid); }, silhouettes(),
-        *images_, cameras_, o, progress_, &counts, &checkpoint);
+        *context_, in_.grid, [&](const GridSpec& grid) { return hull_at(grid); }, silhouettes(),
+        *images_, in_.cameras, o, progress_, &counts, &checkpoint);
     report_.resumed_levels = counts.resumed;
     for (const refine::FitReport& fit : counts.fits)
       report_.refine_fits.push_back(
@@ -410,9 +232,10 @@ class Job {
           "(photohull info) or use --method hull");
     const double evidence = counts.levels.back().evidence;
     if (evidence < kLeastEvidence)
-      warn(concat("the photographs tell where the surface is on ", std::lround(100 * evidence),
-                  " % of it only (too little texture, or too few cameras that see the same): the "
-                  "rest is the hull's guess"));
+      in_.warn(
+          concat("the photographs tell where the surface is on ", std::lround(100 * evidence),
+                 " % of it only (too little texture, or too few cameras that see the same): the "
+                 "rest is the hull's guess"));
     return volume;
   }
 
@@ -424,11 +247,11 @@ class Job {
   }
 
   SparseVolume carve_hull() {
-    if (!any_mask() && options_.effective_method() == Method::kHull)
-      warn(
+    if (!in_.any_mask() && options_.effective_method() == Method::kHull)
+      in_.warn(
           "without masks the hull is the box clipped by the frusta: give masks or use "
           "--method refine");
-    return hull_at(grid_);
+    return hull_at(in_.grid);
   }
 
   SparseVolume carve_photo(const SparseVolume& hull) {
@@ -453,9 +276,9 @@ class Job {
           "photo-consistency carved everything away: the photographs disagree everywhere; "
           "check the cameras (photohull info) or use --method hull");
     if (counts.judged == 0)
-      warn("no voxel was seen by enough cameras to be judged: the result is the hull");
+      in_.warn("no voxel was seen by enough cameras to be judged: the result is the hull");
     else if (report_.voxels_undecided >= counts.judged)
-      warn(
+      in_.warn(
           "the photographs show too little texture to decide on any voxel: the result is the hull");
     return volume;
   }
@@ -468,17 +291,18 @@ class Job {
                         carving::to_string(photo.statistic),
                         visibility::to_string(photo.visibility)};
     if (sampler() == projtex::Sampler::kMipmap)
-      return carving::carve_photo(*context_, hull, *images_, cameras_, photo, progress_, &counts);
-    const projtex::SampleImages images(views_, sampler());
-    return carving::carve_photo(*context_, hull, images, cameras_, photo, progress_, &counts);
+      return carving::carve_photo(*context_, hull, *images_, in_.cameras, photo, progress_,
+                                  &counts);
+    const projtex::SampleImages images(in_.views, sampler());
+    return carving::carve_photo(*context_, hull, images, in_.cameras, photo, progress_, &counts);
   }
 
   TriMesh extract(const SparseVolume& volume) {
     TriMesh mesh = extract_mesh(volume);
     if (options_.effective_method() == Method::kRefine) {
-      const double detail = kDetail * carving::pixel_footprint(*scene_.box, cameras_);
-      report_.sharpened_vertices = std::int64_t(
-          sharpen_edges(sharpen_, grid_.voxel_size, std::max(detail, grid_.voxel_size), mesh));
+      const double detail = kDetail * carving::pixel_footprint(*in_.scene.box, in_.cameras);
+      report_.sharpened_vertices = std::int64_t(sharpen_edges(
+          sharpen_, in_.grid.voxel_size, std::max(detail, in_.grid.voxel_size), mesh));
     }
     return mesh;
   }
@@ -490,15 +314,15 @@ class Job {
     const bool silhouettes = options_.effective_method() == Method::kHull;
     std::vector<render::PooledEvidence> evidence;
     photohull::bake_colour(
-        *context_, grid_, *images_, cameras_, report_.noise_sigma,
+        *context_, in_.grid, *images_, in_.cameras, report_.noise_sigma,
         silhouettes ? render::Shaping::kSilhouettes : render::Shaping::kPhotographs, mesh,
         progress_, nullptr, options_.evidence ? &evidence : nullptr);
     if (options_.evidence) write_evidence(mesh, evidence, files);
     const auto unseen = std::count(mesh.confidence.begin(), mesh.confidence.end(), 0.0f);
     report_.unseen_share = double(unseen) / double(mesh.confidence.size());
     if (report_.unseen_share > 0.5)
-      warn(concat(std::lround(100 * report_.unseen_share),
-                  " % of the surface is seen by no camera: it is the hull's guess"));
+      in_.warn(concat(std::lround(100 * report_.unseen_share),
+                      " % of the surface is seen by no camera: it is the hull's guess"));
   }
 
   void write_evidence(const TriMesh& mesh, const std::vector<render::PooledEvidence>& evidence,
@@ -514,17 +338,17 @@ class Job {
 
   void judge(const TriMesh& mesh) {
     const assess::Signals signals = gather_signals({.mesh = &mesh,
-                                                    .box = &*scene_.box,
-                                                    .voxel_size = grid_.voxel_size,
-                                                    .views = views_,
-                                                    .silhouettes = silhouette_distances_,
+                                                    .box = &*in_.scene.box,
+                                                    .voxel_size = in_.grid.voxel_size,
+                                                    .views = in_.views,
+                                                    .silhouettes = in_.silhouettes,
                                                     .mask_confidence = report_.mask_confidence,
-                                                    .contradiction = contradiction_,
-                                                    .cameras_moved = cameras_moved_});
+                                                    .contradiction = in_.contradiction,
+                                                    .cameras_moved = in_.cameras_moved});
     std::vector<std::string> names;
-    for (const View& view : views_) names.push_back(view.name);
+    for (const View& view : in_.views) names.push_back(view.name);
     report_.verdict = assess::judge(signals, names);
-    report_.verdict_json = to_json(report_.verdict, signals, views_);
+    report_.verdict_json = to_json(report_.verdict, signals, in_.views);
   }
 
   /// After colouring, which tells what is seen, and before simplification, which keeps the border.
@@ -537,7 +361,7 @@ class Job {
   }
 
   void simplify(TriMesh& mesh) {
-    const double voxel = grid_.voxel_size;
+    const double voxel = in_.grid.voxel_size;
     const double error = options_.mesh_error.value * (options_.mesh_error.world_units ? 1 : voxel);
     TriMesh simple = simplify_mesh(mesh, error);
     progress_.check_cancelled();
@@ -549,10 +373,10 @@ class Job {
 
   void write(const SparseVolume& volume, const VolumeAttributes& attributes, const TriMesh& mesh,
              ResultFiles& files) {
-    if (vdb_unit(grid_.voxel_size) != 1)
-      warn(concat("volume.vdb counts in ", vdb_unit(grid_.voxel_size),
-                  " scene units (its metadata scene_unit): OpenVDB has no voxels as small as ",
-                  grid_.voxel_size));
+    if (vdb_unit(in_.grid.voxel_size) != 1)
+      in_.warn(concat("volume.vdb counts in ", vdb_unit(in_.grid.voxel_size),
+                      " scene units (its metadata scene_unit): OpenVDB has no voxels as small as ",
+                      in_.grid.voxel_size));
     write_vdb(files.open("volume.vdb"), volume, attributes, {{"photohull_options", option_line()}});
     progress_.check_cancelled();
     write_ply(files.open("mesh.ply"), mesh);
@@ -560,13 +384,13 @@ class Job {
 
   /// The other photographs' pixels have done their work; memory peaks in the stages to come.
   void keep_only_preview_photograph(const TriMesh& mesh) {
-    const int kept = render::choose_main_view(mesh, views_);
-    for (int i = 0; i < int(views_.size()); ++i)
-      if (i != kept) std::vector<std::uint8_t>().swap(views_[i].image.bytes);
+    const int kept = render::choose_main_view(mesh, in_.views);
+    for (int i = 0; i < int(in_.views.size()); ++i)
+      if (i != kept) std::vector<std::uint8_t>().swap(in_.views[i].image.bytes);
   }
 
   void write_preview(const TriMesh& mesh, ResultFiles& files) {
-    const PreviewImage preview = render_preview(*context_, mesh, views_);
+    const PreviewImage preview = render_preview(*context_, mesh, in_.views);
     io::write_png(files.open("preview.png"), preview.width, preview.height, 3, preview.rgb);
   }
 
@@ -597,15 +421,9 @@ class Job {
   Progress& progress_;
   Report report_;
   StageClock clock_;
-  Scene scene_;
-  GridSpec grid_;
-  std::vector<View> views_;
-  std::vector<Camera> cameras_;
+  Inputs in_;
   std::unique_ptr<gpu::Context> context_;
   std::unique_ptr<projtex::ImageSet> images_;
-  std::vector<SilhouetteDistance> silhouette_distances_;
-  double contradiction_ = 0;  ///< of the silhouettes that are used
-  double cameras_moved_ = 0;  ///< pixels
   SharpenOptions sharpen_;
   std::int64_t hull_samples_ = 0, photo_samples_ = 0, refine_samples_ = 0;
 };

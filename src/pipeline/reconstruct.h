@@ -48,7 +48,8 @@ struct ReconstructOptions {
   std::optional<double> voxel_size;  ///< world units, > 0; excludes `resolution`
   Quality quality = Quality::kNormal;
   std::optional<Method> method;  ///< default: hull for draft, refine otherwise
-  RefineCameras refine_cameras = RefineCameras::kOff;
+  /// Default: off for draft; else kAuto where masks' outlines disagree (calib/refine_cameras.h).
+  std::optional<RefineCameras> refine_cameras;
   Photometric photometric = Photometric::kOff;
   /// Pixels by which outlines lie outside the masks'; nothing: measured (calib/mask_bias.h).
   std::optional<double> mask_offset;

@@ -165,8 +165,8 @@ NamedValues named_options(const ReconstructOptions& options) {
   if (options.voxel_size) list.emplace_back("voxel_size", number(*options.voxel_size));
   if (!options.load.views.empty()) list.emplace_back("views", options.load.views);
   if (!options.load.hold_out.empty()) list.emplace_back("hold_out", options.load.hold_out);
-  if (options.refine_cameras != RefineCameras::kOff)
-    list.emplace_back("refine_cameras", to_string(options.refine_cameras));
+  if (options.refine_cameras)
+    list.emplace_back("refine_cameras", to_string(*options.refine_cameras));
   if (options.photometric != Photometric::kOff)
     list.emplace_back("photometric", to_string(options.photometric));
   list.emplace_back("mesh_error",

@@ -1,6 +1,7 @@
 #include "pipeline/report.h"
 
 #include <sys/resource.h>
+#include <cmath>
 
 #include <nlohmann/json.hpp>
 
@@ -24,6 +25,7 @@ std::string Report::to_json() const {
   j["box"] = {
       {"min", to_json_array(box.min)}, {"max", to_json_array(box.max)}, {"source", box_source}};
   j["masks"] = {{"source", mask_source}, {"confidence", mask_confidence}, {"offset", mask_offset}};
+  if (std::isfinite(mask_disagreement)) j["masks"]["disagreement"] = mask_disagreement;
   j["masks"]["views"] = ordered_json::array();
   for (const MaskReport& m : masks)
     j["masks"]["views"].push_back(

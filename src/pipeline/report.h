@@ -1,6 +1,7 @@
 // What a reconstruction did, as report.json tells it (docs/report.md).
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -73,6 +74,8 @@ struct Report {
   std::string box_source;
   std::string mask_source;
   double mask_confidence = 0;
+  /// Pixels (calib/refine_cameras.h, tangent_disagreement); NaN where it was not looked at.
+  double mask_disagreement = NAN;
   double mask_offset = 0;         ///< pixels by which the masks' outlines were moved outward
   std::vector<MaskReport> masks;  ///< of each view
   std::string camera_refinement;  ///< JSON (pipeline/refine_cameras.h); empty: not asked for

@@ -30,6 +30,16 @@ class CamerasCommand : public SphereScene {
       }
     return worst;
   }
+
+  /// The scene file's, each in another direction.
+  void put_cameras_off() {
+    for (std::size_t v = 0; v < scene_.views.size(); ++v)
+      scene_.views[v].camera.cam_from_world.translation +=
+          0.02 * glm::dvec3(std::sin(3.0 * double(v)), std::cos(5.0 * double(v)), 0);
+    write_scene_file();
+  }
+
+  json report() const { return json::parse(read_bytes(out() + "/report.json")); }
 };
 
 TEST_F(CamerasCommand, ConvertedScenesAreUnderstood) {
@@ -65,24 +75,38 @@ TEST_F(CamerasCommand, CamerasThatAreRightStayWhereTheyAre) {
 }
 
 TEST_F(CamerasCommand, CamerasThatAreWrongComeNearer) {
-  Scene wrong = scene_;
-  for (std::size_t v = 0; v < wrong.views.size(); ++v) {
-    glm::dvec3& t = wrong.views[v].camera.cam_from_world.translation;
-    t += 0.02 * glm::dvec3(std::sin(3.0 * double(v)), std::cos(5.0 * double(v)), 0);
-  }
-  std::swap(wrong, scene_);
-  write_scene_file();
-  const double before = apart(wrong, scene_);
+  const Scene right = scene_;
+  put_cameras_off();
+  const double before = apart(right, scene_);
   succeed({"refine-cameras", scene(), "--masks", path("cutouts"), "--out", out()});
   ASSERT_GT(before, 0.5);
-  EXPECT_LT(apart(wrong, load(out())), 0.7 * before);
+  EXPECT_LT(apart(right, load(out())), 0.7 * before);
+}
+
+TEST_F(CamerasCommand, ReconstructRefinesThemWhereOutlinesDisagree) {
+  succeed(reconstruct({}));
+  EXPECT_LT(report()["masks"]["disagreement"], 0.3);
+  EXPECT_FALSE(report().contains("camera_refinement"));
+  put_cameras_off();
+  const Finished run = succeed(reconstruct({}));
+  EXPECT_THAT(run.err, HasSubstr("the cameras were refined"));
+  EXPECT_GT(report()["masks"]["disagreement"], 0.3);
+  const json found = report()["camera_refinement"];
+  EXPECT_EQ(found["used"], true);
+  EXPECT_LT(found["tangents_after"], 0.8 * double(found["tangents_before"]));
+  for (const Arguments& option :
+       {Arguments{"--refine-cameras", "off"}, {"--quality", "draft"}, {"--masks", "none"}}) {
+    Arguments all = option;
+    all.insert(all.end(), {"--method", "hull"});
+    succeed(reconstruct(all));
+    EXPECT_FALSE(report().contains("camera_refinement")) << option[0];
+  }
 }
 
 TEST_F(CamerasCommand, ReconstructRefinesThem) {
   succeed(reconstruct({"--refine-cameras", "poses"}));
-  const json report = json::parse(read_bytes(out() + "/report.json"));
-  EXPECT_TRUE(report.contains("camera_refinement"));
-  EXPECT_EQ(report["options"]["refine_cameras"], "poses");
+  EXPECT_TRUE(report().contains("camera_refinement"));
+  EXPECT_EQ(report()["options"]["refine_cameras"], "poses");
   fail(2, reconstruct({"--refine-cameras", "perhaps"}),
        {"--refine-cameras perhaps", "poses+intrinsics"});
 }

@@ -48,7 +48,7 @@ TEST_F(Reconstruct, ReportHasTheDocumentedFields) {
     "cpu_seconds": 0.1, "peak_memory_bytes": 1, "warnings": [], "files": [], "stages": [],
     "left_out": [], "verdict": {"level": "good"},
     "options": {}, "scene": {"path": "", "format": "", "views": 1},
-    "box": {"min": [], "max": [], "source": ""}, "masks": {"source": "", "confidence": 0.1, "offset": 0.1},
+    "box": {"min": [], "max": [], "source": ""}, "masks": {"source": "", "confidence": 0.1, "offset": 0.1, "disagreement": 0.1},
     "grid": {"origin": [], "voxel_size": 0.1, "voxels": [], "bricks_stored": 1},
     "hull": {"nodes_tested": 1, "bricks_evaluated": 1},
     "photo": {"sweeps": 1, "voxels_judged": 1, "voxels_carved": 1, "voxels_undecided": 1},
@@ -72,8 +72,8 @@ TEST_F(Reconstruct, ReportHasTheDocumentedFields) {
   EXPECT_EQ(r["mesh"]["triangles"], mesh().triangles.size());
   std::vector<std::string> stages;
   for (const json& stage : r["stages"]) stages.push_back(stage["name"]);
-  EXPECT_THAT(stages, ElementsAre("scene", "device", "views", "hull", "images", "refine", "clean",
-                                  "mesh", "colour", "verdict", "files", "preview"));
+  EXPECT_THAT(stages, ElementsAre("scene", "device", "views", "cameras", "hull", "images", "refine",
+                                  "clean", "mesh", "colour", "verdict", "files", "preview"));
 }
 
 TEST_F(Reconstruct, MeshErrorLeavesFewerTriangles) {

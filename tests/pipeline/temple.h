@@ -28,6 +28,7 @@ inline Reconstruction reconstruct_temple(int resolution, Method method,
   options.method = method;
   options.load.box = box;
   options.device = "software";
+  options.refine_cameras = RefineCameras::kOff;  // what the cameras as they are lead to
   Progress silent;
   Reconstruction result;
   result.report = reconstruct(options, silent);

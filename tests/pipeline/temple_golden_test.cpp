@@ -12,7 +12,7 @@ TEST(TempleGolden, HullKeepsItsVolume) {
   EXPECT_NEAR(double(hull.report.voxels_kept), 65488, 0.005 * 65488);
   EXPECT_NEAR(double(hull.report.triangles), 44648, 0.02 * 44648);
   EXPECT_EQ(hull.report.mask_source, "background model");
-  EXPECT_GT(hull.report.mask_confidence, 0.8);
+  EXPECT_NEAR(hull.report.mask_confidence, 0.52, 0.05);  // the least of the views'
 }
 
 TEST(TempleGolden, SpaceCarvingTakesAFewPercentOfTheHullAndAddsNothing) {

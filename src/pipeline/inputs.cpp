@@ -1,0 +1,220 @@
+#include "pipeline/inputs.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "assess/wrong_views.h"
+#include "calib/crop.h"
+#include "calib/mask_bias.h"
+#include "calib/noise.h"
+#include "calib/prepare_views.h"
+#include "calib/refine_cameras.h"
+#include "carving/fit_grid.h"
+#include "carving/object_box.h"
+#include "core/error.h"
+#include "io/image_file.h"
+#include "pipeline/checks.h"
+#include "pipeline/mask_policy.h"
+#include "pipeline/self_check.h"
+#include "projtex/gpu_views.h"
+
+namespace photohull::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kOversized = 1.8;   // times the object's box: the box is made smaller
+constexpr int kCropMargin = 24;      // pixels around the box's projection: patches, mip levels
+constexpr double kSuspicious = 0.3;  // pixels between outlines' tangents: cameras look wrong
+
+double rounded(double pixels) { return std::round(100 * pixels) / 100; }
+
+double longest_side(const Box& box) {
+  const glm::dvec3 size = box.size();
+  return std::max({size.x, size.y, size.z});
+}
+
+double voxel_size_of(const ReconstructOptions& options, const Box& box,
+                     std::span<const Camera> cameras) {
+  if (options.resolution) return carving::voxel_size_for(box, *options.resolution);
+  const double largest = carving::voxel_size_for(box, 2);
+  if (options.voxel_size) {
+    if (*options.voxel_size > largest)
+      throw UsageError(concat("--voxel-size ", *options.voxel_size, ": at most ", largest,
+                              ", half of the box's longest side"));
+    return *options.voxel_size;
+  }
+  const double footprint = carving::pixel_footprint(box, cameras);
+  if (!(footprint > 0)) throw Error("no camera has the box's centre in front of it");
+  const double size = footprint * footprint_factor(options.quality);
+  if (size > largest)
+    throw Error(concat("a pixel is ", footprint,
+                       " world units large at the box's centre, too much for a box whose longest "
+                       "side is ",
+                       2 * largest, "; check the box's units, or give --voxel-size"));
+  return size;
+}
+
+std::vector<Camera> cameras_of(std::span<const SourceView> views) {
+  std::vector<Camera> cameras;
+  for (const SourceView& view : views) cameras.push_back(view.camera);
+  return cameras;
+}
+
+double median_noise(std::span<const View> views) {
+  std::vector<double> values(views.size());
+  tbb::parallel_for(std::size_t(0), views.size(),
+                    [&](std::size_t i) { values[i] = estimate_image_noise(views[i].image); });
+  std::nth_element(values.begin(), values.begin() + long(values.size() / 2), values.end());
+  // Quantisation to 8 bits alone leaves about this much.
+  return std::max(values[values.size() / 2], 1.0 / 255 / std::sqrt(12.0));
+}
+
+}  // namespace
+
+void Inputs::warn(const std::string& text) {
+  report_.warnings.push_back(text);
+  progress_.warn(text);
+}
+
+void Inputs::load() {
+  scene = io::load_scene(options_.scene, options_.load);
+  report_.scene = scene.path.string();
+  report_.format = to_string(scene.format);
+  report_.views = int(scene.views.size());
+  for (const std::string& text : scene.warnings) warn(text);
+  if (!scene.box)
+    throw Error(concat(scene.path.string(),
+                       ": nothing tells where the object is: give --box "
+                       "\"x0 y0 z0 x1 y1 z1\" or a bbox.txt beside the scene"));
+  report_.box = *scene.box;
+  report_.box_source = scene.box_source;
+  for (const std::string& text : check_box(*scene.box, scene.box_source, scene.views)) warn(text);
+  // Else the voxels' size follows the box, which may become smaller.
+  if (options_.resolution || options_.voxel_size) check_memory(lattice(cameras_of(scene.views)));
+}
+
+/// A box that is much larger than the object would waste the voxels, and far from the object few
+/// views see what silhouettes do not reject.
+void Inputs::tighten_box() {
+  if (!carving::box_is_oversized(*scene.box, views)) return;
+  const Box box = carving::object_box(*scene.box, views);
+  const double factor = longest_side(*scene.box) / longest_side(box);
+  if (factor < kOversized) return;
+  warn(concat("the box from ", scene.box_source, " is ", std::round(10 * factor) / 10,
+              " times larger than what the silhouettes leave: the object's own box is taken, "
+              "and --resolution counts along that"));
+  scene.box = report_.box = box;
+  scene.box_source = report_.box_source += ", made smaller by the silhouettes";
+}
+
+GridSpec Inputs::lattice(std::span<const Camera> cameras) const {
+  return carving::fit_grid(*scene.box, voxel_size_of(options_, *scene.box, cameras));
+}
+
+void Inputs::fit_grid() {
+  check_cameras_outside(*scene.box, scene.box_source, scene.views);
+  cameras = projtex::cameras_of(views);
+  grid = lattice(cameras);
+  check_memory(grid);
+  report_.grid = grid;
+}
+
+void Inputs::prepare() {
+  const ViewLoader loader{[](const fs::path& path) { return io::read_image(path); },
+                          [](const fs::path& path) { return io::read_mask(path); }};
+  PrepareOptions prepare_options;
+  prepare_options.masks = mask_policy(options_.load.masks);
+  PreparedViews prepared = prepare_views(scene, loader, prepare_options, progress_);
+  views = std::move(prepared.views);
+  report_.noise_sigma = median_noise(views);
+  for (const std::string& text : prepared.warnings) warn(text);
+  report_.mask_source = prepared.mask_source;
+  report_.mask_confidence = prepared.mask_confidence;
+  for (std::size_t i = 0; i < views.size(); ++i)
+    report_.masks.push_back(
+        {views[i].name, prepared.masks[i].source, prepared.masks[i].confidence});
+}
+
+void Inputs::refine_cameras() {
+  const bool asked = options_.refine_cameras.has_value();
+  if (!asked) {
+    report_.mask_disagreement = tangent_disagreement(views);
+    if (!(report_.mask_disagreement > kSuspicious)) return;
+  }
+  RefineCamerasOptions o;
+  if (options_.refine_cameras == RefineCameras::kPosesAndIntrinsics)
+    o.intrinsics = SharedIntrinsics::kAll;
+  o.given = undistorted_tracks(scene, views);
+  o.box = scene.box;
+  const CameraRefinement found = photohull::refine_cameras(views, o, progress_);
+  const bool always = asked && options_.refine_cameras != RefineCameras::kAuto;
+  const bool use = found.changed && (always || pays(found));
+  report_.camera_refinement = to_json(found, scene, use);
+  if (!use) return;
+  if (!asked)
+    warn(concat("the masks' outlines disagree by ", rounded(report_.mask_disagreement),
+                " px: the cameras were refined, and what they see agrees to ",
+                rounded(found.all.observations ? found.all.after : found.tangents_after),
+                " px instead of ",
+                rounded(found.all.observations ? found.all.before : found.tangents_before),
+                " (--refine-cameras off takes them as they are)"));
+  cameras_moved = found.moved;
+  apply(found, scene);
+  for (std::size_t i = 0; i < views.size(); ++i) views[i].camera = found.cameras[i];
+}
+
+void Inputs::crop() {
+  for (View& view : views) crop_to_box(scene.box.value(), kCropMargin, view);
+  cameras = projtex::cameras_of(views);
+}
+
+bool Inputs::any_mask() const {
+  return std::any_of(views.begin(), views.end(), [](const View& v) { return !v.mask.empty(); });
+}
+
+void Inputs::measure_silhouettes() {
+  silhouettes.resize(views.size());
+  tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
+    if (!views[i].mask.empty()) silhouettes[i] = silhouette_distance(views[i].mask);
+  });
+}
+
+/// Masks that are all too small carve the object itself away.
+void Inputs::correct_masks() {
+  double offset = options_.mask_offset.value_or(0);
+  if (!options_.mask_offset) {
+    const MaskBias bias = measure_mask_bias(views, silhouettes);
+    if (bias.counts()) offset = bias.pixels;
+  }
+  report_.mask_offset = offset;
+  if (offset == 0) return;
+  if (!options_.mask_offset)
+    warn(concat("the masks are about ", std::round(10 * std::abs(offset)) / 10, " px too ",
+                offset > 0 ? "small" : "large",
+                ": outlines are taken from where the photographs' edges are (--mask-offset 0 "
+                "takes the masks as they are)"));
+  for (std::size_t i = 0; i < views.size(); ++i)
+    if (!views[i].mask.empty()) move_outline(offset, views[i].mask, silhouettes[i]);
+}
+
+/// One view that is far off carves away what all others have.
+void Inputs::leave_out_wrong_views() {
+  const assess::SilhouetteConsistency found =
+      assess::find_wrong_views(*scene.box, cameras, pointers(silhouettes));
+  contradiction = found.uncovered_left;
+  for (auto i = found.wrong.rbegin(); i != found.wrong.rend(); ++i) {
+    warn(concat("view ", views[*i].name,
+                " is left out: without it the other views' silhouettes agree; check its camera "
+                "and its mask"));
+    report_.left_out.push_back(views[*i].name);
+    views.erase(views.begin() + *i);
+    scene.views.erase(scene.views.begin() + *i);
+    cameras.erase(cameras.begin() + *i);
+    silhouettes.erase(silhouettes.begin() + *i);
+  }
+}
+
+}  // namespace photohull::pipeline

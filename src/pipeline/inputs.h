@@ -1,0 +1,53 @@
+// What a job works on: photographs, cameras, silhouettes and the lattice, read, checked and mended.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "calib/silhouette.h"
+#include "core/grid.h"
+#include "core/progress.h"
+#include "core/scene.h"
+#include "pipeline/reconstruct.h"
+
+namespace photohull::pipeline {
+
+/// The stages before the hull, in the order of their declaration; each fills the members that it is
+/// named for, and the report. They throw Error, UsageError or Cancelled.
+class Inputs {
+ public:
+  Inputs(const ReconstructOptions& options, Report& report, Progress& progress)
+      : options_(options), report_(report), progress_(progress) {}
+
+  void load();
+  void prepare();
+  /// By default only where silhouettes tell at once that the cameras disagree.
+  void refine_cameras();
+  void tighten_box();
+  void fit_grid();
+  void crop();
+  void measure_silhouettes();
+  void correct_masks();
+  void leave_out_wrong_views();
+
+  bool any_mask() const;
+  void warn(const std::string& text);
+
+  Scene scene;
+  GridSpec grid;
+  std::vector<View> views;  ///< undistorted, and from crop() on around the box alone
+  std::vector<Camera> cameras;
+  std::vector<SilhouetteDistance> silhouettes;
+  double contradiction = 0;  ///< share of the silhouettes' rays that other silhouettes leave empty
+  double cameras_moved = 0;  ///< by refinement, pixels
+
+ private:
+  GridSpec lattice(std::span<const Camera> cameras) const;
+
+  const ReconstructOptions& options_;
+  Report& report_;
+  Progress& progress_;
+};
+
+}  // namespace photohull::pipeline
