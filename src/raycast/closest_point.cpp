@@ -11,7 +11,7 @@
 
 #include "core/error.h"
 #include "raycast/check_mesh.h"
-#include "raycast/commit_scene.h"
+#include "raycast/scene_builder.h"
 
 namespace photohull {
 namespace {
@@ -63,6 +63,7 @@ struct ClosestPoint::Data {
   std::vector<glm::vec3> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   glm::dvec3 origin{0.0};
+  SceneBuilder builder;
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
 
@@ -88,7 +89,7 @@ void ClosestPoint::Data::build() {
     std::memcpy(faces, triangles.data(), triangles.size() * 3 * sizeof(std::uint32_t));
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene, geometry);
-    commit_scene(scene);
+    builder.commit(scene);
   }
   rtcReleaseGeometry(geometry);
   const RTCError failure = rtcGetDeviceError(device);

@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 #include "raycast/check_mesh.h"
-#include "raycast/commit_scene.h"
+#include "raycast/scene_builder.h"
 
 namespace photohull {
 namespace {
@@ -48,6 +48,7 @@ RTCIntersectContext coherent_context() {
 }  // namespace
 
 struct RayScene::Device {
+  SceneBuilder builder;
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
 
@@ -76,7 +77,7 @@ struct RayScene::Device {
                   mesh.triangles.size() * 3 * sizeof(std::uint32_t));
       rtcCommitGeometry(geometry);
       rtcAttachGeometry(scene, geometry);
-      commit_scene(scene);
+      builder.commit(scene);
     }
     rtcReleaseGeometry(geometry);
     const RTCError failure = rtcGetDeviceError(device);
