@@ -121,7 +121,7 @@ void add_reconstruct(CLI::App& app) {
                 "refine)");
   c->add_option("--sampler", a->sampler,
                 "sweeps: mipmap, centroid, nearest, bilinear, trilinear, trilinear-derivative, "
-                "ripmap, summed-area, anisotropic, hardware or ewa (default: mipmap)");
+                "ripmap, summed-area, anisotropic, hardware or ewa (default: anisotropic)");
   c->add_option("--supersample", a->supersample,
                 "sweeps: N x N samples a voxel, 1 to 8 (default: 1)");
   c->add_option("--consistency", a->consistency,

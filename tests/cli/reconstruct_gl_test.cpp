@@ -217,7 +217,7 @@ TEST_F(Reconstruct, SweepsSampleAndCompareAsTold) {
   EXPECT_EQ(report()["photo"]["consistency"], "robust-variance");
   EXPECT_NEAR(signed_volume(mesh()), kSphereVolume, 0.1 * kSphereVolume);
   succeed(reconstruct({"--method", "voxel-coloring"}));
-  EXPECT_EQ(report()["photo"]["sampler"], "mipmap");
+  EXPECT_EQ(report()["photo"]["sampler"], "anisotropic");
   EXPECT_EQ(report()["photo"]["consistency"], "zncc");
 }
 
