@@ -66,7 +66,9 @@ TEST_F(FileFaults, ARerunGivesTheRightFiles) {
   for (const Arguments& job : {hull(), synthesize()}) {
     const Fault fault = writing("write", ENOSPC, true);
     const Reference right = run_without(job, fault);
-    EXPECT_EQ(run_with(job, fault, right.calls / 2).code, 1);
+    // Of the synthesis this is in parallel tasks that cast rays, which once crashed after a
+    // failure.
+    EXPECT_EQ(run_with(job, fault, right.calls / 4).code, 1);
     succeed(job);
     expect_all_files(right.files);
     std::filesystem::remove_all(out());

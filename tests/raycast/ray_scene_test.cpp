@@ -136,22 +136,5 @@ TEST(RayScene, IsBuiltWhileATaskBesideItFails) {
         Error);
 }
 
-// Tasks that fail later look at the contexts of all that lives.
-TEST(RayScene, LivesOnWhileTasksFail) {
-  const TriMesh mesh = triangle_soup(300);
-  const RayScene rays(mesh);
-  const ClosestPoint surface(mesh);
-  for (std::size_t i = 0; i < 50; ++i)
-    EXPECT_THROW(tbb::parallel_for(std::size_t(0), std::size_t(8),
-                                   [&](std::size_t task) {
-                                     tbb::parallel_for(0, 64, [&](int) {
-                                       rays.occluded(mesh.origin, glm::dvec3(1), 0, 1);
-                                     });
-                                     if (task == i % 8) throw Error("a task's");
-                                   }),
-                 Error);
-  EXPECT_LT(surface.nearest(mesh.world(0)).distance, 1e-6);
-}
-
 }  // namespace
 }  // namespace photohull
