@@ -59,7 +59,8 @@ std::vector<Peak> find_peaks(const Matches& matches, const PeakOptions& options)
     std::size_t best = 0;
     for (std::size_t o = 1; o + 1 < k; ++o)
       if (s[o] >= s[o - 1] && s[o] > s[o + 1] && (best == 0 || s[o] > s[best])) best = o;
-    if (best == 0 || s[best] < options.least_score) return;
+    const double score = s[best] / std::max(double(matches.texture[i]), options.least_texture);
+    if (best == 0 || score < options.least_score) return;
     float second = -1;
     for (std::size_t o = 0; o < k; ++o) {
       if (o + 1 >= best && o <= best + 1) continue;
@@ -69,8 +70,7 @@ std::vector<Peak> find_peaks(const Matches& matches, const PeakOptions& options)
     const double curvature = s[best - 1] - 2.0 * s[best] + s[best + 1];
     const double shift =
         curvature < 0 ? std::clamp(0.5 * (s[best - 1] - s[best + 1]) / curvature, -0.5, 0.5) : 0;
-    const double sure =
-        (s[best] - options.least_score) / (options.sure_score - options.least_score);
+    const double sure = (score - options.least_score) / (options.sure_score - options.least_score);
     const double lead = (s[best] - second) / options.distinct_by;
     const double sharp = -curvature / 0.05;
     peaks[i].offset = float(matches.range.at(double(best) + shift));

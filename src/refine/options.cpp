@@ -54,6 +54,7 @@ void check(const SettleOptions& o) {
 void check(const RimOptions& o) {
   require(o.weight >= 0 && o.weight <= 1000, "rims.weight must lie in [0, 1000]");
   require(o.reach > 0 && is_length(o.reach), "rims.reach must lie in (0, 1000] voxels");
+  require(o.told > 0 && o.told <= 1000, "rims.told must lie in (0, 1000]");
 }
 
 void check(const MatchOptions& o) {
@@ -79,6 +80,7 @@ void check(const PeakOptions& o) {
           "peak.least_score must lie below peak.sure_score, both in [-1, 1]");
   require(o.thick > 0 && is_length(o.thick), "peak.thick must lie in (0, 1000] voxels");
   require(o.distinct_by > 0, "peak.distinct_by must be positive");
+  require(o.least_texture > 0 && o.least_texture <= 1, "peak.least_texture must lie in (0, 1]");
 }
 
 void check(const FitOptions& o) {

@@ -7,14 +7,37 @@
 
 namespace photohull::refine {
 
-void pull_to_hull(const SparseVolume& hull, std::span<const glm::vec3> positions,
-                  std::span<const float> texture, const RimOptions& options,
-                  std::vector<Peak>& peaks) {
+namespace {
+
+constexpr int kRounds = 10;  // of averaging with the neighbours: three or four voxels around
+
+/// Weights of the peaks, none counted for more than 1, averaged over the surface around.
+std::vector<float> evidence_around(const VertexGraph& graph, const std::vector<Peak>& peaks) {
+  std::vector<float> mean(peaks.size()), next(peaks.size());
+  for (std::size_t i = 0; i < peaks.size(); ++i) mean[i] = std::min(peaks[i].weight, 1.0f);
+  for (int round = 0; round < kRounds; ++round) {
+    tbb::parallel_for(std::size_t(0), peaks.size(), [&](std::size_t i) {
+      float sum = mean[i];
+      for (const std::uint32_t j : graph.of(i)) sum += mean[j];
+      next[i] = sum / float(1 + graph.of(i).size());
+    });
+    mean.swap(next);
+  }
+  return mean;
+}
+
+}  // namespace
+
+void pull_to_hull(const SparseVolume& hull, const VertexGraph& graph,
+                  std::span<const glm::vec3> positions, std::span<const float> texture,
+                  const RimOptions& options, std::vector<Peak>& peaks) {
+  const std::vector<float> told = evidence_around(graph, peaks);
   tbb::parallel_for(std::size_t(0), peaks.size(), [&](std::size_t i) {
     const float under = float(-hull.interpolated(glm::dvec3(positions[i])));
     const float share = 1 - std::clamp(under, 0.0f, float(options.reach)) / float(options.reach);
     Peak& peak = peaks[i];
-    const float weight = float(options.weight) * share * (1 - texture[i]);
+    const float open = std::max(0.0f, 1 - told[i] / float(options.told));
+    const float weight = float(options.weight) * share * open * (1 - texture[i]);
     if (!(weight > 0)) return;
     peak.offset = (peak.weight * peak.offset + weight * under) / (peak.weight + weight);
     peak.weight += weight;

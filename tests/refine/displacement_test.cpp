@@ -27,6 +27,7 @@ Matches matches_of(const std::vector<std::vector<float>>& curves, double first =
                    double step = 0.5) {
   Matches out;
   out.range = {first, step, int(curves.front().size())};
+  out.texture.assign(curves.size(), 1);
   for (const auto& curve : curves) out.scores.insert(out.scores.end(), curve.begin(), curve.end());
   return out;
 }
@@ -104,6 +105,17 @@ TEST(FindPeaks, WeightGrowsWithScoreLeadAndSharpness) {
   const float blunt = peak_of(parabola(0, 0.9, 0.05)).weight;
   EXPECT_LT(blunt, 0.5);
   EXPECT_GT(blunt, 0);
+}
+
+// Correlations of patches whose variance is half noise reach one half at best.
+TEST(FindPeaks, NoiseThatIsKnownIsTakenOffTheScore) {
+  Matches m =
+      matches_of({parabola(0, 0.4, 0.4), parabola(0, 0.4, 0.4), parabola(0, 0.4, 0.4)}, -1.5);
+  m.texture = {1, 0.6f, 0.1f};
+  const std::vector<Peak> peaks = find_peaks(m, {});
+  EXPECT_NEAR(peaks[1].weight / peaks[0].weight, (0.4 / 0.6 - 0.3) / (0.4 - 0.3), 0.01);
+  EXPECT_NEAR(peaks[2].weight / peaks[0].weight, (0.4 / 0.5 - 0.3) / (0.4 - 0.3), 0.01);
+  EXPECT_FLOAT_EQ(peaks[2].score, 0.4f);
 }
 
 TEST(FindPeaks, TheBestOfSeveral) {

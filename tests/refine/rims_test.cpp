@@ -30,7 +30,8 @@ SparseVolume ball() {
 Peak pulled(float under, const Peak& peak, float texture, const RimOptions& options = {}) {
   const std::vector<vec3> positions = {vec3(12) + (8 - under) * glm::normalize(vec3(1, 2, -0.5))};
   std::vector<Peak> peaks = {peak};
-  pull_to_hull(ball(), positions, {&texture, 1}, options, peaks);
+  const VertexGraph alone{{0, 0}, {}};
+  pull_to_hull(ball(), alone, positions, {&texture, 1}, options, peaks);
   return peaks[0];
 }
 
@@ -47,11 +48,29 @@ TEST(PullToHull, WhatLiesDeeperIsNotItsBusiness) {
 }
 
 TEST(PullToHull, TheMoreTextureTheLess) {
-  const Peak evidence = {-0.5f, 1, 0.9f};
+  const Peak evidence = {-0.5f, 0.5f, 0.9f};
   EXPECT_FLOAT_EQ(pulled(0.2f, evidence, 1).offset, -0.5f);
   EXPECT_NEAR(pulled(0.2f, evidence, 0.99f).offset, -0.5, 0.03);
   EXPECT_GT(pulled(0.2f, evidence, 0).offset, pulled(0.2f, evidence, 0.5f).offset);
   EXPECT_GT(pulled(0.2f, evidence, 0.5f).offset, -0.3f);
+}
+
+// Three vertices in a row, textureless: what the outer two tell keeps the hull from the middle one.
+TEST(PullToHull, WherePhotographsTellAroundTheHullHasNoSay) {
+  const VertexGraph row{{0, 1, 3, 4}, {1, 0, 2, 1}};
+  const std::vector<vec3> positions(3, vec3(12) + 7.8f * glm::normalize(vec3(1, 2, -0.5)));
+  const std::vector<float> texture(3, 0);
+  const auto middle = [&](float weight_beside) {
+    std::vector<Peak> peaks(3);
+    peaks[0].weight = peaks[2].weight = weight_beside;
+    pull_to_hull(ball(), row, positions, texture, {.told = 0.5}, peaks);
+    return peaks[1];
+  };
+  EXPECT_GT(middle(0).weight, 2);
+  EXPECT_LT(middle(0.3f).weight, 0.7f * middle(0).weight);
+  EXPECT_GT(middle(0.3f).weight, 0);
+  EXPECT_EQ(middle(1).weight, 0);
+  EXPECT_EQ(middle(100).weight, 0);
 }
 
 TEST(PullToHull, NoWeightNoChange) {
