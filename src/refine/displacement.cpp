@@ -59,7 +59,10 @@ std::vector<Peak> find_peaks(const Matches& matches, const PeakOptions& options)
     std::size_t best = 0;
     for (std::size_t o = 1; o + 1 < k; ++o)
       if (s[o] >= s[o - 1] && s[o] > s[o + 1] && (best == 0 || s[o] > s[best])) best = o;
-    const double score = s[best] / std::max(double(matches.texture[i]), options.least_texture);
+    // Noise leaves of a true match's correlation the share of the variance that is texture; where
+    // it explains most of the variance, what correlates may be noise as well.
+    const double texture = matches.texture[i];
+    const double score = s[best] / std::max(texture, 1 - texture);
     if (best == 0 || score < options.least_score) return;
     float second = -1;
     for (std::size_t o = 0; o < k; ++o) {

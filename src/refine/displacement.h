@@ -24,14 +24,12 @@ struct Peak {
 struct PeakOptions {
   double least_score = 0.3;  ///< below: no evidence
   double sure_score = 0.8;   ///< above: full weight
-  /// Noise leaves of a true match's correlation the share of the variance that is texture
-  /// (Matches::texture): scores are divided by it, but by no less than this.
-  double least_texture = 0.5;
   double thick = 4;          ///< voxels of body behind a vertex that give full weight
   double distinct_by = 0.1;  ///< lead over the second peak that gives full weight
 };
 
-/// The best interior maximum of each curve, to a fraction of a step by a parabola.
+/// The best interior maximum of each curve, to a fraction of a step by a parabola. What known noise
+/// takes from a true match's correlation (Matches::texture) is made up for.
 std::vector<Peak> find_peaks(const Matches& matches, const PeakOptions& options);
 
 struct RegularizeOptions {

@@ -80,7 +80,6 @@ void check(const PeakOptions& o) {
           "peak.least_score must lie below peak.sure_score, both in [-1, 1]");
   require(o.thick > 0 && is_length(o.thick), "peak.thick must lie in (0, 1000] voxels");
   require(o.distinct_by > 0, "peak.distinct_by must be positive");
-  require(o.least_texture > 0 && o.least_texture <= 1, "peak.least_texture must lie in (0, 1]");
 }
 
 void check(const FitOptions& o) {

@@ -114,7 +114,7 @@ TEST(FindPeaks, NoiseThatIsKnownIsTakenOffTheScore) {
   m.texture = {1, 0.6f, 0.1f};
   const std::vector<Peak> peaks = find_peaks(m, {});
   EXPECT_NEAR(peaks[1].weight / peaks[0].weight, (0.4 / 0.6 - 0.3) / (0.4 - 0.3), 0.01);
-  EXPECT_NEAR(peaks[2].weight / peaks[0].weight, (0.4 / 0.5 - 0.3) / (0.4 - 0.3), 0.01);
+  EXPECT_NEAR(peaks[2].weight / peaks[0].weight, (0.4 / 0.9 - 0.3) / (0.4 - 0.3), 0.01);
   EXPECT_FLOAT_EQ(peaks[2].score, 0.4f);
 }
 
