@@ -33,12 +33,14 @@ SyntheticScene::SyntheticScene(const std::string& name, int views, int width, in
 SyntheticScene::SyntheticScene(const synth::Spec& spec)
     : truth_(make_scene(spec, folder_ / "scene")) {}
 
-eval::Evaluation SyntheticScene::reconstruct(pipeline::Method method, int resolution) const {
+eval::Evaluation SyntheticScene::reconstruct(pipeline::Method method, int resolution,
+                                             std::optional<projtex::Sampler> sampler) const {
   pipeline::ReconstructOptions options;
   options.scene = folder_ / "scene";
   options.output = folder_ / "result";
   options.resolution = resolution;
   options.method = method;
+  options.sampler = sampler;
   options.device = "software";
   Progress silent;
   pipeline::reconstruct(options, silent);

@@ -1,6 +1,7 @@
 // Scenes of datasets/synthetic, made small, reconstructed, and judged against their exact surface.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "eval/evaluate.h"
@@ -19,8 +20,9 @@ class SyntheticScene {
   explicit SyntheticScene(const synth::Spec& spec);
 
   /// Reconstructs with `resolution` voxels along the box's longest side, in software, and judges
-  /// the mesh over the surface that cameras see.
-  eval::Evaluation reconstruct(pipeline::Method method, int resolution) const;
+  /// the mesh over the surface that cameras see. `sampler`: of the sweeps, if not the default.
+  eval::Evaluation reconstruct(pipeline::Method method, int resolution,
+                               std::optional<projtex::Sampler> sampler = {}) const;
 
  private:
   ScratchFolder folder_;
