@@ -11,9 +11,9 @@
 #include "core/parse_name.h"
 #include "eval/agreement_picture.h"
 #include "io/image_file.h"
-#include "pipeline/mask_policy.h"
 #include "io/load_scene.h"
 #include "io/select_views.h"
+#include "pipeline/mask_policy.h"
 #include "pipeline/photometric.h"
 #include "volume/simplify_mesh.h"
 

@@ -13,16 +13,16 @@
 namespace photohull::assess {
 namespace {
 
-constexpr int kRays = 400;                // a view, about
+constexpr int kRays = 400;               // a view, about
 constexpr double kTolerance = 2;         // pixels, and at least
 constexpr double kTolerantShare = 0.01;  // of the image's longer side
-constexpr double kConsistent = 0.002;     // of the rays may stay empty
-constexpr double kLeastDrop = 0.15;       // of the empty rays, by one view's removal
-constexpr double kLeftOver = 0.4;         // of the rays empty at first, or kConsistent
-constexpr std::size_t kFewestViews = 4;   // that must agree against one
-constexpr double kOutlying = 5;           // times the other views' median gain
-constexpr double kAround = 2;             // sizes of the box: what may stand beside it
-constexpr int kMostSteps = 1024;          // along a ray
+constexpr double kConsistent = 0.002;    // of the rays may stay empty
+constexpr double kLeastDrop = 0.15;      // of the empty rays, by one view's removal
+constexpr double kLeftOver = 0.4;        // of the rays empty at first, or kConsistent
+constexpr std::size_t kFewestViews = 4;  // that must agree against one
+constexpr double kOutlying = 5;          // times the other views' median gain
+constexpr double kAround = 2;            // sizes of the box: what may stand beside it
+constexpr int kMostSteps = 1024;         // along a ray
 
 /// The views that reject a point, one bit each.
 using ViewSet = std::vector<std::uint64_t>;

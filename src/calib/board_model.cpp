@@ -3,8 +3,8 @@
 #include <Eigen/Dense>
 #include <algorithm>
 
-#include "core/median.h"
 #include "core/error.h"
+#include "core/median.h"
 
 namespace photohull {
 

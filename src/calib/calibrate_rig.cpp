@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "calib/board_model.h"
-#include "core/median.h"
 #include "core/error.h"
+#include "core/median.h"
 
 namespace photohull {
 namespace {

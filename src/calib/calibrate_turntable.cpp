@@ -3,8 +3,8 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "calib/board_model.h"
-#include "core/median.h"
 #include "core/error.h"
+#include "core/median.h"
 
 namespace photohull {
 namespace {

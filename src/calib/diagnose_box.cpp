@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "calib/diagnose_parts.h"
-#include "core/median.h"
 #include "calib/triangulate.h"
+#include "core/median.h"
 
 namespace photohull::diagnosis {
 namespace {

@@ -3,8 +3,8 @@
 #include <array>
 
 #include "calib/diagnose_parts.h"
-#include "core/median.h"
 #include "calib/triangulate.h"
+#include "core/median.h"
 
 namespace photohull::diagnosis {
 namespace {

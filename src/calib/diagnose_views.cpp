@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "calib/diagnose_parts.h"
-#include "core/median.h"
 #include "calib/triangulate.h"
+#include "core/median.h"
 
 namespace photohull::diagnosis {
 namespace {

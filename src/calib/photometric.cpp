@@ -13,8 +13,8 @@
 #include <memory>
 #include <numeric>
 
-#include "core/median.h"
 #include "core/error.h"
+#include "core/median.h"
 
 namespace photohull {
 namespace {

@@ -60,11 +60,11 @@ struct PhotoScore {
 struct PhotoAgreement {
   PhotoOptions options;
   std::string result_name, scene, mask_source;  ///< as the caller names them
-  std::string photometric;  ///< how the photographs were made alike; empty: they were not
-  std::size_t lenders = 0;                      ///< photographs that lent colour
-  std::vector<PhotoScore> views;                ///< held out, in the order asked for
-  PhotoScore all;                               ///< sums of them; masked when all are
-  std::optional<std::size_t> worst;             ///< of `views`, by zncc
+  std::string photometric;           ///< how the photographs were made alike; empty: they were not
+  std::size_t lenders = 0;           ///< photographs that lent colour
+  std::vector<PhotoScore> views;     ///< held out, in the order asked for
+  PhotoScore all;                    ///< sums of them; masked when all are
+  std::optional<std::size_t> worst;  ///< of `views`, by zncc
   std::vector<std::string> warnings;
 };
 

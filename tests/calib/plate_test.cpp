@@ -49,7 +49,8 @@ struct Errors {
   int missing = 0, extra = 0;
 };
 
-/// Pixels of the disc (of 4800) that are not in the mask, and pixels `margin` off the disc that are.
+/// Pixels of the disc (of 4800) that are not in the mask, and pixels `margin` off the disc that
+/// are.
 Errors errors(const Mask& mask, double margin = 4) {
   Errors e;
   for (int y = 0; y < kHeight; ++y)
