@@ -93,7 +93,7 @@ cv::Mat expected_deviation(const cv::Mat& image, const cv::Mat& plate) {
   cv::Mat sigma(image.size(), CV_32F);
   for (int y = 0; y < sigma.rows; ++y)
     for (int x = 0; x < sigma.cols; ++x) {
-      const cv::Vec3f p = plate.at<cv::Vec3f>(y, x);
+      const cv::Vec3f& p = plate.at<cv::Vec3f>(y, x);
       const float darkness = std::max(0.0f, 1 - (p[0] + p[1] + p[2]) / (3 * kDark));
       sigma.at<float>(y, x) = std::sqrt(noise * noise + std::pow(kShift * slope(x, y), 2.0f) +
                                         std::pow(kDarkSigma * darkness, 2.0f));
@@ -106,7 +106,7 @@ cv::Mat shadow_depth(const cv::Mat& image, const cv::Mat& plate) {
   cv::Mat depth(image.size(), CV_32F);
   for (int y = 0; y < depth.rows; ++y)
     for (int x = 0; x < depth.cols; ++x) {
-      const cv::Vec3f p = plate.at<cv::Vec3f>(y, x);
+      const cv::Vec3f& p = plate.at<cv::Vec3f>(y, x);
       depth.at<float>(y, x) = p.dot(p) > 0 ? image.at<cv::Vec3f>(y, x).dot(p) / p.dot(p) : 0.0f;
     }
   return depth;
@@ -131,7 +131,7 @@ MaskEvidence compare_with_plate(const ColourImage& image, const ColourImage& pla
   double object = 0, certain = 0;
   for (int y = 0; y < taken.rows; ++y)
     for (int x = 0; x < taken.cols; ++x) {
-      const cv::Vec3f p = plate.at<cv::Vec3f>(y, x), i = taken.at<cv::Vec3f>(y, x);
+      const cv::Vec3f &p = plate.at<cv::Vec3f>(y, x), &i = taken.at<cv::Vec3f>(y, x);
       const float s = sigma.at<float>(y, x), a = depth.at<float>(y, x);
       double distance = kLevels * std::sqrt((i - p).dot(i - p) / 3) / s;
       const float brightness = std::sqrt(p.dot(p) / 3);
