@@ -52,7 +52,7 @@ std::unique_ptr<CLI::App> make_parser() {
   app->footer(
       "Examples:\n"
       "  photohull info datasets/templeSparseRing\n"
-      "  photohull reconstruct datasets/templeSparseRing --out out/temple --refine-cameras auto\n"
+      "  photohull reconstruct datasets/templeSparseRing --out out/temple\n"
       "  photohull reconstruct scan/transforms.json --out out/scan --quality draft\n\n"
       "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 done, but the result failed its own checks,\n"
       "4 the graphics device failed (out of memory, or lost), 130 cancelled.");

@@ -20,7 +20,7 @@ cd "$root"
 scripts/setup.sh
 
 say "" "Reconstructing datasets/templeSparseRing"
-build/release/photohull reconstruct datasets/templeSparseRing --out out/temple --refine-cameras auto || die \
+build/release/photohull reconstruct datasets/templeSparseRing --out out/temple || die \
   "The demo failed; the message above says why. 'build/release/photohull devices' shows whether
 OpenGL works here."
 
