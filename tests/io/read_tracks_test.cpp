@@ -104,5 +104,55 @@ TEST_F(ReadTracks, Nvm) {
   EXPECT_THAT(error_of([&] { load_scene(folder_); }), HasSubstr("the view -1"));
 }
 
+TEST_F(ReadTracks, OpenMvg) {
+  const auto view = [](int key, const char* name, int pose) {
+    return concat(R"({"key":)", key, R"(,"value":{"ptr_wrapper":{"data":{"filename":")", name,
+                  R"(","width":8,"height":6,"id_intrinsic":0,"id_pose":)", pose, "}}}}");
+  };
+  const std::string pose = R"({"rotation":[[1,0,0],[0,1,0],[0,0,1]],"center":[0,0,0]})";
+  const auto model = [&](const std::string& observations) {
+    put("sfm_data.json",
+        R"({"sfm_data_version":"0.3","root_path":"images","views":[)" + view(30, "a.png", 0) + "," +
+            view(31, "b.png", 7) + "," + view(32, "c.png", 0) +
+            R"(],"intrinsics":[{"key":0,"value":{"polymorphic_id":2147483649,"polymorphic_name":)"
+            R"("pinhole","ptr_wrapper":{"id":2147483649,"data":{"width":8,"height":6,)"
+            R"("focal_length":10,"principal_point":[4,3]}}}}],"extrinsics":[{"key":0,"value":)" +
+            pose + R"(}],"structure":[{"key":9,"value":{"X":[0,0,5],"observations":[)" +
+            observations + "]}}]}");
+  };
+  // The second image has no pose.
+  const std::string rest = R"(,{"key":31,"value":{"id_feat":1,"x":[3,3]}})"
+                           R"(,{"key":32,"value":{"id_feat":2,"x":[5.5,3.25]}})";
+  model(R"({"key":30,"value":{"id_feat":0,"x":[2,1]}})" + rest);
+  expect_track(load_scene(folder_));
+  model(R"({"key":30,"value":{"id_feat":0,"x":[2]}})" + rest);
+  EXPECT_THAT(error_of([&] { load_scene(folder_); }), HasSubstr("structure"));
+}
+
+TEST_F(ReadTracks, AliceVision) {
+  std::string views;
+  for (const std::string name : {"a", "b", "c"})
+    views += concat(views.empty() ? "" : ",", R"({"viewId":"id_)", name, R"(","poseId":")",
+                    name == "b" ? "none" : "0", R"(","intrinsicId":"7","path":"images/)", name,
+                    R"(.png","width":"8","height":"6"})");
+  const auto model = [&](const std::string& x) {
+    put("cameras.sfm",
+        R"({"version":["1","2","6"],"views":[)" + views +
+            R"(],"intrinsics":[{"intrinsicId":"7","width":"8","height":"6","type":"pinhole",)"
+            R"("focalLength":"45","sensorWidth":"36","pixelRatio":"1","principalPoint":["0","0"]}],)"
+            R"("poses":[{"poseId":"0","pose":{"transform":{"rotation":)"
+            R"(["1","0","0","0","1","0","0","0","1"],"center":["0","0","0"]}}}],)"
+            R"("structure":[{"landmarkId":"3","X":["0","0","5"],"observations":[)"
+            R"({"observationId":"id_a","featureId":"1","x":)" +
+            x +
+            R"(},{"observationId":"id_b","featureId":"2","x":["3","3"]},)"
+            R"({"observationId":"id_c","featureId":"3","x":["5.5","3.25"]}]}]})");
+  };
+  model(R"(["2","1"])");
+  expect_track(load_scene(folder_));
+  model(R"(["two","1"])");
+  EXPECT_THAT(error_of([&] { load_scene(folder_); }), HasSubstr("structure"));
+}
+
 }  // namespace
 }  // namespace photohull::io
