@@ -152,12 +152,24 @@ void AtomicFile::write(const void* data, std::size_t size) {
 
 void AtomicFile::fail(int error_number) const { throw_write_error(target_, error_number); }
 
-void AtomicFile::commit() {
+void AtomicFile::flush() const {
   // Some file systems (NFS, quotas) report a full disk only now.
   if (::fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOTSUP) fail(errno);
+}
+
+void AtomicFile::commit() {
+  flush();
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
   ::close(std::exchange(descriptor_, -1));  // All is on the disk: nothing left to fail.
   sync_folder(target_);
+}
+
+void remove_file(const fs::path& path) {
+  if (::unlink(path.c_str()) == 0)
+    sync_folder(path);
+  else if (errno != ENOENT)
+    throw Error(concat("cannot remove ", path.string(), ": ", std::strerror(errno), "; ",
+                       mend(errno), "."));
 }
 
 void write_atomically(const std::filesystem::path& path, std::string_view contents) {

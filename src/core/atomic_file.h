@@ -33,8 +33,10 @@ class AtomicFile {
   /// For those who write to temporary() themselves: throws the Error for a failed write.
   /// `error_number` is the errno of the failure; 0 when it is not known.
   [[noreturn]] void fail(int error_number) const;
-  /// Flushes to the disk and renames. Throws Error when either fails; the temporary is then
-  /// removed by the destructor.
+  /// Brings what was written to the disk; throws Error when that fails.
+  void flush() const;
+  /// Flushes and renames. Throws Error when either fails; the temporary is then removed by the
+  /// destructor.
   void commit();
 
  private:
@@ -42,6 +44,9 @@ class AtomicFile {
   std::filesystem::path temporary_;
   int descriptor_ = -1;
 };
+
+/// Removes a file, on the disk too, where there is one. Throws Error when that fails.
+void remove_file(const std::filesystem::path& path);
 
 /// Contents at hand, written by an AtomicFile.
 void write_atomically(const std::filesystem::path& path, std::string_view contents);

@@ -24,7 +24,15 @@ AtomicFile& ResultFiles::open(const std::string& name) {
 }
 
 void ResultFiles::commit() {
-  for (AtomicFile& file : files_) file.commit();
+  for (const AtomicFile& file : files_) file.flush();  // what a full disk fails, before any change
+  remove_file(files_.back().target());
+  try {
+    for (AtomicFile& file : files_) file.commit();
+  } catch (const Error& error) {
+    throw Error(concat(error.what(), " Until a run succeeds, ", folder_.string(),
+                       " may hold files of two runs, and has no ",
+                       files_.back().target().filename().string(), "."));
+  }
   files_.clear();
 }
 

@@ -1,4 +1,4 @@
-// The files of a reconstruction, which appear together or not at all.
+// The files of a reconstruction, which are those of one run as long as its report is there.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,9 @@
 namespace photohull::pipeline {
 
 /// Files are written one after another under temporary names, and take their final names when all
-/// are complete: a full disk or Ctrl-C leaves the results of an earlier run as they were.
+/// are complete: a full disk or Ctrl-C leaves the results of an earlier run as they were. Names
+/// cannot be taken all at once. The file opened last, the report, is the sign that they were: an
+/// older one goes before the first name is taken, and the new one comes last.
 class ResultFiles {
  public:
   /// Makes the folder where it does not exist. Throws Error when that fails or when one of `names`
@@ -20,7 +22,8 @@ class ResultFiles {
 
   /// A new file to write to; `name` is one of the names.
   AtomicFile& open(const std::string& name);
-  /// Puts the files in place. Throws Error when that fails.
+  /// Puts the files in place. Throws Error when that fails, and says so when the folder then has
+  /// files of two runs.
   void commit();
   const std::vector<std::string>& names() const { return names_; }
 

@@ -1,6 +1,7 @@
 #include "fault_runs.h"
 
 #include <climits>
+#include <csignal>
 #include <set>
 
 #include "core/error.h"
@@ -9,6 +10,18 @@ namespace photohull::test {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr long kKill = -3;  // fault_shim.cpp
+
+/// The program's surroundings where that call fails, and where the fault lasts those after it.
+RunOptions failing(const Fault& fault, long number) {
+  RunOptions options;
+  const long last = fault.lasting ? LONG_MAX : number;
+  options.environment = {concat("LD_PRELOAD=", PHOTOHULL_FAULT_SHIM),
+                         concat("PHOTOHULL_FAULT=", fault.call, ":", fault.what, ":", number, ":",
+                                last, ":", fault.folder)};
+  return options;
+}
 
 /// Reports tell of time and memory, the others mark or keep what is not complete.
 bool differs_rightly(const std::string& name) {
@@ -46,12 +59,13 @@ Reference FaultScene::run_without(const Arguments& job, const Fault& fault) cons
 }
 
 Finished FaultScene::run_with(const Arguments& job, const Fault& fault, long number) const {
-  RunOptions options;
-  const long last = fault.lasting ? LONG_MAX : number;
-  options.environment = {concat("LD_PRELOAD=", PHOTOHULL_FAULT_SHIM),
-                         concat("PHOTOHULL_FAULT=", fault.call, ":", fault.what, ":", number, ":",
-                                last, ":", fault.folder)};
-  return run_photohull(job, options);
+  return run_photohull(job, failing(fault, number));
+}
+
+void FaultScene::kill_at(const Arguments& job, const std::string& call, long number) const {
+  Arguments command = {PHOTOHULL_PROGRAM};
+  command.insert(command.end(), job.begin(), job.end());
+  EXPECT_EQ(run_program(command, failing({call, kKill, out()}, number)).signal, SIGKILL);
 }
 
 void FaultScene::expect_whole_files(const Files& right) const {

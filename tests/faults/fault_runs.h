@@ -11,7 +11,7 @@ namespace photohull::test {
 
 /// Which calls fail, and how; see fault_shim.cpp.
 struct Fault {
-  std::string call;      ///< open, read, write, rename, sync, mkdir, gl or reset
+  std::string call;      ///< open, read, write, rename, unlink, sync, mkdir, gl or reset
   long what = 0;         ///< an error number, or what fault_shim.cpp knows beside them
   std::string folder;    ///< of the files; all, for gl and reset
   bool lasting = false;  ///< all calls from the first on, as on a full disk
@@ -34,6 +34,9 @@ class FaultScene : public SphereScene {
 
   /// Runs the job while call `number` fails, and where the fault lasts those after it.
   Finished run_with(const Arguments& job, const Fault& fault, long number) const;
+
+  /// Kills the job at that call for a file in out().
+  void kill_at(const Arguments& job, const std::string& call, long number) const;
 
   /// Runs the job once for each of some places of the fault, evenly among all, and expects that it
   /// ends with the whole right output or fails with a sentence that names a file of the fault's

@@ -3,11 +3,11 @@
 //
 //   PHOTOHULL_FAULT=CALL:WHAT:FIRST:LAST:FOLDER
 //
-// CALL is open, read, write, rename, sync or mkdir, of files below FOLDER, or gl (glGetError) or
-// reset (glGetGraphicsResetStatus). The calls from number FIRST to LAST, counted from 1, fail with
-// the error number WHAT, or for gl and reset return it; -1 makes reads legally short, -2 is an
-// early end of the file. PHOTOHULL_FAULT_COUNT names a file that gets the number of calls in the
-// end.
+// CALL is open, read, write, rename, unlink, sync or mkdir, of files below FOLDER, or gl
+// (glGetError) or reset (glGetGraphicsResetStatus). The calls from number FIRST to LAST, counted
+// from 1, fail with the error number WHAT, or for gl and reset return it; -1 makes reads legally
+// short, -2 is an early end of the file, -3 kills the process. PHOTOHULL_FAULT_COUNT names a file
+// that gets the number of calls in the end.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -19,6 +19,7 @@
 #include <atomic>
 #include <cerrno>
 #include <climits>
+#include <csignal>
 #include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
@@ -26,7 +27,7 @@
 
 namespace {
 
-constexpr long kShort = -1, kEnd = -2;
+constexpr long kShort = -1, kEnd = -2, kKill = -3;
 
 struct Fault {
   char call[16] = "", folder[PATH_MAX] = "";
@@ -62,7 +63,9 @@ bool is_below(int descriptor) {
 /// Counts a call of that kind; true when it is one of those to fail.
 bool strikes() {
   const long number = ++calls;
-  return number >= fault().first && number <= fault().last;
+  const bool strike = number >= fault().first && number <= fault().last;
+  if (strike && fault().what == kKill) ::kill(::getpid(), SIGKILL);
+  return strike;
 }
 
 template <typename File>
@@ -179,6 +182,11 @@ ssize_t writev(int file, const iovec* parts, int count) {
 int rename(const char* from, const char* to) {
   NEXT(rename);
   return strikes("rename", from) ? failed() : real(from, to);
+}
+
+int unlink(const char* path) {
+  NEXT(unlink);
+  return strikes("unlink", path) ? failed() : real(path);
 }
 
 int fsync(int file) {
