@@ -14,22 +14,6 @@ namespace fs = std::filesystem;
 
 constexpr double kOtherLimitSeconds = 3600;  ///< for judging a mesh or making a scene
 
-/// Removes the run's files however it ends.
-class WorkFolder {
- public:
-  WorkFolder(const ResultStore& store, const std::string& id)
-      : store_(store), id_(id), path_(store.make_work_folder(id)) {}
-  ~WorkFolder() { store_.clear_work_folder(id_); }
-  WorkFolder(const WorkFolder&) = delete;
-  WorkFolder& operator=(const WorkFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  const ResultStore& store_;
-  std::string id_;
-  fs::path path_;
-};
-
 Failure failure_of(const char* step, const Finished& finished, const std::string& more = "") {
   return {step, finished.exit_code, finished.signal, finished.timed_out, finished.err + more};
 }

@@ -91,6 +91,12 @@ void Fields::allow_only(const std::vector<std::string>& names) const {
   }
 }
 
+void Fields::require_layout(int layout) const {
+  if (const Json& found = at("layout"); found != layout)
+    fail("layout", concat("written by another version of photohull (", found.dump(), " instead of ",
+                          layout, ")"));
+}
+
 const Json& Fields::at(const std::string& name) const {
   if (!has(name)) fail(name, "is missing");
   return object_.at(name);

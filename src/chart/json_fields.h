@@ -29,6 +29,8 @@ class Fields {
 
   /// Refuses fields other than these, naming the nearest one.
   void allow_only(const std::vector<std::string>& names) const;
+  /// Refuses a field "layout" other than this number, which counts versions of what is written.
+  void require_layout(int layout) const;
   bool has(const std::string& name) const { return object_.contains(name); }
   const Json& at(const std::string& name) const;
 

@@ -8,23 +8,6 @@
 namespace photohull::chart {
 namespace {
 
-/// Running mean of values that may be absent.
-class Mean {
- public:
-  void add(const std::optional<double>& value) {
-    if (!value) return;
-    sum_ += *value;
-    ++count_;
-  }
-  std::optional<double> value() const {
-    return count_ ? std::optional(sum_ / count_) : std::nullopt;
-  }
-
- private:
-  double sum_ = 0;
-  int count_ = 0;
-};
-
 void add_stages(std::vector<StageTime>& sum, const std::vector<StageTime>& stages) {
   for (const StageTime& s : stages) {
     const auto same =

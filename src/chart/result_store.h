@@ -46,4 +46,20 @@ class ResultStore {
   int lock_ = -1;
 };
 
+/// A folder for a run's files, removed with them however the run ends.
+class WorkFolder {
+ public:
+  WorkFolder(const ResultStore& store, std::string id)
+      : store_(store), id_(std::move(id)), path_(store.make_work_folder(id_)) {}
+  ~WorkFolder() { store_.clear_work_folder(id_); }
+  WorkFolder(const WorkFolder&) = delete;
+  WorkFolder& operator=(const WorkFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  const ResultStore& store_;
+  std::string id_;
+  std::filesystem::path path_;
+};
+
 }  // namespace photohull::chart

@@ -72,9 +72,7 @@ Json RunRecord::to_json() const {
 RunRecord RunRecord::from_json(const std::filesystem::path& file, const std::string& where,
                                const Json& json) {
   const Fields fields(file, where, json);
-  if (const Json& layout = fields.at("layout"); layout != kLayout)
-    fields.fail("layout", concat("written by another version of photohull (", layout.dump(),
-                                 " instead of ", kLayout, ")"));
+  fields.require_layout(kLayout);
   RunRecord r;
   r.id = fields.text("id");
   r.scene = fields.text("scene");

@@ -1,4 +1,4 @@
-// Fronts, fits and medians.
+// Means, fronts, fits and medians.
 #pragma once
 
 #include <cstddef>
@@ -7,6 +7,23 @@
 #include <vector>
 
 namespace photohull::chart {
+
+/// Running mean of values that may be absent.
+class Mean {
+ public:
+  void add(const std::optional<double>& value) {
+    if (!value) return;
+    sum_ += *value;
+    ++count_;
+  }
+  std::optional<double> value() const {
+    return count_ ? std::optional(sum_ / count_) : std::nullopt;
+  }
+
+ private:
+  double sum_ = 0;
+  int count_ = 0;
+};
 
 /// A run as seen by who chooses: low cost and high quality are good.
 struct Choice {

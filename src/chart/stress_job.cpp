@@ -39,22 +39,6 @@ std::string voxel_of(const Json& report) {
              : "";
 }
 
-/// Removes a folder of the store's work/ however it ends.
-class WorkFolder {
- public:
-  WorkFolder(const ResultStore& store, std::string id)
-      : store_(store), id_(std::move(id)), path_(store.make_work_folder(id_)) {}
-  ~WorkFolder() { store_.clear_work_folder(id_); }
-  WorkFolder(const WorkFolder&) = delete;
-  WorkFolder& operator=(const WorkFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  const ResultStore& store_;
-  std::string id_;
-  fs::path path_;
-};
-
 }  // namespace
 
 StressJob::StressJob(StressOptions options)

@@ -46,9 +46,7 @@ Json StressRecord::to_json() const {
 
 StressRecord StressRecord::from_json(const std::filesystem::path& file, const Json& json) {
   const Fields fields(file, "", json);
-  if (const Json& layout = fields.at("layout"); layout != kLayout)
-    fields.fail("layout", concat("written by another version of photohull (", layout.dump(),
-                                 " instead of ", kLayout, ")"));
+  fields.require_layout(kLayout);
   StressRecord r;
   r.id = fields.text("id");
   r.spec = fields.at("spec");

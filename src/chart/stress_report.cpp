@@ -4,11 +4,10 @@
 #include <cstdio>
 #include <set>
 
+#include "chart/chart_files.h"
 #include "chart/page.h"
-#include "chart/png.h"
 #include "chart/stress_charts.h"
 #include "chart/style.h"
-#include "chart/svg_renderer.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 
@@ -16,7 +15,6 @@ namespace photohull::chart {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr int kPngScale = 2;
 
 Json or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 
@@ -195,17 +193,6 @@ std::string page_table(const StressSummary& summary) {
   return html + "</tbody></table>";
 }
 
-void remove_stale(const fs::path& folder, const std::vector<std::string>& files) {
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    const bool chart =
-        name.starts_with("stress--") && (name.ends_with(".svg") || name.ends_with(".png"));
-    std::error_code ignored;
-    if (chart && std::find(files.begin(), files.end(), name) == files.end())
-      fs::remove(entry.path(), ignored);
-  }
-}
-
 }  // namespace
 
 void write_stress_results(const fs::path& file, const StressPlan& plan,
@@ -261,18 +248,8 @@ std::string stress_markdown(const StressPlan& plan, const StressSummary& summary
 std::vector<std::string> write_stress_page(const fs::path& folder, const StressPlan& plan,
                                            const StressSummary& summary, Progress& progress) {
   const std::vector<Chart> charts = stress_charts(plan, summary);
-  SvgRenderer renderer;
-  std::vector<std::string> files = {"index.html", "summary.md"};
-  for (std::size_t i = 0; i < charts.size(); ++i) {
-    progress.check_cancelled();
-    progress.update(double(i) / double(charts.size()));
-    const Chart& c = charts[i];
-    const std::string svg = renderer.render(c.option, c.width, c.height);
-    write_atomically(folder / (c.id + ".svg"), svg);
-    write_png(svg, kPngScale * c.width, kPngScale * c.height, folder / (c.id + ".png"));
-    files.push_back(c.id + ".svg");
-    files.push_back(c.id + ".png");
-  }
+  std::vector<std::string> files = write_chart_files(charts, folder, progress);
+  files.insert(files.begin(), {"index.html", "summary.md"});
   write_atomically(folder / "summary.md", stress_markdown(plan, summary));
   write_atomically(
       folder / "index.html",
@@ -284,7 +261,7 @@ std::vector<std::string> write_stress_page(const fs::path& folder, const StressP
                  "Group",
                  "Red rows ended with an error or by the program's own verdict.",
                  page_table(summary)}));
-  remove_stale(folder, files);
+  remove_stale_charts(folder, files);
   return files;
 }
 

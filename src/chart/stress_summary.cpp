@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "chart/statistics.h"
 #include "core/error.h"
 
 namespace photohull::chart {
@@ -21,22 +22,6 @@ std::string text_or_empty(const Fields& fields, const std::string& name) {
   if (!value.is_string()) fields.fail(name, "expected a text");
   return value.get<std::string>();
 }
-
-class Mean {
- public:
-  void add(const std::optional<double>& value) {
-    if (!value) return;
-    sum_ += *value;
-    ++count_;
-  }
-  std::optional<double> value() const {
-    return count_ ? std::optional(sum_ / count_) : std::nullopt;
-  }
-
- private:
-  double sum_ = 0;
-  int count_ = 0;
-};
 
 /// The samples of a variant on an axis.
 class Curve {

@@ -53,11 +53,11 @@ TEST(RunChild, MeasuresTimeAndMemory) {
 TEST(RunChild, KillsTheWholeGroupAtTheLimit) {
   const ScratchFolder folder;
   const std::string pid_file = (folder / "pid").string();
-  const Finished f = shell("sleep 1000 & echo $! > " + pid_file + "; wait", 0.3);
+  const Finished f = shell("sleep 1000 & echo $! > " + pid_file + "; wait", 2);
   EXPECT_TRUE(f.timed_out);
   EXPECT_FALSE(f.ok());
-  EXPECT_GE(f.wall_seconds, 0.3);
-  EXPECT_LT(f.wall_seconds, 30);
+  EXPECT_GE(f.wall_seconds, 2);
+  EXPECT_LT(f.wall_seconds, 60);
   const pid_t grandchild = std::stoi(read_text(pid_file));
   // Gone, or a zombie that nobody has waited for.
   for (int i = 0; i < 100 && ::kill(grandchild, 0) == 0; ++i) {

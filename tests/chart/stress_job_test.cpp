@@ -120,7 +120,7 @@ TEST(StressJob, SpecsThatMeanTheSameAreMadeOnce) {
 TEST(StressJob, FailuresAreResultsWithAnFScoreOfNothing) {
   FakeWorld world;
   world.plan(
-      R"({"scenes": [{"name": "a"}], "time_limit_seconds": 0.3, "axes": [{"name": "x", "points": [
+      R"({"scenes": [{"name": "a"}], "time_limit_seconds": 5, "axes": [{"name": "x", "points": [
       {"label": "bad", "arguments": ["--fail"]}, {"label": "slow", "arguments": ["--sleep"]},
       {"label": "mute", "arguments": ["--mute"]}]}]})");
   const StressOutcome o = run(options(world));
