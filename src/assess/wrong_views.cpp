@@ -29,7 +29,7 @@ using ViewSet = std::vector<std::uint64_t>;
 
 bool holds(const ViewSet& set, std::size_t view) { return set[view / 64] >> (view % 64) & 1; }
 
-/// A ray on which no point is accepted by all views: for every point the views that reject it.
+/// A ray on which no point is accepted by all views: the views that reject its points.
 struct EmptyRay {
   std::size_t view = 0;
   std::vector<ViewSet> rejected_by;
@@ -137,7 +137,8 @@ class Silhouettes {
       ViewSet set((cameras_.size() + 63) / 64);
       for (std::size_t v = 0; v < cameras_.size(); ++v)
         if (rejects(v, p)) set[v / 64] |= std::uint64_t(1) << (v % 64);
-      sets.push_back(std::move(set));
+      // Neighbours on the ray are mostly rejected by the same views.
+      if (sets.empty() || sets.back() != set) sets.push_back(std::move(set));
     }
     return sets;
   }

@@ -119,6 +119,7 @@ void drain(Descriptor& from, std::string& text) {
 bool converse(const Child& child, Pipe& out, Pipe& err, Clock::time_point end, Finished& finished,
               const Progress& progress) {
   for (;;) {
+    progress.check_cancelled();
     std::array<pollfd, 3> ready{
         {{child.watch(), POLLIN, 0}, {out.read.get(), POLLIN, 0}, {err.read.get(), POLLIN, 0}}};
     ::poll(ready.data(), ready.size(), kCheckEveryMs);
@@ -129,7 +130,6 @@ bool converse(const Child& child, Pipe& out, Pipe& err, Clock::time_point end, F
     if (finished.out.size() > kMaxOutput)
       throw Error(concat("a run printed more than ", kMaxOutput >> 20, " MiB"));
     if (ready[0].revents) return false;
-    progress.check_cancelled();
     if (Clock::now() >= end) return true;
   }
 }

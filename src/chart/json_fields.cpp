@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "core/json_levels.h"
 #include "core/read_file.h"
 
 namespace photohull::chart {
@@ -44,7 +45,7 @@ std::string read_file(const std::filesystem::path& path, std::size_t limit) {
 Json read_json(const std::filesystem::path& path) {
   const std::string text = read_file(path);
   try {
-    return Json::parse(text);
+    return Json::parse(text, json_level_guard(path.string()));
   } catch (const Json::exception& e) {
     // "[json.exception.parse_error.101] parse error at line 3, column 5: ..."
     std::string what = e.what();

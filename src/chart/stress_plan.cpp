@@ -6,6 +6,7 @@
 
 #include "chart/names.h"
 #include "core/error.h"
+#include "core/json_levels.h"
 
 namespace photohull::chart {
 namespace {
@@ -220,6 +221,9 @@ class StressPlanReader {
     if (fields.has("strengths") == fields.has("points"))
       fields.fail("points", "expected either 'strengths' (numbers) or 'points' (objects)");
     const Json common = patch(fields, "spec");
+    for (const std::string& field : fields.texts("fields"))
+      if (std::count(field.begin(), field.end(), '.') >= kMostJsonLevels)
+        fields.fail("fields", concat("more than ", kMostJsonLevels, " levels"));
     if (fields.has("strengths")) {
       if (!fields.has("fields") && !fields.has("argument"))
         fields.fail("fields", "'strengths' need 'fields' of the spec or an 'argument' to set");

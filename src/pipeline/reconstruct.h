@@ -85,8 +85,9 @@ double total_weight(const ReconstructOptions& options);
 
 /// Runs the job and puts volume.vdb, mesh.ply, preview.png and report.json (and evidence.ply
 /// on demand) into the output folder, all together at the end. Throws Error, UsageError or
-/// Cancelled; earlier results then stay as they were and no half-written file is left. Refinement
-/// keeps the levels that are done in `.photohull-checkpoint` there until the job has ended well.
+/// Cancelled; earlier results then stay as they were (but see ResultFiles::commit) and no
+/// half-written file is left. Refinement keeps the levels that are done in `.photohull-checkpoint`
+/// there until the job has ended well.
 Report reconstruct(const ReconstructOptions& options, Progress& progress);
 
 }  // namespace photohull::pipeline

@@ -9,6 +9,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/json_levels.h"
 #include "core/read_file.h"
 #include "io/image_file.h"
 #include "io/write_scene.h"
@@ -27,7 +28,8 @@ constexpr const char* kPlates = "plates";
 std::optional<std::vector<std::string>> described_views(const fs::path& file) {
   std::error_code ignored;
   if (!fs::exists(file, ignored)) return std::nullopt;
-  const auto j = nlohmann::json::parse(read_whole_file(file), nullptr, false);
+  const auto j =
+      nlohmann::json::parse(read_whole_file(file), json_level_guard(file.string()), false);
   if (!j.is_object() || !j.contains("result") || !j["result"].is_object()) return std::nullopt;
   const auto& result = j["result"];
   if (result.value("writer", nlohmann::json()) != "photohull synthesize") return std::nullopt;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/json_levels.h"
 #include "core/read_file.h"
 #include "synth/spec_reader.h"
 #include "synth/spec_visit.h"
@@ -117,7 +118,7 @@ std::vector<std::string> shadow_tests() {
 Spec parse_spec(const std::string& text, const std::string& source, const fs::path& folder) {
   nlohmann::json root;
   try {
-    root = nlohmann::json::parse(text, nullptr, true, true);
+    root = nlohmann::json::parse(text, json_level_guard(source), true, true);
   } catch (const nlohmann::json::exception& e) {
     throw Error(concat(source, ": not valid JSON: ", e.what()));
   }

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "core/error.h"
+#include "core/json_levels.h"
 #include "core/read_file.h"
 #include "volume/mesh_soup.h"
 
@@ -32,15 +33,10 @@ void GltfFile::fail(const std::string& what) const {
 }
 
 GltfFile::GltfFile(fs::path path) : path_(std::move(path)) {
-  constexpr int kMostLevels = 64;
   const std::string bytes = read_whole_file(path_);
   const std::string text = bytes.starts_with("glTF") ? split_binary(bytes) : bytes;
-  const auto guard = [&](int depth, Json::parse_event_t, Json&) {
-    if (depth > kMostLevels) fail(concat("it has more than ", kMostLevels, " levels"));
-    return true;
-  };
   try {
-    root_ = Json::parse(text, guard);
+    root_ = Json::parse(text, json_level_guard(path_.string()));
   } catch (const Json::exception&) {
     fail("it is not valid JSON");
   }

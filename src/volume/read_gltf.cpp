@@ -32,7 +32,10 @@ glm::dmat4 local_transform(const GltfFile& file, const Json& node) {
 
 void add_triangles(const GltfFile& file, const std::vector<std::uint32_t>& corners,
                    std::uint64_t mode, bool mirrored, std::size_t first, Soup& soup) {
+  constexpr std::size_t kMostTriangles = 1u << 29;  // also what instances of meshes add up to
   const std::size_t vertices = soup.positions.size() - first;
+  if (soup.triangles.size() + corners.size() > kMostTriangles)
+    file.fail("it has more than 536 million triangles");
   for (const std::uint32_t corner : corners)
     if (corner >= vertices)
       file.fail(concat("an index is out of range: ", corner, " of ", vertices, " vertices"));

@@ -79,6 +79,20 @@ TEST(MergeArguments, LaterOnesReplaceEarlierOnesOfTheSameName) {
       ElementsAre("--resolution", "40", "--tune", "a=1", "--masks", "none", "--tune", "b=2"));
 }
 
+TEST(StressPlan, TooManyLevelsAreRefused) {
+  constexpr int kLevels = 300000;  // more than the stack has room for
+  const FakeWorld world;
+  world.plan("{\"title\": " + std::string(kLevels, '[') + std::string(kLevels, ']') + "}");
+  EXPECT_THAT(error_of([&] { read_stress_plan(world / "plan.json"); }), HasSubstr("levels"));
+  std::string field = "a";
+  for (int i = 0; i < kLevels; ++i) field += ".a";
+  world.plan(R"({"scenes": [{"name": "a"}],
+                 "axes": [{"name": "x", "strengths": [1], "fields": [")" +
+             field + "\"]}]}");
+  EXPECT_THAT(error_of([&] { read_stress_plan(world / "plan.json"); }),
+              HasSubstr("axes[0].fields: more than 64 levels"));
+}
+
 struct BadPlan {
   const char* name;
   const char* axes;  ///< of a plan with the scenes a and b and the variant v

@@ -82,6 +82,10 @@ TEST(Spec, WrongTypesAndRangesAreNamed) {
               HasSubstr("JPEG has 8 bits"));
   EXPECT_THAT(message_of("[1]"), HasSubstr("object"));
   EXPECT_THAT(message_of("{"), HasSubstr("not valid JSON"));
+  constexpr int kLevels = 300000;  // more than the stack has room for
+  EXPECT_THAT(
+      message_of(R"({"name": )" + std::string(kLevels, '[') + std::string(kLevels, ']') + "}"),
+      HasSubstr("levels"));
   EXPECT_THAT(message_of(R"({"name": "a/b"})"), HasSubstr("name"));
 }
 
