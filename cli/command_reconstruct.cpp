@@ -19,7 +19,7 @@ struct Arguments {
                    mask_offset = "auto", photometric = "off";
   std::optional<std::string> method, refine_cameras, sampler, consistency, visibility;
   std::optional<int> resolution, supersample;
-  std::optional<double> voxel_size;
+  std::optional<double> voxel_size, r_consistency;
   std::vector<std::string> tune;
   int threads = 0;
   bool evidence = false, fresh = false, json = false;
@@ -43,6 +43,7 @@ pipeline::ReconstructOptions to_options(const Arguments& a) {
     o.consistency = parse_name("--consistency", *a.consistency, carving::kStatistics);
   if (a.visibility)
     o.visibility = parse_name("--visibility", *a.visibility, visibility::kSweepTests);
+  o.r_consistency = a.r_consistency;
   o.supersample = a.supersample;
   o.resolution = a.resolution;
   o.voxel_size = a.voxel_size;
@@ -131,6 +132,9 @@ void add_reconstruct(CLI::App& app) {
       "--visibility", a->visibility,
       "sweeps: who sees a voxel: plain, receiver-plane, virtual-normal, pcf3, pcf3-virtual "
       "or rays (default: plain)");
+  c->add_option("--r-consistency", a->r_consistency,
+                "sweeps: pixels around its projection, 0 to 4, within which each view may show a "
+                "voxel: bears cameras that are wrong by as much (default: 0)");
   c->add_option(
        "--mesh-error", a->mesh_error,
        "fewer triangles: how far mesh.ply may be from the uniform mesh, in voxels, or with "

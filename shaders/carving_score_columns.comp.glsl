@@ -9,6 +9,9 @@
 #include "include/sweep_visibility.glsl"
 #include "include/selection.glsl"
 #include "include/patch_views.glsl"
+#if SEARCH_TAPS > 1
+#include "include/search_patches.glsl"
+#endif
 
 #if defined(CONSISTENCY_GAIN_VARIANCE)
 #include "include/consistency_gain_variance.glsl"
@@ -43,8 +46,11 @@ void main() {
     view_weights[i] = i < view_count ? sweep_visible(v, voxel, p, parameters.thresholds.w) : 0.0;
     seen[i] = view_weights[i] > 0.0;
   }
-  uint base = (selection.entry - uint(parameters.chunk.x)) * uint(kViews * kApronArea) +
+  uint base = (selection.entry - uint(parameters.chunk.x)) * uint(kViews * SEARCH_TAPS * kApronArea) +
               (selection.column >> 3u) * uint(kApronEdge) + (selection.column & 7u);
+#if SEARCH_TAPS > 1
+  choose_shifts(base, seen);
+#endif
   Consistency c = consistency(base, seen);
   for (int i = 0; i < kViews; ++i) sum += seen[i] ? view_weights[i] : 0.0;
   scores[index] = vec4(c.score, float(c.used), c.confidence, sum);

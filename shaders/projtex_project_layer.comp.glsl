@@ -5,10 +5,11 @@
 // Mip-mapped, lambda from the longest edge of the voxel's footprint, and n x n supersampling
 // [Montenegro03, 3.4.2]. Values are square roots of linear light, which makes the noise even;
 // alpha < 0 marks what the image does not show.
-// One work group a selected brick, eight threads a view: on software devices a vector of threads
+// One work group a selected brick and search offset, eight threads a view: on software devices a vector of threads
 // shares the view's set-up. Reference: projtex::reference::project_layer_sample.
 #include "include/projection.glsl"
 #include "include/layer.glsl"
+#include "include/search_disc.glsl"
 
 #ifndef SUPERSAMPLE
 #define SUPERSAMPLE 1  // n: n x n samples a voxel
@@ -23,7 +24,8 @@ void main() {
   uint entry = gl_WorkGroupID.x, slot = gl_LocalInvocationID.y;
   uint item = selected[entry + uint(parameters.chunk.x)].x;
   uint v = items[item].views[slot >> 2u][slot & 3u];
-  GpuView view = views[v];
+  uint search = gl_WorkGroupID.y;
+  GpuView view = shifted(views[v], kSearchOffsets[search]);
 
   const int n = SUPERSAMPLE;
   float plane = float(parameters.layer.x) - 0.5 * float(parameters.layer.w);
@@ -40,7 +42,7 @@ void main() {
 
   // Pixels to normalised texture coordinates.
   vec4 scale = vec4(view.size.zw, 0.5 * view.size.zw);
-  uint target = (entry * uint(kMaxLayerViews) + slot) * uint(kApronArea);
+  uint target = ((entry * uint(kMaxLayerViews) + slot) * uint(SEARCH_TAPS) + search) * uint(kApronArea);
   int end = int(slot) < items[item].brick.w ? kApronArea : 0;
 
   for (int i = int(gl_LocalInvocationID.x); i < end; i += 8) {

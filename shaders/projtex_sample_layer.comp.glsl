@@ -3,10 +3,11 @@
 // As projtex_project_layer, with the sampler that SAMPLER_... chooses: a footprint for every sample,
 // images weighted by their coverage. Alpha < 0 marks what the image does not show, 0 what it shows as
 // background. SAMPLER_CENTROID takes the voxel's centre whatever the plane, as carving in image space
-// does. One work group a selected brick, eight threads a view.
+// does. One work group a selected brick and search offset, eight threads a view.
 // Reference: projtex::reference::sample_square.
 #include "include/sample_image.glsl"
 #include "include/layer.glsl"
+#include "include/search_disc.glsl"
 
 layout(local_size_x = 8, local_size_y = kMaxLayerViews) in;
 layout(std430, binding = 5) readonly buffer Selected { uint selected_count; uint pad0, pad1, pad2; uvec4 selected[]; };
@@ -16,7 +17,8 @@ void main() {
   uint entry = gl_WorkGroupID.x, slot = gl_LocalInvocationID.y;
   uint item = selected[entry + uint(parameters.chunk.x)].x;
   uint v = items[item].views[slot >> 2u][slot & 3u];
-  GpuView view = views[v];
+  uint search = gl_WorkGroupID.y;
+  GpuView view = shifted(views[v], kSearchOffsets[search]);
 #ifdef SAMPLER_CENTROID
   float plane = float(parameters.layer.x);
 #else
@@ -26,7 +28,7 @@ void main() {
   vec3 corner = layer_point(origin, plane), base = project(view, corner);
   vec3 by_u = project_step(view, layer_point(origin + vec2(1.0, 0.0), plane) - corner);
   vec3 by_v = project_step(view, layer_point(origin + vec2(0.0, 1.0), plane) - corner);
-  uint target = (entry * uint(kMaxLayerViews) + slot) * uint(kApronArea);
+  uint target = ((entry * uint(kMaxLayerViews) + slot) * uint(SEARCH_TAPS) + search) * uint(kApronArea);
   int end = int(slot) < items[item].brick.w ? kApronArea : 0;
   for (int i = int(gl_LocalInvocationID.x); i < end; i += 8) {
     vec3 at = base + by_u * float(i % kApronEdge) + by_v * float(i / kApronEdge);

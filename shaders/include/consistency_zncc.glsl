@@ -24,10 +24,9 @@ Consistency consistency(uint base, inout bool seen[kViews]) {
   for (int i = 0; i < kPairs; ++i) products[i] = 0.0;
   for (int row = 0; row < kPatchEdge; ++row)
     for (int at = 0; at < kPatchEdge; ++at) {
-      uint tap = base + uint(row * kApronEdge + at);
       vec3 x[kViews];
       for (int i = 0; i < kViews; ++i) {
-        vec4 s = samples[tap + uint(i * kApronArea)];
+        vec4 s = patch_tap(base, i, row * kPatchEdge + at);
         // Centred on mid-grey: the products then lose no precision.
         x[i] = s.rgb - 0.5;
 #ifdef SAMPLE_COVERAGE

@@ -3,6 +3,8 @@
 // Consistency.
 layout(std430, binding = 6) readonly buffer Samples { vec4 samples[]; };
 
+#include "include/search_disc.glsl"
+
 const int kViews = kMaxLayerViews;
 const int kPatchEdge = 2 * kPatchRadius + 1;
 const int kPatchTaps = kPatchEdge * kPatchEdge;
@@ -10,6 +12,11 @@ const int kLeastTaps = (kPatchTaps + 1) / 2;
 
 // How much of the voxel each view sees, which weighs pairs of views; 1 unless visibility is filtered.
 float view_weights[kViews];
+
+#if SEARCH_TAPS > 1
+// Which of the search offsets each view's patch is taken at.
+int view_shifts[kViews];
+#endif
 
 struct Consistency {
   float score;       // at most 1; from thresholds.x on the views agree; -1 below two views
@@ -19,7 +26,12 @@ struct Consistency {
 
 // `base`: where the voxel's patch begins in the first view's samples.
 vec4 patch_tap(uint base, int view, int k) {
-  return samples[base + uint(view * kApronArea + k / kPatchEdge * kApronEdge + k % kPatchEdge)];
+#if SEARCH_TAPS > 1
+  int area = view * SEARCH_TAPS + view_shifts[view];
+#else
+  int area = view;
+#endif
+  return samples[base + uint(area * kApronArea + k / kPatchEdge * kApronEdge + k % kPatchEdge)];
 }
 
 bool has_tap(uint taps, int k) { return (taps >> uint(k) & 1u) != 0u; }

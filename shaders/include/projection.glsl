@@ -14,6 +14,13 @@ vec3 project_step(GpuView view, vec3 by) {
   return vec3(dot(view.row_s.xyz, by), dot(view.row_t.xyz, by), dot(view.row_q.xyz, by));
 }
 
+// The same camera with its principal point moved by `shift` pixels.
+GpuView shifted(GpuView view, vec2 shift) {
+  view.row_s += shift.x * view.row_q;
+  view.row_t += shift.y * view.row_q;
+  return view;
+}
+
 // Is the pixel position on the image? Pixel centres are integers.
 bool on_image(GpuView view, vec2 pixel) {
   return all(greaterThanEqual(pixel, vec2(-0.5))) &&

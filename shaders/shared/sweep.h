@@ -18,6 +18,7 @@ constexpr int kMaxLayerViews = 8;  // views projected onto one brick's part of a
 constexpr int kPatchRadius = 2;     // voxels: patches of 5 x 5 on the reference plane
 constexpr int kApronEdge = 12;      // 8 + 2 * kPatchRadius
 constexpr int kApronArea = 144;
+constexpr int kSearchRounds = 2;   // of r-consistency: how often each view chooses its shift
 
 struct SweepParameters {
   ivec4 bricks;      // grid size in bricks; w: items of this brick layer

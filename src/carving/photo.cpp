@@ -11,6 +11,7 @@
 
 #include "carving/bit_volume.h"
 #include "carving/decisions.h"
+#include "carving/search_disc.h"
 #include "core/error.h"
 #include "gpu/buffer.h"
 #include "gpu/program.h"
@@ -25,7 +26,7 @@ using gpu::Buffer;
 using gpu::Program;
 
 constexpr double kLeastCosine = 0.35;  // between a camera's direction and the sweep
-constexpr std::size_t kChunk = 1024;   // bricks whose samples are held at once
+constexpr std::size_t kChunk = 1024;   // bricks, at a search offset each, whose samples are held
 // Voxels carved in a round per voxel judged below which another round changes nothing measurable.
 constexpr double kNegligible = 0.03;
 // Of statistics whose confidence is 0 where there is too little evidence.
@@ -62,10 +63,13 @@ class Sweeper {
       : context_(context),
         resampling_(std::move(resampling)),
         options_(options),
+        search_(search_disc(options.search_radius)),
+        chunk_(std::max<std::size_t>(kChunk / search_.size(), 1)),
         bits_(to_bits(hull)),
         select_(Program::compute("carving_select_columns.comp.glsl")),
         score_(Program::compute("carving_score_columns.comp.glsl",
                                 statistic_defines(options.statistic, resampling_.coverage) +
+                                    search_defines(search_) +
                                     visibility::sweep_test_defines(options.visibility))),
         update_(Program::compute("carving_update_columns.comp.glsl")),
         mark_(Program::compute("carving_mark_passed.comp.glsl")) {
@@ -82,7 +86,7 @@ class Sweeper {
     for (std::size_t i = 0; i < active.size(); ++i)
       active[i] = hull.table[i] < SparseVolume::kInside;
     active_ = Buffer::of(active);
-    samples_ = Buffer(kChunk * shaders::kMaxLayerViews * shaders::kApronArea * 16);
+    samples_ = Buffer(chunk_ * search_.size() * shaders::kMaxLayerViews * shaders::kApronArea * 16);
     const float least_texture = float(std::pow(options.min_texture * options.noise_sigma, 2));
     // The confidence of a correlation is the texture.
     const bool correlation = options.statistic == Statistic::kZncc;
@@ -236,16 +240,16 @@ class Sweeper {
     select_.dispatch(context_, "carving_select_columns", items);
     const std::size_t count = pack_columns(selected);
     std::size_t column = 0;
-    for (std::size_t first = 0; first < count; first += kChunk) {
-      const std::size_t end = std::min(first + kChunk, count), first_column = column;
+    for (std::size_t first = 0; first < count; first += chunk_) {
+      const std::size_t end = std::min(first + chunk_, count), first_column = column;
       while (column < columns_of_layer_.size() && columns_of_layer_[column] >> 6 < end) ++column;
       bind(first, first_column, selected, samples_, scores, decided, column - first_column);
       resampling_.bind();
-      resampling_.program.dispatch(context_, resampling_.name, end - first);
+      resampling_.program.dispatch(context_, resampling_.name, end - first, search_.size());
       score_.dispatch(context_, "carving_score_columns",
                       gpu::group_count(column - first_column, 64));
       counts_.samples += std::int64_t(end - first) * shaders::kMaxLayerViews * shaders::kApronArea *
-                         options_.supersample * options_.supersample;
+                         options_.supersample * options_.supersample * std::int64_t(search_.size());
     }
     bind(0, 0, selected, occluders.buffer, scores, decided, columns_of_layer_.size());
     update_.dispatch(context_, "carving_update_columns",
@@ -276,6 +280,8 @@ class Sweeper {
   gpu::Context& context_;
   Resampling resampling_;
   PhotoOptions options_;
+  std::vector<glm::dvec2> search_;  ///< offsets at which views look for a voxel
+  std::size_t chunk_;               ///< bricks whose samples are held at once
   BitVolume bits_;
   std::vector<projtex::GridCamera> cameras_;
   Program select_, score_, update_, mark_;
@@ -344,6 +350,8 @@ void PhotoOptions::validate() const {
   require(min_texture >= 0, "min_texture must not be negative");
   require(supersample >= 1 && supersample <= projtex::kMaxSupersample,
           "supersample must be 1 to 8");
+  require(search_radius >= 0 && search_radius <= kMaxSearchRadius,
+          "search_radius must be 0 to 4 pixels");
   require(depth_bias >= 0, "depth_bias must not be negative");
   require(max_path >= 1, "max_path must be at least 1");
   require(max_rounds >= 1, "max_rounds must be at least 1");
@@ -356,7 +364,8 @@ SparseVolume carve_photo(gpu::Context& context, const SparseVolume& hull,
   PHOTOHULL_CHECK_OP(int(cameras.size()), ==, images.layers());
   Resampling resampling{"projtex_project_layer",
                         Program::compute("projtex_project_layer.comp.glsl",
-                                         concat("#define SUPERSAMPLE ", options.supersample, "\n")),
+                                         concat("#define SUPERSAMPLE ", options.supersample, "\n") +
+                                             search_defines(search_disc(options.search_radius))),
                         [&images] { images.texture().bind(0); },
                         {images.texture().width(), images.texture().height()},
                         false};
@@ -369,7 +378,8 @@ SparseVolume carve_photo(gpu::Context& context, const SparseVolume& hull,
   options.validate();
   PHOTOHULL_CHECK_OP(int(cameras.size()), ==, images.layers());
   Resampling resampling{"projtex_sample_layer",
-                        images.program("projtex_sample_layer.comp.glsl", options.supersample),
+                        images.program("projtex_sample_layer.comp.glsl", options.supersample,
+                                       search_defines(search_disc(options.search_radius))),
                         [&images] { images.bind(); }, images.size(), true};
   return carve(context, hull, std::move(resampling), cameras, options, progress, report);
 }

@@ -37,6 +37,9 @@ struct PhotoOptions {
   double min_texture = 1.5;
   /// n x n samples a voxel on top of the sampler's own (1 to projtex::kMaxSupersample).
   int supersample = 1;
+  /// r-consistency [Kutulakos00]: pixels around a voxel's projection within which each view may
+  /// show it, in [0, kMaxSearchRadius]; 0: at its projection only.
+  double search_radius = 0;
   /// Reference planes through the voxels' front faces instead of their centres.
   bool front_face = false;
   /// Who sees a voxel.

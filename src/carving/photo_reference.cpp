@@ -67,6 +67,60 @@ Consistency photo_consistency(std::span<const PatchColours> patches, double nois
   return out;
 }
 
+namespace {
+
+/// The patch without its mean, at unit norm but for the noise; empty when it does not count.
+std::vector<glm::dvec3> normalised(const ShownPatch& patch, double noise_variance, bool coverage) {
+  std::vector<glm::dvec3> shown;
+  for (const glm::dvec4& tap : patch) {
+    if (tap.a < 0) return {};
+    if (!coverage || tap.a > 0) shown.emplace_back(tap);
+  }
+  if (int(shown.size()) < (kPatchTaps + 1) / 2) return {};
+  if (coverage && !(patch[kPatchTaps / 2].a > 0)) return {};
+  const glm::dvec3 mean = mean_of(shown);
+  const double count = double(shown.size());
+  const double norm = std::sqrt(count * (covariance(shown, shown) + 3 * noise_variance));
+  std::vector<glm::dvec3> out;
+  for (const glm::dvec4& tap : patch)
+    out.push_back(!coverage || tap.a > 0 ? (glm::dvec3(tap) - mean) / norm : glm::dvec3(0));
+  return out;
+}
+
+}  // namespace
+
+SearchedShifts choose_shifts(const std::vector<std::vector<ShownPatch>>& views,
+                             double noise_variance, bool coverage) {
+  std::vector<std::vector<std::vector<glm::dvec3>>> patches(views.size());
+  SearchedShifts out;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    int first = -1;
+    for (std::size_t shift = 0; shift < views[v].size(); ++shift) {
+      patches[v].push_back(normalised(views[v][shift], noise_variance, coverage));
+      if (first < 0 && !patches[v].back().empty()) first = int(shift);
+    }
+    out.shifts.push_back(first);
+  }
+  const auto correlation = [&](std::size_t v, int shift) {
+    double sum = 0;
+    for (std::size_t other = 0; other < views.size(); ++other)
+      for (int tap = 0; tap < kPatchTaps && other != v && out.shifts[other] >= 0; ++tap)
+        sum += glm::dot(patches[v][shift][tap], patches[other][out.shifts[other]][tap]);
+    return sum;
+  };
+  for (int round = 0; round < shaders::kSearchRounds; ++round)
+    for (std::size_t v = 0; v < views.size(); ++v) {
+      if (out.shifts[v] < 0) continue;
+      std::vector<std::pair<double, int>> ranked;
+      for (int shift = 0; shift < int(views[v].size()); ++shift)
+        if (!patches[v][shift].empty()) ranked.emplace_back(-correlation(v, shift), shift);
+      std::sort(ranked.begin(), ranked.end());
+      out.shifts[v] = ranked[0].second;
+      if (ranked.size() > 1) out.margin = std::min(out.margin, ranked[1].first - ranked[0].first);
+    }
+  return out;
+}
+
 glm::ivec3 SweepFrame::voxel(const glm::ivec2& column, int layer) const {
   glm::ivec3 out;
   out[u()] = column.x;

@@ -33,6 +33,21 @@ Consistency photo_consistency(std::span<const Patch> patches, double noise_varia
 /// On the taps that all the views show; as many in each.
 Consistency photo_consistency(std::span<const PatchColours> patches, double noise_variance);
 
+/// A patch with its samples' alpha: below 0 off the image, 0 background.
+using ShownPatch = std::array<glm::dvec4, kPatchTaps>;
+
+struct SearchedShifts {
+  std::vector<int> shifts;  ///< of each view; -1 where no shift shows the patch
+  double margin = 2;        ///< least gap between the best two correlations of a choice
+};
+
+/// r-consistency [Kutulakos00] (search_patches.glsl): `views` holds every view's patches within the
+/// search disc. Each takes its first whole patch, then in turn, kSearchRounds times, the one that
+/// correlates best with the mean of the others' normalised patches. With `coverage`, taps that show
+/// background count as the patch's mean.
+SearchedShifts choose_shifts(const std::vector<std::vector<ShownPatch>>& views,
+                             double noise_variance, bool coverage);
+
 /// A sweep along an axis of a grid; layer 0 is where it begins.
 struct SweepFrame {
   int axis = 2, sign = 1;

@@ -261,6 +261,7 @@ class Job {
                        : carving::PhotoMethod::kSpaceCarving;
     photo.noise_sigma = report_.noise_sigma;
     photo.supersample = options_.supersample.value_or(photo.supersample);
+    photo.search_radius = options_.r_consistency.value_or(photo.search_radius);
     photo.statistic = options_.consistency.value_or(photo.statistic);
     photo.visibility = options_.visibility.value_or(photo.visibility);
     tune(options_.tune, photo);
@@ -289,7 +290,7 @@ class Job {
                      carving::PhotoReport& counts) {
     report_.sampling = {projtex::to_string(sampler()), photo.supersample,
                         carving::to_string(photo.statistic),
-                        visibility::to_string(photo.visibility)};
+                        visibility::to_string(photo.visibility), photo.search_radius};
     if (sampler() == projtex::Sampler::kMipmap)
       return carving::carve_photo(*context_, hull, *images_, in_.cameras, photo, progress_,
                                   &counts);

@@ -61,6 +61,7 @@ struct ReconstructOptions {
   std::optional<int> supersample;  ///< n x n samples a voxel, 1 to projtex::kMaxSupersample
   std::optional<carving::Statistic> consistency;
   std::optional<visibility::SweepTest> visibility;
+  std::optional<double> r_consistency;  ///< pixels, 0 to carving::kMaxSearchRadius
   bool fresh = false;     ///< do not go on from where an interrupted run of the same job came to
   bool evidence = false;  ///< write evidence.ply too: what confidence is computed from
   std::string device = "auto";    ///< auto, software or an index

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "carving/photo.h"
+#include "carving/search_disc.h"
 #include "core/error.h"
 #include "pipeline/reconstruct.h"
 #include "pipeline/tuning.h"
@@ -17,13 +18,17 @@ void check_sweep_options(const ReconstructOptions& o) {
   if (o.supersample && (*o.supersample < 1 || *o.supersample > projtex::kMaxSupersample))
     throw UsageError(
         concat("--supersample ", *o.supersample, ": expected 1 to ", projtex::kMaxSupersample));
+  if (o.r_consistency && !(*o.r_consistency >= 0 && *o.r_consistency <= carving::kMaxSearchRadius))
+    throw UsageError(concat("--r-consistency ", *o.r_consistency, ": expected 0 to ",
+                            carving::kMaxSearchRadius, " pixels"));
   const Method method = o.effective_method();
   if (method == Method::kVoxelColoring || method == Method::kSpaceCarving) return;
-  const char* given = o.sampler       ? "--sampler"
-                      : o.supersample ? "--supersample"
-                      : o.consistency ? "--consistency"
-                      : o.visibility  ? "--visibility"
-                                      : nullptr;
+  const char* given = o.sampler         ? "--sampler"
+                      : o.supersample   ? "--supersample"
+                      : o.consistency   ? "--consistency"
+                      : o.visibility    ? "--visibility"
+                      : o.r_consistency ? "--r-consistency"
+                                        : nullptr;
   if (given)
     throw UsageError(concat(given, ": --method ", to_string(method),
                             " has no plane sweep; give --method space-carving or voxel-coloring"));

@@ -56,6 +56,7 @@ std::string Report::to_json() const {
     j["photo"]["supersample"] = sampling->supersample;
     j["photo"]["consistency"] = sampling->consistency;
     j["photo"]["visibility"] = sampling->visibility;
+    j["photo"]["r_consistency"] = sampling->r_consistency;
   }
   j["resumed_levels"] = resumed_levels;
   j["refine"] = ordered_json::array();

@@ -57,6 +57,7 @@ struct SamplingReport {
   int supersample = 0;
   std::string consistency;
   std::string visibility;
+  double r_consistency = 0;  ///< pixels
 };
 
 /// Where a view's mask came from, and how sure it is (calib's MaskJudgement).

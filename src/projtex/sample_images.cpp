@@ -146,8 +146,10 @@ SampleImages::SampleImages(std::span<const View> views, Sampler sampler) : sampl
   }
 }
 
-gpu::Program SampleImages::program(const char* path, int supersample) const {
-  gpu::Program program = gpu::Program::compute(path, sampler_defines(sampler_, supersample));
+gpu::Program SampleImages::program(const char* path, int supersample,
+                                   const std::string& defines) const {
+  gpu::Program program =
+      gpu::Program::compute(path, sampler_defines(sampler_, supersample) + defines);
   if (sampler_ == Sampler::kSummedArea) program.set("sum_unit", sum_unit_);
   return program;
 }

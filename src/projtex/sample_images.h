@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 
 #include "core/image.h"
 #include "gpu/program.h"
@@ -24,8 +25,8 @@ class SampleImages {
   /// Pixels of a layer, for to_gpu_view.
   glm::ivec2 size() const { return {images_.width(), images_.height()}; }
 
-  /// A compute program with this sampler, n x n times a square.
-  gpu::Program program(const char* path, int supersample) const;
+  /// A compute program with this sampler, n x n times a square, and further `defines`.
+  gpu::Program program(const char* path, int supersample, const std::string& defines = {}) const;
   /// Binds the textures where sample_image.glsl expects them.
   void bind() const;
 

@@ -163,6 +163,22 @@ TEST_F(CarvePhoto, OneSweepOfVoxelColoringFindsTheFloor) {
   EXPECT_EQ(report.sweeps, 1);
 }
 
+// Principal points that are off by a pixel and more, each its own way.
+TEST_F(CarvePhoto, SearchBearsCamerasThatAreWrong) {
+  for (std::size_t i = 0; i < cameras_.size(); ++i) {
+    cameras_[i].intrinsics.cx += 1.4 * std::cos(2.4 * double(i));
+    cameras_[i].intrinsics.cy += 1.4 * std::sin(2.4 * double(i));
+  }
+  PhotoOptions options;
+  PhotoReport without, with;
+  const Judgement blurred = judge(carve(options, &without));
+  options.search_radius = 1.5;
+  const Judgement found = judge(carve(options, &with));
+  EXPECT_LT(found.worst_floor, blurred.worst_floor);
+  EXPECT_EQ(found.wrongly_carved, 0);
+  EXPECT_GT(with.samples, without.samples);
+}
+
 TEST_F(CarvePhoto, TwoRunsGiveTheSameBytes) {
   const SparseVolume a = carve(), b = carve();
   EXPECT_EQ(a.table, b.table);
@@ -200,6 +216,7 @@ TEST(PhotoOptions, NamesTheFieldThatIsOutOfRange) {
   refuses([](PhotoOptions& o) { o.min_texture = NAN; });
   refuses([](PhotoOptions& o) { o.supersample = 9; });
   refuses([](PhotoOptions& o) { o.depth_bias = -1; });
+  refuses([](PhotoOptions& o) { o.search_radius = 5; });
   refuses([](PhotoOptions& o) { o.max_rounds = 0; });
 }
 

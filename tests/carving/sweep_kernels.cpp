@@ -26,11 +26,12 @@ Buffer list_of(std::size_t capacity, std::size_t entry_bytes) {
 SweepKernels::SweepKernels(gpu::Context& context, const BitVolume& bits,
                            const reference::SweepFrame& frame,
                            const std::vector<projtex::GridCamera>& cameras,
-                           const std::string& score_defines)
+                           const std::string& score_defines, int shifts)
     : context_(context),
       frame_(frame),
       bricks_(bits.grid.bricks),
       view_count_(int(cameras.size())),
+      shifts_(shifts),
       select_(gpu::Program::compute("carving_select_columns.comp.glsl")),
       score_(gpu::Program::compute("carving_score_columns.comp.glsl", score_defines)),
       update_(gpu::Program::compute("carving_update_columns.comp.glsl")),
@@ -129,9 +130,10 @@ void SweepKernels::update(const std::vector<glm::vec4>& scores) {
   update_.dispatch(context_, "carving_update_columns", gpu::group_count(judged_.size(), 64));
 }
 
-std::size_t SweepKernels::patch_base(std::size_t judged, int view) const {
+std::size_t SweepKernels::patch_base(std::size_t judged, int view, int shift) const {
   const std::uint32_t entry = judged_[judged] / 64, column = judged_[judged] % 64;
-  return (std::size_t(entry) * shaders::kMaxLayerViews + std::size_t(view)) * shaders::kApronArea +
+  const std::size_t place = std::size_t(entry) * shaders::kMaxLayerViews + std::size_t(view);
+  return (place * std::size_t(shifts_) + std::size_t(shift)) * shaders::kApronArea +
          column / 8 * shaders::kApronEdge + column % 8;
 }
 

@@ -23,10 +23,10 @@ class SweepKernels {
  public:
   /// The sweep goes along `frame` through `bits`; every brick of a layer is an item, and each item
   /// has all `cameras` (at most kMaxLayerViews) as views.
-  /// `score_defines`: which statistic (statistic_defines).
+  /// `score_defines`: which statistic (statistic_defines), and `shifts` search offsets.
   SweepKernels(gpu::Context& context, const BitVolume& bits, const reference::SweepFrame& frame,
                const std::vector<projtex::GridCamera>& cameras,
-               const std::string& score_defines = {});
+               const std::string& score_defines = {}, int shifts = 1);
 
   /// Parameters that the tests set; layer, items and chunks are filled in by the steps.
   shaders::SweepParameters parameters{};
@@ -40,9 +40,9 @@ class SweepKernels {
   void update(const std::vector<glm::vec4>& scores);
 
   /// In `samples` of score: where the patch of a judged column begins in a view.
-  std::size_t patch_base(std::size_t judged, int view) const;
+  std::size_t patch_base(std::size_t judged, int view, int shift = 0) const;
   std::size_t sample_count() const {
-    return entries_.size() * shaders::kMaxLayerViews * shaders::kApronArea;
+    return entries_.size() * shaders::kMaxLayerViews * std::size_t(shifts_) * shaders::kApronArea;
   }
   visibility::DepthMaps& depth_maps() { return maps_; }
   const gpu::Buffer& views() const { return views_; }
@@ -58,7 +58,7 @@ class SweepKernels {
   gpu::Context& context_;
   reference::SweepFrame frame_;
   glm::ivec3 bricks_;
-  int view_count_;
+  int view_count_, shifts_;
   gpu::Program select_, score_, update_, mark_;
   visibility::DepthMaps maps_;
   gpu::Buffer views_, table_, occupancy_, columns_, active_, passed_, uniforms_;

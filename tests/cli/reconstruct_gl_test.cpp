@@ -213,12 +213,22 @@ TEST_F(Reconstruct, SweepsSampleAndCompareAsTold) {
   succeed(reconstruct({"--method", "voxel-coloring", "--sampler", "ewa", "--supersample", "2",
                        "--consistency", "robust-variance"}));
   EXPECT_EQ(report()["photo"]["sampler"], "ewa");
+  EXPECT_EQ(report()["photo"]["r_consistency"], 0.0);
   EXPECT_EQ(report()["photo"]["supersample"], 2);
   EXPECT_EQ(report()["photo"]["consistency"], "robust-variance");
   EXPECT_NEAR(signed_volume(mesh()), kSphereVolume, 0.1 * kSphereVolume);
   succeed(reconstruct({"--method", "voxel-coloring"}));
   EXPECT_EQ(report()["photo"]["sampler"], "anisotropic");
   EXPECT_EQ(report()["photo"]["consistency"], "zncc");
+}
+
+TEST_F(Reconstruct, SweepsSearchAsFarAsTold) {
+  succeed(reconstruct({"--method", "voxel-coloring", "--r-consistency", "0.5"}));
+  EXPECT_EQ(report()["photo"]["r_consistency"], 0.5);
+  EXPECT_NEAR(signed_volume(mesh()), kSphereVolume, 0.1 * kSphereVolume);
+  fail(2, reconstruct({"--method", "voxel-coloring", "--r-consistency", "9"}),
+       {"--r-consistency 9", "0 to 4 pixels"});
+  fail(2, reconstruct({"--r-consistency", "1"}), {"--r-consistency", "no plane sweep"});
 }
 
 TEST_F(Reconstruct, WithoutMasksColoursCarve) {

@@ -18,7 +18,13 @@ struct LayerCase {
   int axis = 2, sign = 1, layer = 3;
   bool front_face = false;
   int supersample = 1;
+  bool search = false;  ///< at three offsets, of which kOffset is the second
 };
+
+const glm::dvec2 kOffset{1.25, -0.75};
+constexpr const char* kSearch =
+    "#define SEARCH_TAPS 3\n"
+    "#define SEARCH_OFFSETS vec2(0.0), vec2(1.25, -0.75), vec2(40.0, 0.0)\n";
 
 class SampleLayer : public ::testing::Test {
  protected:
@@ -55,6 +61,10 @@ class SampleLayer : public ::testing::Test {
     for (const View& view : views_) {
       cameras.push_back(to_grid(view.camera, grid_));
       gpu_views.push_back(to_gpu_view(cameras.back(), images.size()));
+      // Elsewhere on the image is where a camera with another principal point has it.
+      Camera moved = view.camera;
+      if (c.search) moved.intrinsics.cx += kOffset.x, moved.intrinsics.cy += kOffset.y;
+      cameras.back() = to_grid(moved, grid_);
       chains.push_back(
           reference::covered_chain(reference::covered_image(view.image, view.mask, images.size())));
     }
@@ -71,7 +81,8 @@ class SampleLayer : public ::testing::Test {
     const gpu::Buffer items = gpu::Buffer::of(std::vector<shaders::LayerItem>{item});
     const gpu::Buffer selected =
         gpu::Buffer::of(std::vector<glm::uvec4>{{1, 0, 0, 0}, {0, ~0u, ~0u, 0}});
-    const std::size_t count = shaders::kMaxLayerViews * shaders::kApronArea;
+    const std::size_t offsets = c.search ? 3 : 1;
+    const std::size_t count = shaders::kMaxLayerViews * offsets * shaders::kApronArea;
     const gpu::Buffer samples(count * 16);
     uniforms.bind_uniform(0);
     view_buffer.bind_storage(0);
@@ -79,8 +90,8 @@ class SampleLayer : public ::testing::Test {
     selected.bind_storage(5);
     samples.bind_storage(6);
     images.bind();
-    images.program("projtex_sample_layer.comp.glsl", c.supersample)
-        .dispatch(context_, "projtex_sample_layer", 1);
+    images.program("projtex_sample_layer.comp.glsl", c.supersample, c.search ? kSearch : "")
+        .dispatch(context_, "projtex_sample_layer", 1, offsets);
     const auto found = samples.download<glm::vec4>(count);
     for (int view = 0; view < kViews; ++view)
       for (int place = 0; place < shaders::kApronArea; ++place) {
@@ -91,7 +102,8 @@ class SampleLayer : public ::testing::Test {
         if (std::min(off.x, off.y) < 1e-3) continue;  // between two pixels
         const glm::dvec4 expected = reference::resolved(
             reference::sample_square(sampler, chains[view], cameras[view], square, c.supersample));
-        const glm::dvec4 sample(found[std::size_t(view) * shaders::kApronArea + place]);
+        const glm::dvec4 sample(
+            found[(std::size_t(view) * offsets + offsets / 2) * shaders::kApronArea + place]);
         const bool on_image = f.in_front && f.pixel.x > -0.5 && f.pixel.y > -0.5 &&
                               f.pixel.x < kSize - 0.5 && f.pixel.y < kSize - 0.5;
         if (expected.a < shaders::kLeastCoverage) {
@@ -120,6 +132,12 @@ TEST_F(SampleLayer, CentresAndFrontFacesAlongAllAxes) {
 TEST_F(SampleLayer, ImageSpaceTakesTheVoxelsCentreWhateverThePlane) {
   compare(Sampler::kCentroid, {2, 1, 5, true, 1});
   EXPECT_GT(compared_, 200);
+}
+
+TEST_F(SampleLayer, OffsetsOfASearch) {
+  for (const Sampler sampler : {Sampler::kTrilinear, Sampler::kAnisotropic})
+    compare(sampler, {2, 1, 3, false, 1, true});
+  EXPECT_GT(compared_, 400);
 }
 
 }  // namespace
