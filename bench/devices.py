@@ -30,34 +30,43 @@ def run(program, *arguments, environment=""):
     done = subprocess.run([program, *map(str, arguments)], env=os.environ | pairs, stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, check=False)
     if done.returncode not in (0, 3):  # 3: reconstructed, and judged as failed
-        sys.exit(done.stderr.decode())
+        raise RuntimeError(done.stderr.decode().strip().splitlines()[-1])
     return done.stdout
+
+
+def compare(program, scene, method, folder, device):
+    """A row's figures: the device's name, same bytes, F-score, distances in voxels."""
+    out, first = folder / device.replace("/", "_") / method, folder / method / "mesh.ply"
+    out = out if device else folder / method
+    report = json.loads(run(program, "reconstruct", scene, "--out", out, "--resolution", 80, "--method", method, "--json",
+                            environment=device))
+    mesh = out / "mesh.ply"
+    score = json.loads(run(program, "evaluate", mesh, "--truth", scene, "--json"))
+    apart = json.loads(run(program, "evaluate", mesh, "--truth", first, "--json"))["recon_to_gt"]
+    same = mesh.read_bytes() == first.read_bytes()
+    f025 = next(f["f"] for f in score["f"] if f["t"] == 0.0025)
+    far = [0 if same else apart[name] / report["grid"]["voxel_size"] for name in ("mean", "q95", "max")]
+    return [report["device"], "yes" if same else "no", f"{100 * f025:.2f}", *(f"{d:.2g}" for d in far)]
 
 
 def main():
     if len(sys.argv) < 2:
         sys.exit(__doc__)
     program, devices = sys.argv[1], ["", *sys.argv[2:]]
-    print("| method | device | environment | same bytes | F 0.25 % | mean, voxels | 95 % | greatest |")
+    print("| method | environment | device | same bytes | F 0.25 % | mean, voxels | 95 % | greatest |")
     print("|---|---|---|---|---|---|---|---|")
-    with tempfile.TemporaryDirectory() as folder:
-        spec, scene = Path(folder, "spec.json"), Path(folder, "scene")
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        spec, scene = folder / "spec.json", folder / "scene"
         spec.write_text(json.dumps(SPEC))
         run(program, "synthesize", spec, "--out", scene)
         for method in METHODS:
-            for i, device in enumerate(devices):
-                out = Path(folder, f"{method}-{i}")
-                report = json.loads(run(program, "reconstruct", scene, "--out", out, "--resolution", 80, "--method", method,
-                                        "--json", environment=device))
-                first, mesh = Path(folder, f"{method}-0", "mesh.ply"), out / "mesh.ply"
-                score = json.loads(run(program, "evaluate", mesh, "--truth", scene, "--json"))
-                apart = json.loads(run(program, "evaluate", mesh, "--truth", first, "--json"))["recon_to_gt"]
-                same = "yes" if mesh.read_bytes() == first.read_bytes() else "no"
-                voxel = report["grid"]["voxel_size"]
-                f025 = next(f["f"] for f in score["f"] if f["t"] == 0.0025)
-                figures = " | ".join(f"{apart[name] / voxel:.2g}" for name in ("mean", "q95", "max"))
-                print(f"| {method} | {report['device']} | {device or 'as it is'} | {same} | {100 * f025:.2f} | {figures} |",
-                      flush=True)
+            for device in devices:
+                try:
+                    figures = compare(program, scene, method, folder, device)
+                except RuntimeError as error:
+                    figures = [f"error: {error}"]
+                print("| " + " | ".join([method, device or "as it is", *figures]) + " |", flush=True)
 
 
 if __name__ == "__main__":

@@ -84,6 +84,7 @@ void print_summary(const pipeline::Report& report, const std::string& out) {
   for (const std::string& file : report.files) std::printf("  %s/%s\n", out.c_str(), file.c_str());
   std::printf("verdict: %s\n", assess::to_string(report.verdict.level));
   for (const std::string& reason : report.verdict.reasons) std::printf("  %s\n", reason.c_str());
+  for (const std::string& note : report.verdict.notes) std::printf("  %s\n", note.c_str());
 }
 
 /// The files are there all the same, to look at.

@@ -24,6 +24,9 @@ constexpr Limits kAtBox{0.25, INFINITY};      // of the surface
 constexpr Limits kMissed{0.04, 0.3};          // of the silhouettes
 constexpr Limits kExcess{0.06, 0.3};          // of the surface's projection
 constexpr Limits kContradiction{0.02, 0.5};   // of the silhouettes' rays
+constexpr Limits kFewViews{0.5, INFINITY};    // of a hull, seen by fewer than three
+constexpr double kHullOff = 0.18;             // of a hull's matches that are far off
+constexpr double kHullUnconfirmed = 0.4;      // of a hull's textured surface
 constexpr double kEnoughMatched = 0.7;        // of the textured surface
 constexpr double kLeastTexture = 0.1;         // of the surface, for shares of it to mean anything
 constexpr double kOutlying = 3;               // times what is usual: a view's residual
@@ -57,7 +60,10 @@ class Judge {
 
   Verdict run() {
     cameras();
-    surface();
+    if (s_.hull)
+      hull();
+    else
+      surface();
     silhouettes();
     coverage();
     return std::move(verdict_);
@@ -118,6 +124,34 @@ class Judge {
           concat("two views put ", percent(s_.match.beyond_far),
                  " of what they both show more than 0.5 % of the diagonal off the surface: look at "
                  "the confidence in mesh.ply"));
+  }
+
+  /// Silhouettes bound a surface from outside; where photographs put it elsewhere, it lies within.
+  void hull() {
+    if (!s_.masks) {
+      weigh(1, {0, 0},
+            "no view has a mask: the hull is the box clipped by what the views see; give masks, or "
+            "use --method refine");
+      return;
+    }
+    std::string note =
+        "a visual hull is an outer bound: concavities that no silhouette shows are filled";
+    const MatchEvidence& m = s_.match;
+    weigh(s_.few_views, kFewViews,
+          concat("fewer than three views see ", percent(s_.few_views),
+                 " of the hull: so few outlines bound it loosely; add views"));
+    if (m.textured < kLeastTexture) {
+      note += m.seen < kLeastTexture ? "; no two views are near enough to each other to tell where"
+                                     : "; there is too little texture to tell where";
+    } else {
+      const double confirmed = m.matched * (1 - m.beyond_far);
+      note += concat("; the photographs confirm it on ", percent(confirmed), " of its texture");
+      weigh(std::max(m.beyond_far / kHullOff, (1 - confirmed) / kHullUnconfirmed), {1, INFINITY},
+            concat("on ", percent(1 - confirmed),
+                   " of its texture the photographs do not confirm the hull: the object is concave "
+                   "there, or too few views show its outline; add views, or use --method refine"));
+    }
+    verdict_.notes.push_back(note);
   }
 
   void silhouettes() {

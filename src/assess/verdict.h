@@ -14,6 +14,7 @@ namespace photohull::assess {
 struct Signals {
   int views = 0;                  ///< that were used
   bool masks = false;             ///< has any view a silhouette?
+  bool hull = false;              ///< is the surface the silhouettes' alone (--method hull)?
   double mask_confidence = 0;     ///< 1 for masks that were given
   double pixel_size = 0;          ///< world units that a pixel covers at the object
   double far = 0;                 ///< world units: half a percent of the surface's diagonal
@@ -38,6 +39,7 @@ inline constexpr ExitCode kFailedVerdict{3};
 struct Verdict {
   Level level = Level::kGood;
   std::vector<std::string> reasons;  ///< sentences: what is wrong, and what to do; empty if good
+  std::vector<std::string> notes;    ///< what a result of this kind means, however good
 };
 
 /// `names` are the views', in the order of signals.match.views.

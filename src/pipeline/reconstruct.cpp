@@ -338,14 +338,16 @@ class Job {
   }
 
   void judge(const TriMesh& mesh) {
-    const assess::Signals signals = gather_signals({.mesh = &mesh,
-                                                    .box = &*in_.scene.box,
-                                                    .voxel_size = in_.grid.voxel_size,
-                                                    .views = in_.views,
-                                                    .silhouettes = in_.silhouettes,
-                                                    .mask_confidence = report_.mask_confidence,
-                                                    .contradiction = in_.contradiction,
-                                                    .cameras_moved = in_.cameras_moved});
+    const assess::Signals signals =
+        gather_signals({.mesh = &mesh,
+                        .box = &*in_.scene.box,
+                        .voxel_size = in_.grid.voxel_size,
+                        .hull = options_.effective_method() == Method::kHull,
+                        .views = in_.views,
+                        .silhouettes = in_.silhouettes,
+                        .mask_confidence = report_.mask_confidence,
+                        .contradiction = in_.contradiction,
+                        .cameras_moved = in_.cameras_moved});
     std::vector<std::string> names;
     for (const View& view : in_.views) names.push_back(view.name);
     report_.verdict = assess::judge(signals, names);

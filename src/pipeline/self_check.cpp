@@ -60,6 +60,7 @@ assess::Signals gather_signals(const CheckedResult& result) {
 
   assess::Signals s;
   s.views = int(result.views.size());
+  s.hull = result.hull;
   s.pixel_size = carving::pixel_footprint(*result.box, cameras);
   s.far = kFar * diagonal(mesh);
   s.cameras_moved = result.cameras_moved;
@@ -89,6 +90,7 @@ std::string to_json(const assess::Verdict& verdict, const assess::Signals& s,
                     std::span<const View> views) {
   nlohmann::ordered_json j = {{"level", assess::to_string(verdict.level)},
                               {"reasons", verdict.reasons},
+                              {"notes", verdict.notes},
                               {"signals",
                                {{"mean_confidence", s.mean_confidence},
                                 {"unsure", s.unsure},

@@ -18,6 +18,7 @@ struct CheckedResult {
   const TriMesh* mesh = nullptr;
   const Box* box = nullptr;
   double voxel_size = 0;  ///< world units
+  bool hull = false;      ///< made by silhouettes alone
   std::span<const View> views;
   std::span<const SilhouetteDistance> silhouettes;
   double mask_confidence = 0;

@@ -110,6 +110,60 @@ TEST(Verdict, SilhouettesDoNotCountWhereThereAreNone) {
   EXPECT_EQ(judged(s).level, Level::kGood);
 }
 
+/// A hull of an object that is concave in places.
+Signals hull_in_order() {
+  Signals s = in_order();
+  s.hull = true;
+  s.match.matched = 0.75, s.match.beyond_far = 0.05;
+  return s;
+}
+
+TEST(Verdict, AGoodHullSaysWhatItIs) {
+  const Verdict v = judged(hull_in_order());
+  EXPECT_EQ(v.level, Level::kGood);
+  EXPECT_THAT(v.reasons, IsEmpty());
+  EXPECT_THAT(v.notes, ElementsAre(testing::AllOf(HasSubstr("outer bound"),
+                                                  HasSubstr("confirm it on 71 %"))));
+  EXPECT_THAT(judged(in_order()).notes, IsEmpty());
+}
+
+TEST(Verdict, PlainHullsAreJudgedBySilhouettesAlone) {
+  Signals s = hull_in_order();
+  s.match.textured = 0.02, s.match.matched = 0;
+  EXPECT_EQ(judged(s).level, Level::kGood);
+  EXPECT_THAT(judged(s).notes, ElementsAre(HasSubstr("too little texture to tell")));
+  s.missed = 0.2;
+  expect(judged(s), Level::kDoubtful, "20 % of the silhouettes empty");
+}
+
+TEST(Verdict, HullsThatPhotographsDoNotConfirmAreDoubtful) {
+  Signals s = hull_in_order();
+  s.match.matched = 0.3;
+  expect(judged(s), Level::kDoubtful, "on 72 % of its texture the photographs do not confirm");
+  s.match.matched = 0.95, s.match.beyond_far = 0.2;  // found elsewhere tells more than not found
+  expect(judged(s), Level::kDoubtful, "on 24 % of its texture the photographs do not confirm");
+}
+
+TEST(Verdict, HullsOfFewViewsAreDoubtful) {
+  Signals s = hull_in_order();
+  s.few_views = 0.8;
+  expect(judged(s), Level::kDoubtful, "fewer than three views see 80 % of the hull");
+}
+
+// Many views all around are not to blame when no two of them look from near each other.
+TEST(Verdict, HullsWhoseViewsCannotBeComparedSaySo) {
+  Signals s = hull_in_order();
+  s.match.seen = 0, s.match.textured = 0, s.match.matched = 0;
+  EXPECT_EQ(judged(s).level, Level::kGood);
+  EXPECT_THAT(judged(s).notes, ElementsAre(HasSubstr("no two views are near enough")));
+}
+
+TEST(Verdict, HullsWithoutAnyMaskFail) {
+  Signals s = hull_in_order();
+  s.masks = false;
+  expect(judged(s), Level::kFailed, "no view has a mask");
+}
+
 TEST(Verdict, TheWorstReasonDecides) {
   Signals s = in_order();
   s.match.beyond_far = 0.3, s.unseen = 0.9;

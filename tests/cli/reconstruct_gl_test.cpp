@@ -199,7 +199,10 @@ TEST_F(Reconstruct, DraftTakesLargerVoxelsAndOnlyTheHull) {
 }
 
 TEST_F(Reconstruct, MasksMayBeFoundOrLeftOut) {
-  const Finished none = succeed(reconstruct({"--masks", "none", "--method", "hull"}));
+  const Finished none = run_photohull(reconstruct({"--masks", "none", "--method", "hull"}));
+  EXPECT_EQ(none.code, 3);
+  EXPECT_THAT(none.err, HasSubstr("no view has a mask"));
+  EXPECT_EQ(report()["verdict"]["level"], "failed");
   EXPECT_EQ(report()["masks"]["source"], "none");
   EXPECT_THAT(none.err, HasSubstr("warning: without masks the hull is the box"));
   EXPECT_GT(signed_volume(mesh()), 1.5 * kSphereVolume);
@@ -272,6 +275,38 @@ TEST_F(Reconstruct, SameBytesInEveryRunWhateverTheThreads) {
   succeed(reconstruct({"--threads", "2"}));
   EXPECT_TRUE(mesh == read_bytes(path("out/mesh.ply")));
   EXPECT_TRUE(volume == read_bytes(path("out/volume.vdb")));
+}
+
+// llvmpipe with vectors half as wide stands for another device: threads run in other groups.
+TEST_F(Reconstruct, AnotherWidthOfVectorsLeavesTheHullsBytesAndTheSurface) {
+  RunOptions narrow;
+  narrow.environment = {"LP_NATIVE_VECTOR_WIDTH=128"};
+  for (const std::string method : {"hull", "voxel-coloring", "refine"}) {
+    const auto run = [&](const std::string& name, const RunOptions& options) {
+      succeed({"reconstruct", scene(), "--out", path(name), "--masks", path("cutouts"),
+               "--resolution", "32", "--device", "software", "--method", method},
+              options);
+      return path(name + "/mesh.ply");
+    };
+    const std::string wide = run("wide", {}), other = run("narrow", narrow);
+    const json report = json::parse(read_bytes(path("narrow/report.json")));
+    EXPECT_THAT(report["device"], HasSubstr("128 bits"));
+    if (method == "hull") EXPECT_TRUE(read_bytes(wide) == read_bytes(other));
+    const json apart =
+        json::parse(succeed({"evaluate", other, "--truth", wide, "--json"}).out)["recon_to_gt"];
+    const double voxel = report["grid"]["voxel_size"];
+    EXPECT_LT(apart["mean"], 0.01 * voxel) << method;
+    EXPECT_LT(apart["q95"], 0.05 * voxel) << method;
+  }
+}
+
+TEST_F(Reconstruct, ADraftSaysWhatAHullIs) {
+  const Finished run = succeed(reconstruct({"--quality", "draft", "--resolution", "32"}));
+  EXPECT_THAT(run.out, HasSubstr("verdict: good"));
+  EXPECT_THAT(run.out, HasSubstr("a visual hull is an outer bound"));
+  EXPECT_EQ(report()["verdict"]["notes"].size(), 1u);
+  succeed(reconstruct());
+  EXPECT_EQ(report()["verdict"]["notes"].size(), 0u);
 }
 
 TEST_F(Reconstruct, MakesTheOutputFolderAndReplacesEarlierResults) {

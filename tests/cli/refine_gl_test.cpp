@@ -52,7 +52,7 @@ TEST_F(Refine, SameBytesInEveryRunWhateverTheThreads) {
 }
 
 TEST_F(Refine, WithoutMasksBetterThanTheHull) {
-  succeed(reconstruct({"--method", "hull", "--masks", "none"}));
+  EXPECT_EQ(run_photohull(reconstruct({"--method", "hull", "--masks", "none"})).code, 3);
   const double hull = error();
   succeed(reconstruct(
       {"--method", "refine", "--masks", "none", "--tune", kSparse, "--tune", "levels=3"}));
