@@ -26,7 +26,7 @@ constexpr Limits kExcess{0.06, 0.3};          // of the surface's projection
 constexpr Limits kContradiction{0.02, 0.5};   // of the silhouettes' rays
 constexpr Limits kFewViews{0.5, INFINITY};    // of a hull, seen by fewer than three
 constexpr double kHullOff = 0.18;             // of a hull's matches that are far off
-constexpr double kHullUnconfirmed = 0.4;      // of a hull's textured surface
+constexpr double kHullUnconfirmed = 0.36;     // of a hull's textured surface
 constexpr double kEnoughMatched = 0.7;        // of the textured surface
 constexpr double kLeastTexture = 0.1;         // of the surface, for shares of it to mean anything
 constexpr double kOutlying = 3;               // times what is usual: a view's residual
