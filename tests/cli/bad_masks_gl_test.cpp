@@ -83,7 +83,8 @@ TEST_F(BadMasks, UniformPhotographsGiveTheHullAndAWarning) {
 
 TEST_F(BadMasks, TransparentPhotographsCountAsUnmasked) {
   paint_images(0, 0);
-  const Finished run = succeed(reconstruct({"--masks", "auto", "--method", "hull"}));
+  const Finished run = run_photohull(reconstruct({"--masks", "auto", "--method", "hull"}));
+  EXPECT_EQ(run.code, 3);
   EXPECT_THAT(run.err, HasSubstr("warning: without masks the hull is the box"));
 }
 
