@@ -3,11 +3,13 @@
 #
 # Runs unit tests under the thread sanitizer (preset tsan; docs/robustness.md). TBB hands the work to
 # the threads, and what the sanitizer cannot see there looks like races everywhere: so TBB is built
-# with it, too, from the distribution's source package.
+# with it, too, from Debian's source package, which needs the network once.
 #
 #   TEST...   test programs to build and run
-#             (default: core_test io_test raycast_test volume_test)
+#             (default: those of the modules that work in threads)
 #   --help    print this text
+#
+# PHOTOHULL_TBB_SOURCE=DIR names oneTBB's unpacked sources where they cannot be fetched.
 
 # shellcheck source=scripts/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -24,7 +26,8 @@ while [ $# -gt 0 ]; do
   esac
   shift
 done
-[ ${#tests[@]} -gt 0 ] || tests=(core_test io_test raycast_test volume_test)
+[ ${#tests[@]} -gt 0 ] || tests=(core_test io_test raycast_test volume_test calib_test assess_test
+  carving_test refine_test pipeline_test)
 
 cd "$root"
 export CCACHE_BASEDIR=$root
@@ -32,27 +35,40 @@ build=$root/build/tsan
 tbb=$build/onetbb
 mkdir -p "$tbb"
 
-# Fetches the source package and builds libtbb.so in $tbb/build.
-build_tbb() {
+# Fetches the source package of the TBB that is installed and unpacks it in $tbb.
+fetch_tbb() {
   local suite lists=$tbb/lists
   suite=$(sed -n 's/^VERSION_CODENAME=//p' /etc/os-release)
-  mkdir -p "$lists/partial"
+  mkdir -p "$lists/partial" "$tbb/cache/archives/partial"
   echo "deb-src http://deb.debian.org/debian $suite main" >"$tbb/sources.list"
   local apt=(apt-get -q -o "Dir::Etc::sourcelist=$tbb/sources.list" -o Dir::Etc::sourceparts=/dev/null
-    -o "Dir::State::Lists=$lists")
+    -o "Dir::State::Lists=$lists" -o "Dir::Cache=$tbb/cache")
   (cd "$tbb" && "${apt[@]}" update && "${apt[@]}" source --download-only onetbb &&
     tar -xf onetbb_*.orig.tar.*)
-  cmake -S "$(find "$tbb" -maxdepth 1 -iname 'onetbb-*' -type d)" -B "$tbb/build" -G Ninja \
-    -DCMAKE_BUILD_TYPE=RelWithDebInfo -DTBB_TEST=OFF -DTBB_STRICT=OFF -DTBBMALLOC_BUILD=OFF \
-    -DCMAKE_CXX_FLAGS="-fsanitize=thread -fno-omit-frame-pointer"
-  cmake --build "$tbb/build" --parallel "$jobs"
 }
+
+# Builds libtbb.so in $tbb/build.
+build_tbb() {
+  cmake -S "$1" -B "$tbb/build" -G Ninja \
+    -DCMAKE_BUILD_TYPE=RelWithDebInfo -DTBB_TEST=OFF -DTBB_STRICT=OFF -DTBBMALLOC_BUILD=OFF \
+    -DCMAKE_CXX_FLAGS="-fsanitize=thread -fno-omit-frame-pointer" &&
+    cmake --build "$tbb/build" --parallel "$jobs"
+}
+
+find_source() { find "$tbb" -maxdepth 1 -iname 'onetbb-*' -type d | head -n 1; }
 
 find_tbb() { find "$tbb/build" -name 'libtbb.so.12' 2>/dev/null | head -n 1; }
 
 if [ -z "$(find_tbb)" ]; then
+  source=${PHOTOHULL_TBB_SOURCE:-$(find_source)}
+  if [ -z "$source" ]; then
+    say "Fetching TBB's sources"
+    fetch_tbb >"$tbb/log" 2>&1 || die "TBB's sources cannot be fetched; see $tbb/log
+Without Debian's archive, unpack oneTBB's sources and name their folder: PHOTOHULL_TBB_SOURCE=DIR scripts/tsan.sh"
+    source=$(find_source)
+  fi
   say "Building TBB with the thread sanitizer"
-  build_tbb >"$tbb/log" 2>&1 || die "TBB does not build; see $tbb/log"
+  build_tbb "$source" >"$tbb/log" 2>&1 || die "TBB does not build; see $tbb/log"
 fi
 cmake --preset tsan >"$build/configure.log" 2>&1 || die "CMake failed; see $build/configure.log"
 cmake --build --preset tsan --parallel "$jobs" --target "${tests[@]}" -- --quiet ||
