@@ -4,9 +4,10 @@
 
 namespace photohull::synth {
 
-// Two versions, chosen when the program starts. Neither fuses multiplications with additions, so
-// both give the same values.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__SANITIZE_ADDRESS__)
+// Two versions, chosen when the program starts, which is too early for sanitizers. Neither fuses
+// multiplications with additions, so both give the same values.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
 #define PHOTOHULL_WIDE __attribute__((target_clones("avx2", "default")))
 #else
 #define PHOTOHULL_WIDE
