@@ -37,10 +37,7 @@ CameraDiagnosis diagnose_cameras(std::span<const View> views, const std::optiona
     d.notes.push_back("views, pixel centre and box are not judged by misread poses");
     return d;
   }
-  std::vector<Outline> outlines;
-  for (const View& view : views)
-    outlines.push_back(view.mask.empty() ? Outline() : outline_of(view.mask));
-  const std::vector<FrontierPair> tangents = frontier_pairs(cameras, outlines);
+  const std::vector<FrontierPair> tangents = frontier_pairs(cameras, outlines_of(views));
   d.views.resize(views.size());
   d.usual_residual =
       find_disagreeing(evidence_of(cameras, matches), ViewFit::By::kMatches, d.views);
@@ -67,6 +64,16 @@ CameraDiagnosis diagnose_cameras(std::span<const View> views, const std::optiona
   }
   progress.update(1);
   return d;
+}
+
+std::vector<ViewFit> fit_silhouettes(std::span<const View> views) {
+  using namespace diagnosis;
+  Cameras cameras;
+  for (const View& view : views) cameras.push_back(view.camera);
+  std::vector<ViewFit> fits(views.size());
+  find_disagreeing(evidence_of(cameras, frontier_pairs(cameras, outlines_of(views))),
+                   ViewFit::By::kSilhouettes, fits);
+  return fits;
 }
 
 }  // namespace photohull

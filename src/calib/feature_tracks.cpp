@@ -11,6 +11,7 @@
 #include <numbers>
 #include <numeric>
 #include <opencv2/core.hpp>
+#include <opencv2/core/hal/hal.hpp>
 #include <set>
 
 #include "calib/features.h"
@@ -74,22 +75,29 @@ std::vector<int> best_matches(const Features& a, const Features& b, const Camera
   std::vector<int> best(a.pixels.size(), -1);
   for (std::size_t i = 0; i < a.pixels.size(); ++i) {
     const glm::dvec3 line = lines(a.pixels[i]);
-    std::vector<std::pair<float, int>> found;
+    struct Candidate {
+      float distance;  // of the descriptors
+      int feature;
+    };
+    std::vector<Candidate> found;
     for (std::size_t j = 0; j < b.pixels.size(); ++j) {
       const glm::dvec2& q = b.pixels[j];
       if (std::abs(line.x * q.x + line.y * q.y + line.z) > options.epipolar) continue;
-      found.emplace_back(
-          float(cv::norm(a.descriptors.row(int(i)), b.descriptors.row(int(j)), cv::NORM_L2)),
-          int(j));
+      const float squared = cv::hal::normL2Sqr_(
+          a.descriptors.ptr<float>(int(i)), b.descriptors.ptr<float>(int(j)), a.descriptors.cols);
+      found.push_back({std::sqrt(squared), int(j)});
     }
-    std::sort(found.begin(), found.end());
-    const auto rival = std::find_if(found.begin(), found.end(), [&](const auto& f) {
-      return glm::distance(b.pixels[f.second], b.pixels[found[0].second]) > kSamePlace;
-    });
+    if (found.empty()) continue;
+    const Candidate nearest = *std::min_element(
+        found.begin(), found.end(),
+        [](const Candidate& x, const Candidate& y) { return x.distance < y.distance; });
     constexpr float kFarthest = 350;  // of descriptors: what nobody competes with must be near too
-    if (found.empty() || found[0].first > kFarthest) continue;
-    if (rival == found.end() || found[0].first < options.ratio * rival->first)
-      best[i] = found[0].second;
+    if (nearest.distance > kFarthest) continue;
+    if (std::all_of(found.begin(), found.end(), [&](const Candidate& rival) {
+          return glm::distance(b.pixels[rival.feature], b.pixels[nearest.feature]) <= kSamePlace ||
+                 nearest.distance < options.ratio * rival.distance;
+        }))
+      best[i] = nearest.feature;
   }
   return best;
 }

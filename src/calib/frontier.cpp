@@ -1,5 +1,7 @@
 #include "calib/frontier.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -93,6 +95,14 @@ Outline outline_of(const Mask& mask) {
       }
     }
   return {convex_hull(std::move(points)), mask.width, mask.height};
+}
+
+std::vector<Outline> outlines_of(std::span<const View> views) {
+  std::vector<Outline> outlines(views.size());
+  tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
+    if (!views[i].mask.empty()) outlines[i] = outline_of(views[i].mask);
+  });
+  return outlines;
 }
 
 std::vector<FrontierPair> frontier_pairs(std::span<const Camera> cameras,

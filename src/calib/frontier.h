@@ -17,6 +17,8 @@ struct Outline {
 };
 
 Outline outline_of(const Mask& mask);
+/// One for each view, empty where it has no mask.
+std::vector<Outline> outlines_of(std::span<const View> views);
 
 /// Where a tangent plane through two cameras touches each one's silhouette.
 struct FrontierPair {

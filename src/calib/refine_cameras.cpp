@@ -72,14 +72,6 @@ bool is_held_out(std::size_t index, double share) {
   return std::fmod(double(index + 1) * 0.6180339887498949, 1.0) < share;
 }
 
-std::vector<Outline> outlines_of(std::span<const View> views) {
-  std::vector<Outline> outlines(views.size());
-  tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
-    if (!views[i].mask.empty()) outlines[i] = outline_of(views[i].mask);
-  });
-  return outlines;
-}
-
 class Refiner {
  public:
   /// `given`: what the result is compared with, and held near to; `start`: where it begins.

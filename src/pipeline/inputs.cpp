@@ -7,6 +7,7 @@
 
 #include "assess/wrong_views.h"
 #include "calib/crop.h"
+#include "calib/diagnose.h"
 #include "calib/mask_bias.h"
 #include "calib/noise.h"
 #include "calib/prepare_views.h"
@@ -28,6 +29,7 @@ namespace fs = std::filesystem;
 constexpr double kOversized = 1.8;   // times the object's box: the box is made smaller
 constexpr int kCropMargin = 24;      // pixels around the box's projection: patches, mip levels
 constexpr double kSuspicious = 0.3;  // pixels between outlines' tangents: cameras look wrong
+constexpr double kFarOff = 0.005;    // of the image's longer side: this view is wrong
 
 double rounded(double pixels) { return std::round(100 * pixels) / 100; }
 
@@ -72,6 +74,21 @@ double median_noise(std::span<const View> views) {
   return std::max(values[values.size() / 2], 1.0 / 255 / std::sqrt(12.0));
 }
 
+/// Views whose outlines' tangents are far from all others', who agree; none where these are more
+/// than a quarter.
+std::vector<int> views_off_tangents(std::span<const View> views) {
+  const std::vector<ViewFit> fits = fit_silhouettes(views);
+  std::vector<int> off;
+  std::size_t known = 0;
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    const Intrinsics& k = views[i].camera.intrinsics;
+    known += fits[i].count > 0;
+    if (fits[i].disagrees && fits[i].residual > kFarOff * std::max(k.width, k.height))
+      off.push_back(int(i));
+  }
+  return 4 * off.size() > known ? std::vector<int>() : off;
+}
+
 }  // namespace
 
 void Inputs::warn(const std::string& text) {
@@ -110,8 +127,8 @@ void Inputs::tighten_box() {
   scene.box_source = report_.box_source += ", made smaller by the silhouettes";
 }
 
-GridSpec Inputs::lattice(std::span<const Camera> cameras) const {
-  return carving::fit_grid(*scene.box, voxel_size_of(options_, *scene.box, cameras));
+GridSpec Inputs::lattice(std::span<const Camera> of) const {
+  return carving::fit_grid(*scene.box, voxel_size_of(options_, *scene.box, of));
 }
 
 void Inputs::fit_grid() {
@@ -202,13 +219,20 @@ void Inputs::correct_masks() {
 
 /// One view that is far off carves away what all others have.
 void Inputs::leave_out_wrong_views() {
+  leave_out(
+      views_off_tangents(views),
+      "its outline is not where the other views' outlines say; check its camera and its mask");
   const assess::SilhouetteConsistency found =
       assess::find_wrong_views(*scene.box, cameras, pointers(silhouettes));
   contradiction = found.uncovered_left;
-  for (auto i = found.wrong.rbegin(); i != found.wrong.rend(); ++i) {
-    warn(concat("view ", views[*i].name,
-                " is left out: without it the other views' silhouettes agree; check its camera "
-                "and its mask"));
+  leave_out(found.wrong,
+            "without it the other views' silhouettes agree; check its camera and its mask");
+}
+
+/// `wrong` in ascending order.
+void Inputs::leave_out(std::span<const int> wrong, const std::string& why) {
+  for (auto i = wrong.rbegin(); i != wrong.rend(); ++i) {
+    warn(concat("view ", views[*i].name, " is left out: ", why));
     report_.left_out.push_back(views[*i].name);
     views.erase(views.begin() + *i);
     scene.views.erase(scene.views.begin() + *i);

@@ -44,6 +44,7 @@ class Inputs {
 
  private:
   GridSpec lattice(std::span<const Camera> cameras) const;
+  void leave_out(std::span<const int> wrong, const std::string& why);
 
   const ReconstructOptions& options_;
   Report& report_;

@@ -346,6 +346,7 @@ class Job {
                         .views = in_.views,
                         .silhouettes = in_.silhouettes,
                         .mask_confidence = report_.mask_confidence,
+                        .noise_sigma = report_.noise_sigma,
                         .contradiction = in_.contradiction,
                         .cameras_moved = in_.cameras_moved});
     std::vector<std::string> names;

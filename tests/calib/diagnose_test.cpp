@@ -197,6 +197,19 @@ TEST_F(Diagnose, SilhouettesServeWhereThereAreNoMatches) {
   EXPECT_EQ(d.views[3].by, ViewFit::By::kSilhouettes);
 }
 
+TEST_F(Diagnose, SilhouettesAloneNameTheViewThatIsTurned) {
+  turn(views_[3].camera, 20);
+  views_[5].mask = {};
+  const std::vector<ViewFit> fits = fit_silhouettes(views_);
+  ASSERT_EQ(fits.size(), views_.size());
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    EXPECT_EQ(fits[i].disagrees, i == 3) << i;
+    EXPECT_EQ(fits[i].count == 0, i == 5) << i;
+  }
+  EXPECT_GT(fits[3].residual, 5);
+  EXPECT_LT(fits[2].residual, 1);
+}
+
 TEST_F(Diagnose, BoxInOtherUnitsAndBoxThatNoCameraSees) {
   views_.resize(5);
   for (const double factor : {1000.0, 0.001}) {
