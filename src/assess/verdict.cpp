@@ -9,22 +9,23 @@
 namespace photohull::assess {
 namespace {
 
-// Fitted on the runs of bench/plans/stress.json (docs/stability.md): beyond the first figure
-// results are doubtful, beyond the second they count as failed.
+// Fitted on the runs of bench/plans/stress.json, seed 1 (docs/stability.md): beyond the first
+// figure results are doubtful, beyond the second they count as failed.
 struct Limits {
   double doubtful, failed;
 };
 constexpr Limits kResidual{0.5, 2};           // of the distance that counts as far off
-constexpr Limits kMoved{2, 8};                // the same
-constexpr Limits kFarOff{0.15, 0.6};          // share of the matches
+constexpr Limits kMoved{0.6, 2.4};            // the same, of what is left in the mean of the views
+constexpr Limits kFarOff{0.09, 0.6};          // share of the matches
 constexpr Limits kUnmatched{0.42, INFINITY};  // of the surface, textured and not found again
 constexpr Limits kUnsure{0.3, INFINITY};      // of the surface, where matches are few
-constexpr Limits kUnseen{0.3, 0.8};           // of the surface
-constexpr Limits kAtBox{0.25, INFINITY};      // of the surface
+constexpr Limits kUnseen{0.2, 0.8};           // of the surface
+constexpr Limits kAtBox{0.08, INFINITY};      // of the surface
 constexpr Limits kMissed{0.04, 0.3};          // of the silhouettes
 constexpr Limits kExcess{0.06, 0.3};          // of the surface's projection
 constexpr Limits kContradiction{0.02, 0.5};   // of the silhouettes' rays
-constexpr Limits kFewViews{0.5, INFINITY};    // of a hull, seen by fewer than three
+constexpr Limits kFewViews{0.45, INFINITY};   // of the surface, seen by fewer than three
+constexpr double kAlike = 0.6;                // of the views' movement, in common
 constexpr double kHullOff = 0.18;             // of a hull's matches that are far off
 constexpr double kHullUnconfirmed = 0.36;     // of a hull's textured surface
 constexpr double kEnoughMatched = 0.7;        // of the textured surface
@@ -100,9 +101,17 @@ class Judge {
     weigh(residual, kResidual,
           concat("the cameras disagree by ", pixels(s_.match.residual),
                  " (median): calibrate again, or try --refine-cameras auto"));
-    weigh(s_.cameras_moved * s_.pixel_size / s_.far, kMoved,
+    // Errors of single views are nearly gone from the mean of all, which is where the world lies.
+    const double place = std::max(s_.cameras_moved_alike,
+                                  s_.cameras_moved / std::sqrt(double(std::max(1, s_.views))));
+    const bool alike = s_.cameras_moved_alike > kAlike * s_.cameras_moved;
+    weigh(place * s_.pixel_size / s_.far, kMoved,
           concat("the cameras had to be moved by ", pixels(s_.cameras_moved),
-                 " to agree: shape is right, but place and size may be off by as much"));
+                 " to agree: shape is right, but place and size may be off by ", pixels(place),
+                 alike ? "; all were off alike, so that focal length, principal point or pixel "
+                         "centre may be wrong (photohull info --cameras, --refine-cameras "
+                         "poses+intrinsics)"
+                       : ""));
   }
 
   void surface() {
@@ -137,9 +146,6 @@ class Judge {
     std::string note =
         "a visual hull is an outer bound: concavities that no silhouette shows are filled";
     const MatchEvidence& m = s_.match;
-    weigh(s_.few_views, kFewViews,
-          concat("fewer than three views see ", percent(s_.few_views),
-                 " of the hull: so few outlines bound it loosely; add views"));
     if (m.textured < kLeastTexture) {
       note += m.seen < kLeastTexture ? "; no two views are near enough to each other to tell where"
                                      : "; there is too little texture to tell where";
@@ -172,13 +178,16 @@ class Judge {
     weigh(s_.unseen, kUnseen,
           concat("no view sees ", percent(s_.unseen),
                  " of the surface: add views there, or use --unseen open"));
+    weigh(
+        s_.few_views, kFewViews,
+        concat("fewer than three views see ", percent(s_.few_views), " of the surface: add views"));
     if (s_.match.matched < kEnoughMatched)  // else colours differ, and the surface is right
       weigh(s_.unsure, kUnsure,
             concat("confidence is below one half on ", percent(s_.unsure), " of the surface"));
     weigh(s_.at_box, kAtBox,
           concat(percent(s_.at_box),
                  " of the surface lies on the box's sides: the box cuts the object off (make --box "
-                 "larger), or the masks do not show its outline"));
+                 "larger), or nothing tells where it ends"));
   }
 
   const Signals& s_;

@@ -12,20 +12,21 @@ namespace photohull::assess {
 
 /// What the verdict rests on. Shares are in [0, 1].
 struct Signals {
-  int views = 0;                  ///< that were used
-  bool masks = false;             ///< has any view a silhouette?
-  bool hull = false;              ///< is the surface the silhouettes' alone (--method hull)?
-  double mask_confidence = 0;     ///< 1 for masks that were given
-  double pixel_size = 0;          ///< world units that a pixel covers at the object
-  double far = 0;                 ///< world units: half a percent of the surface's diagonal
-  double cameras_moved = 0;       ///< pixels, by --refine-cameras
-  double contradiction = 0;       ///< share of the silhouettes that no hull of all views fills
-  double missed = 0, excess = 0;  ///< SilhouetteFit, means over the views
-  double mean_confidence = 0;     ///< of the surface, the unseen with 0
-  double unsure = 0;              ///< share of the surface with confidence below one half
-  double unseen = 0;              ///< share of the surface that no view sees
-  double few_views = 0;           ///< share of the surface that fewer than three views see
-  double at_box = 0;              ///< share of the surface that lies on the box's sides
+  int views = 0;                   ///< that were used
+  bool masks = false;              ///< has any view a silhouette?
+  bool hull = false;               ///< is the surface the silhouettes' alone (--method hull)?
+  double mask_confidence = 0;      ///< 1 for masks that were given
+  double pixel_size = 0;           ///< world units that a pixel covers at the object
+  double far = 0;                  ///< world units: half a percent of the surface's diagonal
+  double cameras_moved = 0;        ///< pixels, by --refine-cameras
+  double cameras_moved_alike = 0;  ///< pixels, of it what all views have in common
+  double contradiction = 0;        ///< share of the silhouettes that no hull of all views fills
+  double missed = 0, excess = 0;   ///< SilhouetteFit, means over the views
+  double mean_confidence = 0;      ///< of the surface, the unseen with 0
+  double unsure = 0;               ///< share of the surface with confidence below one half
+  double unseen = 0;               ///< share of the surface that no view sees
+  double few_views = 0;            ///< share of the surface that fewer than three views see
+  double at_box = 0;               ///< share of the surface, seen, that lies on the box's sides
   MatchEvidence match;
 };
 

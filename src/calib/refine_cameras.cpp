@@ -235,6 +235,7 @@ class Refiner {
     const Triangulated after = triangulate_all(cameras, judging_);
     const double limit = kOutlier * spread_of_lengths(after.rms);
     double moved = 0;
+    std::vector<glm::dvec2> moved_by(cameras.size(), glm::dvec2(0.0));
     for (std::size_t i = 0; i < judging_.size(); ++i) {
       if (!(after.rms[i] < limit) || !std::isfinite(before.rms[i])) continue;
       for (const Observation& o : judging_[i].observations) {
@@ -248,9 +249,18 @@ class Refiner {
           ++v->observations;
         }
         moved += glm::dot(*a - *same, *a - *same);
+        moved_by[o.view] += *a - *same;
       }
     }
     result.moved = result.all.observations ? std::sqrt(moved / result.all.observations) : 0;
+    glm::dvec2 sum(0.0);
+    int known = 0;
+    for (std::size_t v = 0; v < cameras.size(); ++v) {
+      if (result.views[v].observations == 0) continue;
+      sum += moved_by[v] / double(result.views[v].observations);
+      ++known;
+    }
+    result.moved_alike = known ? glm::length(sum) / known : 0;
     for (ViewAgreement& v : result.views) finish(v);
     finish(result.all);
     result.tangents = int(frontier_pairs(cameras, outlines_).size());

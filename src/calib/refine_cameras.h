@@ -54,6 +54,7 @@ struct CameraRefinement {
   ViewAgreement all;
   double tangents_before = 0, tangents_after = 0;  ///< pixels, held-out tangents (median)
   double moved = 0;           ///< pixels, root mean square over tracks' points and views
+  double moved_alike = 0;     ///< pixels, what all views were moved by alike: their mean's length
   double focal_factor = 1;    ///< of the given focal lengths
   glm::dvec2 principal{0.0};  ///< pixels added to the given principal points
   int tracks = 0, tangents = 0, rounds = 0;

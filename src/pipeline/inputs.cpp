@@ -179,6 +179,7 @@ void Inputs::refine_cameras() {
                 rounded(found.all.observations ? found.all.before : found.tangents_before),
                 " (--refine-cameras off takes them as they are)"));
   cameras_moved = found.moved;
+  cameras_moved_alike = found.moved_alike;
   apply(found, scene);
   for (std::size_t i = 0; i < views.size(); ++i) views[i].camera = found.cameras[i];
 }

@@ -41,6 +41,7 @@ class Inputs {
   std::vector<SilhouetteDistance> silhouettes;
   double contradiction = 0;  ///< share of the silhouettes' rays that other silhouettes leave empty
   double cameras_moved = 0;  ///< by refinement, pixels
+  double cameras_moved_alike = 0;  ///< of it what all views have in common
 
  private:
   GridSpec lattice(std::span<const Camera> cameras) const;

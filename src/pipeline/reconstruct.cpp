@@ -348,7 +348,8 @@ class Job {
                         .mask_confidence = report_.mask_confidence,
                         .noise_sigma = report_.noise_sigma,
                         .contradiction = in_.contradiction,
-                        .cameras_moved = in_.cameras_moved});
+                        .cameras_moved = in_.cameras_moved,
+                        .cameras_moved_alike = in_.cameras_moved_alike});
     std::vector<std::string> names;
     for (const View& view : in_.views) names.push_back(view.name);
     report_.verdict = assess::judge(signals, names);

@@ -55,6 +55,7 @@ std::string to_json(const CameraRefinement& r, const Scene& scene, bool used) {
   j["tangents_before"] = r.tangents_before;
   j["tangents_after"] = r.tangents_after;
   j["moved"] = r.moved;
+  j["moved_alike"] = r.moved_alike;
   j["focal_factor"] = r.focal_factor;
   j["principal_point_offset"] = {r.principal.x, r.principal.y};
   j["views"] = nlohmann::ordered_json::array();

@@ -64,6 +64,7 @@ assess::Signals gather_signals(const CheckedResult& result) {
   s.pixel_size = carving::pixel_footprint(*result.box, cameras);
   s.far = kFar * diagonal(mesh);
   s.cameras_moved = result.cameras_moved;
+  s.cameras_moved_alike = result.cameras_moved_alike;
   s.mask_confidence = result.mask_confidence;
   s.contradiction = result.contradiction;
   s.masks = std::any_of(result.silhouettes.begin(), result.silhouettes.end(),
@@ -75,7 +76,7 @@ assess::Signals gather_signals(const CheckedResult& result) {
   s.few_views = share_of(probes, [](const auto& p) { return p.views.size() < 3; });
   s.at_box = share_of(probes, [&](const auto& p) {
     const glm::dvec3 inside = glm::min(p.point - result.box->min, result.box->max - p.point);
-    return std::min({inside.x, inside.y, inside.z}) < result.voxel_size;
+    return !p.views.empty() && std::min({inside.x, inside.y, inside.z}) < result.voxel_size;
   });
   if (s.masks) compare_silhouettes(result, rays, cameras, s);
   assess::MatchOptions options;
@@ -108,6 +109,7 @@ std::string to_json(const assess::Verdict& verdict, const assess::Signals& s,
                                 {"offset_beyond_half_percent", s.match.beyond_far},
                                 {"residual", s.match.residual},
                                 {"cameras_moved", s.cameras_moved},
+                                {"cameras_moved_alike", s.cameras_moved_alike},
                                 {"pixel_size", s.pixel_size},
                                 {"half_percent", s.far}}}};
   for (std::size_t i = 0; i < views.size() && i < s.match.views.size(); ++i)

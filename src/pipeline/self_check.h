@@ -25,6 +25,7 @@ struct CheckedResult {
   double noise_sigma = 0;    ///< of the images, on square roots of full scale
   double contradiction = 0;  ///< of the silhouettes (assess::SilhouetteConsistency::uncovered_left)
   double cameras_moved = 0;  ///< pixels, by --refine-cameras
+  double cameras_moved_alike = 0;  ///< pixels, of it what all views have in common
 };
 
 assess::Signals gather_signals(const CheckedResult& result);

@@ -77,6 +77,11 @@ TEST(Verdict, EveryFaultHasItsReason) {
     return judged(s);
   };
   expect(with([](Signals& s) { s.cameras_moved = 3; }), Level::kDoubtful, "moved by 3 px");
+  EXPECT_EQ(with([](Signals& s) { s.cameras_moved = 2; }).level, Level::kGood);
+  expect(with([](Signals& s) { s.cameras_moved = 2, s.cameras_moved_alike = 1.9; }),
+         Level::kDoubtful, "off by 1.9 px; all were off alike");
+  expect(with([](Signals& s) { s.few_views = 0.6; }), Level::kDoubtful,
+         "fewer than three views see 60 %");
   expect(with([](Signals& s) { s.match.matched = 0.4; }), Level::kDoubtful,
          "on 54 % of the surface");
   expect(with([](Signals& s) { s.match.beyond_far = 0.7; }), Level::kFailed, "two views put 70 %");
@@ -147,7 +152,7 @@ TEST(Verdict, HullsThatPhotographsDoNotConfirmAreDoubtful) {
 TEST(Verdict, HullsOfFewViewsAreDoubtful) {
   Signals s = hull_in_order();
   s.few_views = 0.8;
-  expect(judged(s), Level::kDoubtful, "fewer than three views see 80 % of the hull");
+  expect(judged(s), Level::kDoubtful, "fewer than three views see 80 % of the surface");
 }
 
 // Many views all around are not to blame when no two of them look from near each other.
