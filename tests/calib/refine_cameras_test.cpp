@@ -186,6 +186,7 @@ TEST_F(RefineCameras, PosesThatAreTwoPixelsOffBecomeConsistent) {
   EXPECT_LT(error(found.cameras), 0.1);
   EXPECT_GT(found.all.before, 0.5);
   EXPECT_LT(found.all.after, 0.15);
+  EXPECT_LT(found.moved_alike, 0.5 * found.moved);
   ASSERT_EQ(found.views.size(), scene_.views.size());
   for (const ViewAgreement& view : found.views)
     if (view.observations > 5) {
@@ -280,6 +281,15 @@ TEST_F(RefineCameras, PixelCentreAlone) {
   EXPECT_NEAR(found.principal.x, -0.5, 0.1);
   EXPECT_NEAR(found.principal.y, -0.5, 0.1);
   EXPECT_EQ(found.focal_factor, 1);
+}
+
+TEST_F(RefineCameras, PrincipalPointsThatAreOffAlikeShowInWhatAllViewsMovedBy) {
+  synthesize(kTextured, "{}");
+  for (View& view : views_) view.camera.intrinsics.cx += 3;
+  const CameraRefinement found = refine_cameras(views_, {}, progress_);
+  ASSERT_TRUE(found.changed);
+  EXPECT_GT(found.moved_alike, 0.8 * found.moved);
+  EXPECT_NEAR(found.moved_alike, 3, 0.6);
 }
 
 TEST_F(RefineCameras, WhatDoesNotAgreeBetterIsNotTaken) {
