@@ -17,6 +17,13 @@ class BadMasks : public SphereScene {
   void refuse(const std::string& masks, const std::vector<std::string>& parts) const {
     fail(1, reconstruct({"--masks", path(masks)}), parts);
   }
+  /// A mask of a speck in one corner, where the object is not.
+  void write_speck(int view) const {
+    std::vector<std::uint8_t> speck(kWidth * kHeight, 0);
+    for (int y = 0; y < 6; ++y) std::fill_n(speck.begin() + y * kWidth, 6, 255);
+    io::write_png(mask_file(view), kWidth, kHeight, 1, speck);
+  }
+
   /// All photographs replaced by uniform ones of this colour and opacity.
   void paint_images(std::uint8_t value, std::uint8_t alpha) const {
     std::vector<std::uint8_t> pixels;
@@ -47,13 +54,18 @@ TEST_F(BadMasks, NotThereOrNotMasks) {
   refuse("cutouts", {mask_file(2), "10 x 10", "96 x 72"});
 }
 
+TEST_F(BadMasks, OfSomethingElseAreNamedAndLeftOut) {
+  for (const int view : {3, 7}) write_speck(view);
+  succeed(reconstruct({"--masks", path("cutouts")}));
+  const auto report = nlohmann::json::parse(read_bytes(path("out/report.json")));
+  EXPECT_THAT(report["left_out"].get<std::vector<std::string>>(),
+              testing::UnorderedElementsAre("view3.png", "view7.png"));
+}
+
 TEST_F(BadMasks, ThatCarveEverythingAwayNameTheViews) {
-  // A speck in one corner of two views, where the object is not.
-  std::vector<std::uint8_t> speck(kWidth * kHeight, 0);
-  for (int y = 0; y < 6; ++y) std::fill_n(speck.begin() + y * kWidth, 6, 255);
-  for (const int view : {3, 7}) io::write_png(mask_file(view), kWidth, kHeight, 1, speck);
-  refuse("cutouts",
-         {"nothing is left of the box", "view3.png removes", "view7.png removes", "masks"});
+  // Too many to be left out.
+  for (const int view : {1, 3, 5, 7, 9, 11}) write_speck(view);
+  refuse("cutouts", {"nothing is left of the box", "view9.png removes", "masks"});
 }
 
 TEST_F(BadMasks, VoxelsThatAreTooLargeAreNotBlamedOnTheMasks) {
