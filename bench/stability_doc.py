@@ -4,6 +4,7 @@
     build/release/photohull stress bench/plans/stress.json --out out/stress
     build/release/photohull stress bench/plans/stress_marks.json --out out/stress_marks
     bench/stability_doc.py out/stress out/stress_marks
+    bench/stability_doc.py --verdicts out/seed2               # the table of verdicts alone
 
 Replaces what stands between the lines `<!-- stress:NAME -->` and `<!-- /stress:NAME -->` by the sections of the folders'
 summary.md, and copies the charts to docs/images. Without the second folder the promises in larger pictures stay as they are.
@@ -33,19 +34,7 @@ def pictures(folder):
     return "\n\n".join(lines)
 
 
-def main():
-    if len(sys.argv) not in (2, 3):
-        sys.exit(__doc__)
-    curves = Path(sys.argv[1])
-    parts = {
-        "marks-small": section(curves, "Promises"),
-        "breakdown": section(curves, "Where it breaks"),
-        "bytes": section(curves, "Equal bytes"),
-        "verdicts": section(curves, "Verdicts"),
-        "curves": pictures(curves),
-    }
-    if len(sys.argv) == 3:
-        parts["marks"] = section(Path(sys.argv[2]), "Promises")
+def replace(parts):
     page = DOCS / "stability.md"
     text = page.read_text()
     for name, content in parts.items():
@@ -54,6 +43,24 @@ def main():
         if count != 1:
             sys.exit(f"{page}: no place <!-- stress:{name} --> for the tables")
     page.write_text(text)
+
+
+def main():
+    if len(sys.argv) not in (2, 3):
+        sys.exit(__doc__)
+    if sys.argv[1] == "--verdicts":
+        replace({"verdicts": section(Path(sys.argv[2]), "Verdicts")})
+        return
+    curves = Path(sys.argv[1])
+    parts = {
+        "marks-small": section(curves, "Promises"),
+        "breakdown": section(curves, "Where it breaks"),
+        "bytes": section(curves, "Equal bytes"),
+        "curves": pictures(curves),
+    }
+    if len(sys.argv) == 3:
+        parts["marks"] = section(Path(sys.argv[2]), "Promises")
+    replace(parts)
 
 
 if __name__ == "__main__":
