@@ -12,7 +12,7 @@ and the exact surface. Prints a table for docs/cameras.md and keeps the figures 
   auto    whether 'reconstruct --refine-cameras auto' used the result (the row "0" is the clean scene, where it should not,
           or must not harm).
   F       at 0.25 % of the diagonal, of the surface that cameras see: exact cameras, noisy ones (off), and auto.
---no-surface leaves the reconstructions out."""
+--no-surface leaves the reconstructions out. Needs numpy."""
 import argparse, json, math, os, shutil, subprocess, sys, tempfile
 
 import numpy as np

@@ -18,8 +18,8 @@ struct SilhouetteConsistency {
 };
 
 /// Follows some hundred rays of each silhouette through the box and asks whether any point of them
-/// lies on the silhouettes of all other views, four pixels aside allowed (more in images larger
-/// than 400 pixels). Where more than two rays in a thousand hold no such point, views whose removal
+/// lies on the silhouettes of all other views, two pixels aside allowed (more in images larger
+/// than 200 pixels). Where more than two rays in a thousand hold no such point, views whose removal
 /// gives most of them one are taken out one after the other, up to a quarter of them, as long as
 /// one stands out from the others; they count as wrong if that mends most of it. Rays that show
 /// what stands beside the box do not count. `silhouettes` holds a distance or nullptr for each
