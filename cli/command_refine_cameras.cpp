@@ -25,7 +25,7 @@ struct Arguments {
   std::string out;
   std::optional<std::string> to;
   std::string tracks = "both";
-  bool intrinsics = false, centre_offset = false, json = false;
+  bool intrinsics = false, centre_offset = false, poses = false, json = false;
 };
 
 void print_summary(const CameraRefinement& r, const Scene& scene) {
@@ -66,10 +66,10 @@ void run(const Arguments& a) {
   for (const std::string& text : prepared.warnings) progress.warn(text);
   progress.stage("refine", 3);
   RefineCamerasOptions options;
-  if (a.intrinsics)
-    options.intrinsics = SharedIntrinsics::kAll;
-  else if (a.centre_offset)
-    options.intrinsics = SharedIntrinsics::kPixelCentre;
+  options.intrinsics = a.intrinsics      ? SharedIntrinsics::kAll
+                       : a.centre_offset ? SharedIntrinsics::kPixelCentre
+                       : a.poses         ? SharedIntrinsics::kNone
+                                         : SharedIntrinsics::kWhereAlike;
   options.source =
       parse_name("--tracks", a.tracks,
                  std::array{TrackSource::kBoth, TrackSource::kGiven, TrackSource::kFound});
@@ -99,10 +99,15 @@ void add_refine_cameras(CLI::App& app) {
   c->add_option("--out", a->out, "folder for the refined scene; made when it does not exist")
       ->required();
   c->add_option("--to", a->to, "format to write (default: the scene's own): " + format_names());
-  c->add_flag("--intrinsics", a->intrinsics,
-              "refine focal length and principal point, the same for all views, too");
-  c->add_flag("--centre-offset", a->centre_offset,
-              "refine an offset of all principal points only (another pixel centre)");
+  CLI::Option* all = c->add_flag("--intrinsics", a->intrinsics,
+                                 "refine focal length and principal point, the same for all views, "
+                                 "too (default: where poses would have to err alike without)");
+  CLI::Option* centre =
+      c->add_flag("--centre-offset", a->centre_offset,
+                  "refine poses and an offset of all principal points (another pixel centre)");
+  CLI::Option* poses = c->add_flag("--poses", a->poses, "refine poses alone");
+  all->excludes(centre, poses);
+  centre->excludes(poses);
   c->add_option("--tracks", a->tracks,
                 "features: given (that the scene's file lists), found, or both")
       ->capture_default_str();

@@ -22,6 +22,9 @@ constexpr std::size_t kGaugePoints = 200;    // that fix it, at most
 constexpr double kOutlier = 4;               // spreads
 constexpr double kLeastSigma = 0.03;         // pixels: nothing is measured better
 constexpr double kLeastTangentSigma = 0.15;  // pixels: contours err alike where they touch
+constexpr double kUsualError = 1;            // pixels, of given poses
+constexpr double kAlike = 1.5;    // times what independent errors of poses leave in their mean
+constexpr double kNoWorse = 1.2;  // times the residual without what views share
 
 using Cameras = std::vector<Camera>;
 
@@ -87,17 +90,30 @@ class Refiner {
   }
 
   CameraRefinement run() {
-    Cameras cameras = start_;
     middle_ = find_middle();
-    const Judgement first = judge(given_, nullptr);
-    first_spread_ = std::max(judging_.size() < std::size_t(kFewestTracks) ? 0 : first.track_sigma,
-                             first.tangent_sigma);
+    if (options_.intrinsics != SharedIntrinsics::kWhereAlike) return refine(options_.intrinsics);
+    CameraRefinement poses = refine(SharedIntrinsics::kNone);
+    const double views = double(given_.size());
+    if (!(poses.moved_alike > kAlike * poses.moved / std::sqrt(views))) return poses;
+    CameraRefinement shared = refine(SharedIntrinsics::kAll);
+    constexpr double kShared = 3;  // parameters, which spare the poses' motions in the images
+    const bool spares =
+        4 * views * std::log(poses.moved / shared.moved) > kShared * std::log(2 * views);
+    const bool fits = shared.all.after < kNoWorse * poses.all.after &&
+                      shared.tangents_after < kNoWorse * poses.tangents_after;
+    return spares && fits ? shared : poses;
+  }
+
+ private:
+  CameraRefinement refine(SharedIntrinsics intrinsics) {
+    Cameras cameras = start_;
+    prior_sigma_ = std::max(kUsualError, 2 * spread(judge(given_, nullptr)));
     CameraRefinement result;
     // A turn looks almost like an offset of the principal point: while poses are held, the offset
     // is what all views have in common.
-    if (options_.intrinsics == SharedIntrinsics::kPixelCentre)
-      try_round(cameras, SharedIntrinsics::kPixelCentre, true, result);
-    const bool last = options_.intrinsics != SharedIntrinsics::kAll;
+    if (intrinsics != SharedIntrinsics::kNone && try_round(cameras, intrinsics, true, result))
+      prior_sigma_ = 2 * spread(judge(cameras, nullptr));  // poses explain what is left
+    const bool last = intrinsics != SharedIntrinsics::kAll;
     bool with_intrinsics = false;
     for (int round = 0; round < options_.rounds; ++round) {
       progress_.check_cancelled();
@@ -115,7 +131,6 @@ class Refiner {
     return result;
   }
 
- private:
   /// One adjustment, taken when what is held out agrees better. False once it has settled.
   bool try_round(Cameras& cameras, SharedIntrinsics intrinsics, bool hold_poses,
                  CameraRefinement& result) const {
@@ -136,6 +151,11 @@ class Refiner {
     double track_sigma = 1, tangent_sigma = 1, cost = 0;
     std::vector<FrontierPair> tangents;
   };
+
+  double spread(const Judgement& j) const {
+    const bool few = judging_.size() < std::size_t(kFewestTracks);
+    return std::max(few ? 0 : j.track_sigma, j.tangent_sigma);
+  }
 
   /// Where the optical axes pass nearest: around there is the object.
   glm::dvec3 find_middle() const {
@@ -202,13 +222,19 @@ class Refiner {
     input.intrinsics = intrinsics;
     input.hold_poses = hold_poses;
     input.middle = middle_;
-    // What neither tracks nor tangents determine stays as it was given.
-    input.prior_sigma = std::max(1.0, 2 * first_spread_);
+    input.prior_sigma = prior_sigma_;  // what neither tracks nor tangents determine stays as given
     return adjust_bundle(input, cameras, given_, shared);
   }
 
-  /// Moved, turned and scaled to where the given cameras have the points, or, where there are few,
-  /// to the given cameras.
+  /// The given poses with the intrinsics of `cameras`: what differs are the poses alone.
+  Cameras given_with(const Cameras& cameras) const {
+    Cameras result = given_;
+    for (std::size_t i = 0; i < result.size(); ++i) result[i].intrinsics = cameras[i].intrinsics;
+    return result;
+  }
+
+  /// Moved, turned and scaled to where the given poses have the points, or, where there are few,
+  /// to the given centres.
   Cameras fix_gauge(const Cameras& cameras) const {
     const Triangulated now = triangulate_all(cameras, adjusting_);
     const double limit = kOutlier * spread_of_lengths(now.rms);
@@ -226,13 +252,14 @@ class Refiner {
     const std::size_t step = (points.size() + kGaugePoints - 1) / kGaugePoints;
     std::vector<glm::dvec3> some;
     for (std::size_t i = 0; i < points.size(); i += step) some.push_back(points[i]);
-    return with_world_as_given(cameras, given_, some, middle_);
+    return with_world_as_given(cameras, given_with(cameras), some, middle_);
   }
 
   void report(const Cameras& cameras, CameraRefinement& result) const {
     result.views.resize(cameras.size());
     const Triangulated before = triangulate_all(given_, judging_);
     const Triangulated after = triangulate_all(cameras, judging_);
+    const Cameras unmoved = given_with(cameras);
     const double limit = kOutlier * spread_of_lengths(after.rms);
     double moved = 0;
     std::vector<glm::dvec2> moved_by(cameras.size(), glm::dvec2(0.0));
@@ -241,7 +268,7 @@ class Refiner {
       for (const Observation& o : judging_[i].observations) {
         const auto b = given_[o.view].project(before.points[i]),
                    a = cameras[o.view].project(after.points[i]);
-        const auto same = given_[o.view].project(after.points[i]);
+        const auto same = unmoved[o.view].project(after.points[i]);
         if (!a || !b || !same) continue;
         for (ViewAgreement* v : {&result.views[o.view], &result.all}) {
           v->before += glm::dot(*b - o.pixel, *b - o.pixel);
@@ -280,7 +307,7 @@ class Refiner {
   std::vector<Outline> outlines_;
   std::vector<Track> adjusting_, judging_;
   glm::dvec3 middle_{0.0};
-  double first_spread_ = 1;  ///< pixels: of the residuals by the given cameras
+  double prior_sigma_ = 1;  ///< pixels: how wrong the given poses may well be
 };
 
 /// Patches of the surface of the hull that these cameras cut.

@@ -15,7 +15,8 @@ namespace photohull {
 enum class SharedIntrinsics {
   kNone,
   kPixelCentre,  ///< an offset of all principal points, in x and y: another pixel centre
-  kAll           ///< that, and a factor of all focal lengths
+  kAll,          ///< that, and a factor of all focal lengths
+  kWhereAlike    ///< kAll where poses alone would have to move most views alike, else kNone
 };
 
 /// Which features are used.
@@ -53,8 +54,8 @@ struct CameraRefinement {
   std::vector<ViewAgreement> views;
   ViewAgreement all;
   double tangents_before = 0, tangents_after = 0;  ///< pixels, held-out tangents (median)
-  double moved = 0;           ///< pixels, root mean square over tracks' points and views
-  double moved_alike = 0;     ///< pixels, what all views were moved by alike: their mean's length
+  double moved = 0;           ///< pixels, by poses: root mean square over tracks' points and views
+  double moved_alike = 0;     ///< pixels, what poses moved all views by alike: their mean's length
   double focal_factor = 1;    ///< of the given focal lengths
   glm::dvec2 principal{0.0};  ///< pixels added to the given principal points
   int tracks = 0, tangents = 0, rounds = 0;
@@ -64,9 +65,11 @@ struct CameraRefinement {
 /// Bundle adjustment [Triggs99] of poses, and with `intrinsics` what all views share, over
 /// feature tracks (find_tracks, patch_tracks) and silhouettes' tangents (frontier_pairs; views with
 /// masks), by Ceres with robust losses whose widths follow the residuals. The gauge is fixed: the
-/// result is moved, turned and scaled to where the given cameras have the points. A round is only
-/// accepted when what was held out agrees better after it, judged by residuals weighed against
-/// their spread in the round before. Views are undistorted. Throws Cancelled, and Error for fewer
+/// result is moved, turned and scaled to where the given poses, with the refined intrinsics, have
+/// the points. A round is only accepted when what was held out agrees better after it, judged by
+/// residuals weighed against their spread in the round before. Where errors of poses could be one
+/// error of what all views share, kWhereAlike takes the latter if by the Bayesian information
+/// criterion [Schwarz78] it spares the poses enough motion. Views are undistorted. Throws Cancelled, and Error for fewer
 /// than three views.
 CameraRefinement refine_cameras(std::span<const View> views, const RefineCamerasOptions& options,
                                 Progress& progress);

@@ -26,12 +26,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kOversized = 1.8;   // times the object's box: the box is made smaller
-constexpr int kCropMargin = 24;      // pixels around the box's projection: patches, mip levels
-constexpr double kSuspicious = 0.3;  // pixels between outlines' tangents: cameras look wrong
-constexpr double kFarOff = 0.005;    // of the image's longer side: this view is wrong
+constexpr double kOversized = 1.8;    // times the object's box: the box is made smaller
+constexpr int kCropMargin = 24;       // pixels around the box's projection: patches, mip levels
+constexpr double kSuspicious = 0.25;  // pixels between outlines' tangents: cameras look wrong
+constexpr double kFarOff = 0.005;     // of the image's longer side: this view is wrong
 
 double rounded(double pixels) { return std::round(100 * pixels) / 100; }
+
+std::string in_common(const CameraRefinement& found) {
+  return concat(" (in all views focal lengths times ", std::round(1e4 * found.focal_factor) / 1e4,
+                ", principal points by ", rounded(found.principal.x), ", ",
+                rounded(found.principal.y), " px)");
+}
 
 double longest_side(const Box& box) {
   const glm::dvec3 size = box.size();
@@ -164,6 +170,8 @@ void Inputs::refine_cameras() {
   RefineCamerasOptions o;
   if (options_.refine_cameras == RefineCameras::kPosesAndIntrinsics)
     o.intrinsics = SharedIntrinsics::kAll;
+  else if (options_.refine_cameras != RefineCameras::kPoses)
+    o.intrinsics = SharedIntrinsics::kWhereAlike;
   o.given = undistorted_tracks(scene, views);
   o.box = scene.box;
   const CameraRefinement found = photohull::refine_cameras(views, o, progress_);
@@ -173,7 +181,9 @@ void Inputs::refine_cameras() {
   if (!use) return;
   if (!asked)
     warn(concat("the masks' outlines disagree by ", rounded(report_.mask_disagreement),
-                " px: the cameras were refined, and what they see agrees to ",
+                " px: the cameras were refined",
+                shares_intrinsics(found) ? in_common(found) : std::string(),
+                ", and what they see agrees to ",
                 rounded(found.all.observations ? found.all.after : found.tangents_after),
                 " px instead of ",
                 rounded(found.all.observations ? found.all.before : found.tangents_before),

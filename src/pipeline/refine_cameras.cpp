@@ -34,10 +34,18 @@ void apply(const CameraRefinement& refinement, Scene& scene) {
 
 bool pays(const CameraRefinement& r) {
   constexpr double kLeastGain = 0.8, kLeastResidual = 0.2;  // pixels
-  const bool tracks = r.all.after < kLeastGain * r.all.before && r.all.before > kLeastResidual;
-  const bool tangents =
-      r.tangents_after < kLeastGain * r.tangents_before && r.tangents_before > kLeastResidual;
-  return r.changed && (r.all.observations > 0 ? tracks : tangents);
+  constexpr double kSharedGain = 0.5;
+  const auto falls = [](double before, double after) {
+    return after < kLeastGain * before && before > kLeastResidual;
+  };
+  // What all views share bends the surface more than residuals show.
+  if (shares_intrinsics(r) && r.all.after < kSharedGain * r.all.before) return true;
+  return r.changed && (r.all.observations > 0 ? falls(r.all.before, r.all.after)
+                                              : falls(r.tangents_before, r.tangents_after));
+}
+
+bool shares_intrinsics(const CameraRefinement& r) {
+  return r.focal_factor != 1 || r.principal != glm::dvec2(0);
 }
 
 std::string to_json(const CameraRefinement& r, const Scene& scene, bool used) {

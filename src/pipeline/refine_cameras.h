@@ -17,8 +17,11 @@ const char* to_string(RefineCameras refine);
 void apply(const CameraRefinement& refinement, Scene& scene);
 
 /// Does the gain pay? The held-out residual must have fallen by a fifth, and to begin with be more
-/// than what matching leaves.
+/// than what matching leaves; or to the half, by intrinsics that all views share.
 bool pays(const CameraRefinement& refinement);
+
+/// Were focal lengths or principal points refined?
+bool shares_intrinsics(const CameraRefinement& refinement);
 
 /// JSON: what changed, whether it is used, and each view's residual before and after, pixels.
 std::string to_json(const CameraRefinement& refinement, const Scene& scene, bool used);

@@ -225,6 +225,29 @@ TEST_F(RefineCameras, FocalLengthAndPrincipalPointOnDemand) {
   EXPECT_EQ(refine_cameras(views_, {}, progress_).focal_factor, 1);
 }
 
+TEST_F(RefineCameras, WhatAllViewsShareIsFoundUnasked) {
+  synthesize(kTextured, R"({"intrinsics_error": 3})");
+  RefineCamerasOptions options;
+  options.intrinsics = SharedIntrinsics::kWhereAlike;
+  const CameraRefinement found = refine_cameras(views_, options, progress_);
+  const Intrinsics given = scene_.views[0].camera.intrinsics, right = truth_[0].intrinsics;
+  EXPECT_NEAR(found.principal.x, right.cx - given.cx, 0.15 * std::abs(right.cx - given.cx) + 0.1);
+  EXPECT_NEAR(found.principal.y, right.cy - given.cy, 0.15 * std::abs(right.cy - given.cy) + 0.1);
+  EXPECT_NEAR(found.focal_factor, right.fx / given.fx, 0.005);
+  EXPECT_LT(found.moved, 0.5);  // poses were right
+  // And the world stays where the poses have it.
+  const glm::dvec3 point(0.1, 0.2, 0.3);
+  for (std::size_t i = 0; i < truth_.size(); ++i)
+    EXPECT_LT(glm::distance(*found.cameras[i].project(point), *truth_[i].project(point)), 0.5);
+}
+
+TEST_F(RefineCameras, ErrorsOfPosesAreNotTakenForSharedOnes) {
+  synthesize(kTextured, R"({"pose_error": 2})");
+  RefineCamerasOptions options;
+  options.intrinsics = SharedIntrinsics::kWhereAlike;
+  EXPECT_EQ(refine_cameras(views_, options, progress_).focal_factor, 1);
+}
+
 TEST_F(RefineCameras, PatchesOfTheHullServeWhereTextureIsFaint) {
   synthesize(R"({"contrast": 0.03, "chroma": 0})", R"({"pose_error": 2})");
   const double before = error(cameras_of(scene_));
