@@ -19,10 +19,10 @@ struct Arguments {
                    mask_offset = "auto", photometric = "off";
   std::optional<std::string> method, refine_cameras, sampler, consistency, visibility;
   std::optional<int> resolution, supersample;
-  std::optional<double> voxel_size, r_consistency;
+  std::optional<double> voxel_size, r_consistency, noise;
   std::vector<std::string> tune;
   int threads = 0;
-  bool evidence = false, fresh = false, json = false;
+  bool keep_views = false, evidence = false, fresh = false, json = false;
 };
 
 pipeline::ReconstructOptions to_options(const Arguments& a) {
@@ -60,6 +60,8 @@ pipeline::ReconstructOptions to_options(const Arguments& a) {
   o.photometric = parse_name("--photometric", a.photometric,
                              std::array{Photometric::kOff, Photometric::kAuto, Photometric::kOn});
   o.mask_offset = pipeline::parse_mask_offset(a.mask_offset);
+  o.noise = a.noise;
+  o.keep_views = a.keep_views;
   o.device = a.device;
   o.threads = a.threads;
   o.evidence = a.evidence;
@@ -155,6 +157,10 @@ void add_reconstruct(CLI::App& app) {
                 "pixels by which the object's outline lies outside the masks' (negative: inside), "
                 "or auto: measured on the photographs")
       ->capture_default_str();
+  c->add_option("--noise", a->noise,
+                "standard deviation of the photographs' noise in 8-bit codes (default: measured)");
+  c->add_flag("--keep-views", a->keep_views,
+              "use views whose silhouettes disagree with all others' too");
   c->add_option("--device", a->device, "auto, software, or an index from 'photohull devices'")
       ->capture_default_str();
   c->add_option("--threads", a->threads, "threads to use (0: one a core)")->capture_default_str();

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "io/find_files.h"
+#include "io/natural_less.h"
 #include "io/text_file.h"
 
 namespace photohull::io {
@@ -17,10 +18,7 @@ constexpr const char *kCamera = "{camera}", *kMoment = "{moment}";
 constexpr int kDeepest = 3;
 
 struct Natural {
-  bool operator()(const std::string& a, const std::string& b) const {
-    if (natural_less(a, b)) return true;
-    return !natural_less(b, a) && a < b;
-  }
+  bool operator()(const std::string& a, const std::string& b) const { return natural_less(a, b); }
 };
 
 /// prefix FIRST middle SECOND suffix.

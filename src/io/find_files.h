@@ -30,9 +30,6 @@ std::filesystem::path find_image(const std::string& listed,
 /// The first bytes of a file (fewer where it is shorter, none where it cannot be read).
 std::string file_head(const std::filesystem::path& file, std::size_t bytes = 4096);
 
-/// Digits compare as numbers: "view2" before "view10".
-bool natural_less(std::string_view a, std::string_view b);
-
 /// The folder that holds a file; "." for a bare name.
 std::filesystem::path folder_of(const std::filesystem::path& file);
 

@@ -9,6 +9,7 @@
 #include "io/camera_checks.h"
 #include "io/find_files.h"
 #include "io/image_file.h"
+#include "io/natural_less.h"
 #include "io/pose_parts.h"
 #include "io/scene_readers.h"
 #include "io/text_file.h"

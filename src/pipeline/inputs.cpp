@@ -19,6 +19,7 @@
 #include "pipeline/checks.h"
 #include "pipeline/mask_policy.h"
 #include "pipeline/self_check.h"
+#include "pipeline/view_order.h"
 #include "projtex/gpu_views.h"
 
 namespace photohull::pipeline {
@@ -29,7 +30,8 @@ namespace fs = std::filesystem;
 constexpr double kOversized = 1.8;    // times the object's box: the box is made smaller
 constexpr int kCropMargin = 24;       // pixels around the box's projection: patches, mip levels
 constexpr double kSuspicious = 0.25;  // pixels between outlines' tangents: cameras look wrong
-constexpr double kFarOff = 0.005;     // of the image's longer side: this view is wrong
+constexpr double kQuantisation = 0.288675 / 255;  // noise that 8 bits alone leave: 1 / sqrt(12)
+constexpr double kFarOff = 0.005;                 // of the image's longer side: this view is wrong
 
 double rounded(double pixels) { return std::round(100 * pixels) / 100; }
 
@@ -76,8 +78,7 @@ double median_noise(std::span<const View> views) {
   tbb::parallel_for(std::size_t(0), views.size(),
                     [&](std::size_t i) { values[i] = estimate_image_noise(views[i].image); });
   std::nth_element(values.begin(), values.begin() + long(values.size() / 2), values.end());
-  // Quantisation to 8 bits alone leaves about this much.
-  return std::max(values[values.size() / 2], 1.0 / 255 / std::sqrt(12.0));
+  return values[values.size() / 2];
 }
 
 /// Views whose outlines' tangents are far from all others', who agree; none where these are more
@@ -104,6 +105,7 @@ void Inputs::warn(const std::string& text) {
 
 void Inputs::load() {
   scene = io::load_scene(options_.scene, options_.load);
+  sort_views_by_name(scene);
   report_.scene = scene.path.string();
   report_.format = to_string(scene.format);
   report_.views = int(scene.views.size());
@@ -152,7 +154,8 @@ void Inputs::prepare() {
   prepare_options.masks = mask_policy(options_.load.masks);
   PreparedViews prepared = prepare_views(scene, loader, prepare_options, progress_);
   views = std::move(prepared.views);
-  report_.noise_sigma = median_noise(views);
+  report_.noise_sigma =
+      std::max(options_.noise ? *options_.noise / 255 : median_noise(views), kQuantisation);
   for (const std::string& text : prepared.warnings) warn(text);
   report_.mask_source = prepared.mask_source;
   report_.mask_confidence = prepared.mask_confidence;
@@ -230,14 +233,16 @@ void Inputs::correct_masks() {
 
 /// One view that is far off carves away what all others have.
 void Inputs::leave_out_wrong_views() {
-  leave_out(
-      views_off_tangents(views),
-      "its outline is not where the other views' outlines say; check its camera and its mask");
+  if (!options_.keep_views)
+    leave_out(
+        views_off_tangents(views),
+        "its outline is not where the other views' outlines say; check its camera and its mask");
   const assess::SilhouetteConsistency found =
       assess::find_wrong_views(*scene.box, cameras, pointers(silhouettes));
-  contradiction = found.uncovered_left;
-  leave_out(found.wrong,
-            "without it the other views' silhouettes agree; check its camera and its mask");
+  contradiction = options_.keep_views ? found.uncovered : found.uncovered_left;
+  if (!options_.keep_views)
+    leave_out(found.wrong,
+              "without it the other views' silhouettes agree; check its camera and its mask");
 }
 
 /// `wrong` in ascending order.

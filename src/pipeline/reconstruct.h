@@ -53,6 +53,10 @@ struct ReconstructOptions {
   Photometric photometric = Photometric::kOff;
   /// Pixels by which outlines lie outside the masks'; nothing: measured (calib/mask_bias.h).
   std::optional<double> mask_offset;
+  /// Of the photographs, standard deviation in 8-bit codes, 0 to 255; nothing: measured
+  /// (calib/noise.h).
+  std::optional<double> noise;
+  bool keep_views = false;  ///< use views that disagree with the others too
   MeshError mesh_error;
   Unseen unseen = Unseen::kClosed;
   /// How the sweep resamples photographs and what decides there; voxel coloring and space carving

@@ -12,6 +12,7 @@ namespace photohull::pipeline {
 namespace {
 
 constexpr double kFarthestMaskOffset = 100;  // pixels
+constexpr double kMostNoise = 255;           // 8-bit codes
 
 /// Throws UsageError for options of the plane sweep where there is none.
 void check_sweep_options(const ReconstructOptions& o) {
@@ -152,6 +153,8 @@ void ReconstructOptions::validate() const {
     throw UsageError(concat("--voxel-size ", *voxel_size, ": must be finite and positive"));
   if (!(std::isfinite(mesh_error.value) && mesh_error.value >= 0))
     throw UsageError(concat("--mesh-error ", mesh_error.value, ": must be finite, 0 or more"));
+  if (noise && !(*noise >= 0 && *noise <= kMostNoise))
+    throw UsageError(concat("--noise ", *noise, ": expected 8-bit codes from 0 to ", kMostNoise));
   if (threads < 0) throw UsageError(concat("--threads ", threads, ": 0 (one a core) or more"));
   check_sweep_options(*this);
   check_tuning(tune, effective_method());
@@ -179,6 +182,8 @@ NamedValues named_options(const ReconstructOptions& options) {
   list.emplace_back("unseen", to_string(options.unseen));
   list.emplace_back("masks", mask_option(options.load));
   list.emplace_back("mask_offset", options.mask_offset ? number(*options.mask_offset) : "auto");
+  if (options.noise) list.emplace_back("noise", number(*options.noise));
+  if (options.keep_views) list.emplace_back("keep_views", "true");
   if (!options.load.background.empty())
     list.emplace_back("background", options.load.background.string());
   if (options.load.pixel_center)

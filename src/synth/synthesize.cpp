@@ -216,9 +216,9 @@ SynthesizedScene synthesize(const Spec& spec, const std::filesystem::path& folde
   const std::vector<std::size_t> indices = ordered_views(spec, kept);
   std::vector<LensCamera> cameras;
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < indices.size(); ++i) {
-    cameras.push_back(all[indices[i]]);
-    names.push_back(view_name(spec.degradations.shuffle ? i : indices[i]));
+  for (const std::size_t i : indices) {
+    cameras.push_back(all[i]);
+    names.push_back(view_name(i));
   }
   const std::vector<LensCamera> written = degrade_cameras(
       cameras, spec.degradations, degradation_seed(spec), control_points(surface.mesh));

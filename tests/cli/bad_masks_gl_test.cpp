@@ -60,6 +60,8 @@ TEST_F(BadMasks, OfSomethingElseAreNamedAndLeftOut) {
   const auto report = nlohmann::json::parse(read_bytes(path("out/report.json")));
   EXPECT_THAT(report["left_out"].get<std::vector<std::string>>(),
               testing::UnorderedElementsAre("view3.png", "view7.png"));
+  fail(1, reconstruct({"--masks", path("cutouts"), "--keep-views"}),
+       {"nothing is left of the box"});
 }
 
 TEST_F(BadMasks, ThatCarveEverythingAwayNameTheViews) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "core/error.h"
 #include "sphere_scene.h"
@@ -22,6 +23,14 @@ class Reconstruct : public SphereScene {
  protected:
   TriMesh mesh() const { return read_ply(path("out/mesh.ply")); }
   json report() const { return json::parse(read_bytes(path("out/report.json"))); }
+  /// The scene file lists its views from the last to the first.
+  void reverse_views() const {
+    std::istringstream in(read_bytes(path("scene_par.txt")));
+    std::string count, line, views;
+    std::getline(in, count);
+    while (std::getline(in, line)) views = line + "\n" + views;
+    write_bytes(path("scene_par.txt"), count + "\n" + views);
+  }
 };
 
 TEST_F(Reconstruct, WritesFourFilesWithAClosedMeshOfTheSphere) {
@@ -109,6 +118,34 @@ TEST_F(Reconstruct, OutlinesMoveByTheMaskOffset) {
   EXPECT_LT(std::int64_t(report()["voxels_kept"]), kept * 19 / 20);
   for (const char* text : {"x", "nan", "1e9", "2px", ""})
     fail(2, reconstruct({"--mask-offset", text}), {std::string("--mask-offset ") + text});
+}
+
+TEST_F(Reconstruct, NoiseThatIsKnownReachesTheVerdict) {
+  write_bytes(path("block.json"), R"({"geometry": {"shape": "block"}, "truth_samples": 100,
+      "material": {"contrast": 0.5}, "image": {"width": 160, "height": 120, "samples": 2},
+      "cameras": {"rings": [{"count": 12, "elevation": 10}, {"count": 12, "elevation": 40}]}})");
+  succeed({"synthesize", path("block.json"), "--out", path("block")});
+  // The hull is the same: what differs is how much of its texture the verdict believes.
+  const auto with_noise = [&](const char* noise) {
+    run_photohull({"reconstruct", path("block"), "--out", out(), "--resolution", "48", "--method",
+                   "hull", "--noise", noise});
+    return report();
+  };
+  const json quiet = with_noise("0"), noisy = with_noise("30");
+  EXPECT_EQ(noisy["voxels_kept"], quiet["voxels_kept"]);
+  EXPECT_NEAR(noisy["noise_sigma"], 30.0 / 255, 1e-9);
+  EXPECT_LT(double(noisy["verdict"]["signals"]["textured"]),
+            0.8 * double(quiet["verdict"]["signals"]["textured"]));
+  for (const char* text : {"-1", "256", "nan"})
+    fail(2, reconstruct({"--noise", text}), {std::string("--noise ") + text});
+}
+
+TEST_F(Reconstruct, ViewsInAnotherOrderGiveTheSameBytes) {
+  succeed(reconstruct({}));
+  const std::string expected = read_bytes(path("out/mesh.ply"));
+  reverse_views();
+  succeed(reconstruct({}));
+  EXPECT_EQ(read_bytes(path("out/mesh.ply")), expected);
 }
 
 TEST_F(Reconstruct, ABoxMuchTooLargeIsMadeSmaller) {

@@ -5,6 +5,7 @@
 
 #include "io/find_files.h"
 #include "io/load_scene.h"
+#include "io/natural_less.h"
 #include "io/write_scene.h"
 #include "scene_fixture.h"
 
