@@ -16,7 +16,7 @@ namespace {
 struct Arguments {
   SceneArguments scene;
   std::string out, quality = "normal", device = "auto", mesh_error = "0", unseen = "closed",
-                   mask_offset = "auto", photometric = "off";
+                   mask_offset = "auto", mask_holes = "mend", photometric = "off";
   std::optional<std::string> method, refine_cameras, sampler, consistency, visibility;
   std::optional<int> resolution, supersample;
   std::optional<double> voxel_size, r_consistency, noise;
@@ -60,6 +60,9 @@ pipeline::ReconstructOptions to_options(const Arguments& a) {
   o.photometric = parse_name("--photometric", a.photometric,
                              std::array{Photometric::kOff, Photometric::kAuto, Photometric::kOn});
   o.mask_offset = pipeline::parse_mask_offset(a.mask_offset);
+  if (a.mask_holes != "mend" && a.mask_holes != "keep")
+    throw UsageError(concat("--mask-holes ", a.mask_holes, ": expected mend or keep"));
+  o.keep_mask_holes = a.mask_holes == "keep";
   o.noise = a.noise;
   o.keep_views = a.keep_views;
   o.device = a.device;
@@ -156,6 +159,10 @@ void add_reconstruct(CLI::App& app) {
   c->add_option("--mask-offset", a->mask_offset,
                 "pixels by which the object's outline lies outside the masks' (negative: inside), "
                 "or auto: measured on the photographs")
+      ->capture_default_str();
+  c->add_option("--mask-holes", a->mask_holes,
+                "mend (holes and bites of given masks where the photograph shows the object's "
+                "colours) or keep")
       ->capture_default_str();
   c->add_option("--noise", a->noise,
                 "standard deviation of the photographs' noise in 8-bit codes (default: measured)");

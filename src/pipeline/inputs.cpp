@@ -12,6 +12,7 @@
 #include "calib/noise.h"
 #include "calib/prepare_views.h"
 #include "calib/refine_cameras.h"
+#include "calib/torn_masks.h"
 #include "carving/fit_grid.h"
 #include "carving/object_box.h"
 #include "core/error.h"
@@ -162,6 +163,27 @@ void Inputs::prepare() {
   for (std::size_t i = 0; i < views.size(); ++i)
     report_.masks.push_back(
         {views[i].name, prepared.masks[i].source, prepared.masks[i].confidence});
+  if (!options_.keep_mask_holes) mend_given_masks(prepared.masks);
+}
+
+void Inputs::mend_given_masks(std::span<const MaskJudgement> masks) {
+  std::vector<MendedMask> mended(views.size());
+  tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
+    // Masks made from the photograph's colours have nothing to learn from them.
+    const bool given = masks[i].source == "mask files" || masks[i].source == "alpha channels";
+    if (given && !views[i].mask.empty()) mended[i] = mend_mask(views[i].image, views[i].mask);
+  });
+  const auto worst = std::max_element(
+      mended.begin(), mended.end(), [](const auto& a, const auto& b) { return a.share < b.share; });
+  const auto torn =
+      std::count_if(mended.begin(), mended.end(), [](const auto& m) { return m.holes; });
+  report_.masks_mended = int(torn);
+  if (torn == 0) return;
+  warn(concat(torn, torn == 1 ? " mask has" : " masks have",
+              " holes or bites where the photographs show the object's colours (most in ",
+              views[std::size_t(worst - mended.begin())].name, ", ",
+              std::round(1000 * worst->share) / 10,
+              " % of it): they were filled (--mask-holes keep takes the masks as they are)"));
 }
 
 void Inputs::refine_cameras() {

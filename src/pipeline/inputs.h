@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/prepare_views.h"
 #include "calib/silhouette.h"
 #include "core/grid.h"
 #include "core/progress.h"
@@ -44,6 +45,7 @@ class Inputs {
   double cameras_moved_alike = 0;  ///< of it what all views have in common
 
  private:
+  void mend_given_masks(std::span<const MaskJudgement> masks);
   GridSpec lattice(std::span<const Camera> cameras) const;
   void leave_out(std::span<const int> wrong, const std::string& why);
 

@@ -42,6 +42,7 @@ std::string job_identity(const ReconstructOptions& options, const Scene& scene,
        << device << '\n'
        << to_string(options.quality) << ' ' << to_string(options.effective_method()) << ' '
        << int(options.load.masks) << ' ' << to_string(options.photometric) << '\n';
+  if (options.keep_mask_holes) text << "mask holes\n";
   if (options.noise) text << "noise " << *options.noise << '\n';
   if (options.mask_offset) text << "mask offset " << *options.mask_offset << '\n';
   for (const std::string& tuned : options.tune) text << std::quoted(tuned) << '\n';

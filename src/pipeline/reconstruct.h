@@ -53,6 +53,7 @@ struct ReconstructOptions {
   Photometric photometric = Photometric::kOff;
   /// Pixels by which outlines lie outside the masks'; nothing: measured (calib/mask_bias.h).
   std::optional<double> mask_offset;
+  bool keep_mask_holes = false;  ///< else calib/torn_masks.h mends masks that were given
   /// Of the photographs, standard deviation in 8-bit codes, 0 to 255; nothing: measured
   /// (calib/noise.h).
   std::optional<double> noise;

@@ -182,6 +182,7 @@ NamedValues named_options(const ReconstructOptions& options) {
   list.emplace_back("unseen", to_string(options.unseen));
   list.emplace_back("masks", mask_option(options.load));
   list.emplace_back("mask_offset", options.mask_offset ? number(*options.mask_offset) : "auto");
+  if (options.keep_mask_holes) list.emplace_back("mask_holes", "keep");
   if (options.noise) list.emplace_back("noise", number(*options.noise));
   if (options.keep_views) list.emplace_back("keep_views", "true");
   if (!options.load.background.empty())

@@ -24,7 +24,7 @@ std::string Report::to_json() const {
   for (const auto& [name, value] : options) j["options"][name] = value;
   j["box"] = {
       {"min", to_json_array(box.min)}, {"max", to_json_array(box.max)}, {"source", box_source}};
-  j["masks"] = {{"source", mask_source}, {"confidence", mask_confidence}, {"offset", mask_offset}};
+  j["masks"] = {{"source", mask_source}, {"confidence", mask_confidence}, {"mended", masks_mended}, {"offset", mask_offset}};
   if (std::isfinite(mask_disagreement)) j["masks"]["disagreement"] = mask_disagreement;
   j["masks"]["views"] = ordered_json::array();
   for (const MaskReport& m : masks)

@@ -18,6 +18,7 @@ TEST(JobIdentity, DiffersByWhatRefinementRestsOn) {
       [](ReconstructOptions& o, Scene&, GridSpec&) { o.photometric = Photometric::kAuto; },
       [](ReconstructOptions& o, Scene&, GridSpec&) { o.mask_offset = 0; },
       [](ReconstructOptions& o, Scene&, GridSpec&) { o.noise = 3; },
+      [](ReconstructOptions& o, Scene&, GridSpec&) { o.keep_mask_holes = true; },
       [](ReconstructOptions& o, Scene&, GridSpec&) { o.mask_offset = 1.5; },
       [](ReconstructOptions& o, Scene&, GridSpec&) { o.tune = {"settle.flat=0"}; },
       [](ReconstructOptions&, Scene& s, GridSpec&) { s.box->max.x += 1e-12; },
