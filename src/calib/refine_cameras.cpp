@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "calib/bundle.h"
 #include "calib/frontier.h"
@@ -19,6 +20,7 @@ namespace {
 
 constexpr int kFewestTracks = 30;            // for the similarity that fixes the gauge
 constexpr std::size_t kGaugePoints = 200;    // that fix it, at most
+constexpr std::size_t kTrialTracks = 1500;   // that tell whether views share an error
 constexpr double kOutlier = 4;               // spreads
 constexpr double kLeastSigma = 0.03;         // pixels: nothing is measured better
 constexpr double kLeastTangentSigma = 0.15;  // pixels: contours err alike where they touch
@@ -75,6 +77,15 @@ bool is_held_out(std::size_t index, double share) {
   return std::fmod(double(index + 1) * 0.6180339887498949, 1.0) < share;
 }
 
+/// So many of a list, spread evenly over it.
+template <typename T>
+std::vector<T> some(const std::vector<T>& list, std::size_t most) {
+  const std::size_t step = std::max<std::size_t>(1, (list.size() + most - 1) / most);
+  std::vector<T> result;
+  for (std::size_t i = 0; i < list.size(); i += step) result.push_back(list[i]);
+  return result;
+}
+
 class Refiner {
  public:
   /// `given`: what the result is compared with, and held near to; `start`: where it begins.
@@ -95,13 +106,16 @@ class Refiner {
     CameraRefinement poses = refine(SharedIntrinsics::kNone);
     const double views = double(given_.size());
     if (!(poses.moved_alike > kAlike * poses.moved / std::sqrt(views))) return poses;
-    CameraRefinement shared = refine(SharedIntrinsics::kAll);
+    // Some of the tracks suffice to tell.
+    const std::vector<Track> all = std::exchange(adjusting_, some(adjusting_, kTrialTracks));
+    const CameraRefinement shared = refine(SharedIntrinsics::kAll);
+    adjusting_ = all;
     constexpr double kShared = 3;  // parameters, which spare the poses' motions in the images
     const bool spares =
         4 * views * std::log(poses.moved / shared.moved) > kShared * std::log(2 * views);
     const bool fits = shared.all.after < kNoWorse * poses.all.after &&
                       shared.tangents_after < kNoWorse * poses.tangents_after;
-    return spares && fits ? shared : poses;
+    return spares && fits ? refine(SharedIntrinsics::kAll) : poses;
   }
 
  private:
@@ -249,10 +263,7 @@ class Refiner {
       }
       return with_world_moved(cameras, from, to);
     }
-    const std::size_t step = (points.size() + kGaugePoints - 1) / kGaugePoints;
-    std::vector<glm::dvec3> some;
-    for (std::size_t i = 0; i < points.size(); i += step) some.push_back(points[i]);
-    return with_world_as_given(cameras, given_with(cameras), some, middle_);
+    return with_world_as_given(cameras, given_with(cameras), some(points, kGaugePoints), middle_);
   }
 
   void report(const Cameras& cameras, CameraRefinement& result) const {

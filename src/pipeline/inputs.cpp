@@ -32,6 +32,8 @@ constexpr double kOversized = 1.8;    // times the object's box: the box is made
 constexpr int kCropMargin = 24;       // pixels around the box's projection: patches, mip levels
 constexpr double kSuspicious = 0.25;  // pixels between outlines' tangents: cameras look wrong
 constexpr double kQuantisation = 0.288675 / 255;  // noise that 8 bits alone leave: 1 / sqrt(12)
+constexpr int kFewestFeatures = 20;               // held-out ones that confirm a camera
+constexpr double kAgrees = 0.5;                   // pixels, of these
 constexpr double kFarOff = 0.005;                 // of the image's longer side: this view is wrong
 
 double rounded(double pixels) { return std::round(100 * pixels) / 100; }
@@ -203,6 +205,7 @@ void Inputs::refine_cameras() {
   const bool always = asked && options_.refine_cameras != RefineCameras::kAuto;
   const bool use = found.changed && (always || pays(found));
   report_.camera_refinement = to_json(found, scene, use);
+  remember_right_cameras(found, use);
   if (!use) return;
   if (!asked)
     warn(concat("the masks' outlines disagree by ", rounded(report_.mask_disagreement),
@@ -258,20 +261,39 @@ void Inputs::leave_out_wrong_views() {
   if (!options_.keep_views)
     leave_out(
         views_off_tangents(views),
-        "its outline is not where the other views' outlines say; check its camera and its mask");
+        "its outline is not where the other views' outlines say (check its camera and its mask)");
   const assess::SilhouetteConsistency found =
       assess::find_wrong_views(*scene.box, cameras, pointers(silhouettes));
   contradiction = options_.keep_views ? found.uncovered : found.uncovered_left;
   if (!options_.keep_views)
     leave_out(found.wrong,
-              "without it the other views' silhouettes agree; check its camera and its mask");
+              "without it the other views' silhouettes agree (check its camera and its mask)");
 }
 
-/// `wrong` in ascending order.
+/// Features of a view whose camera is right lie where those of other views say, whatever its mask.
+void Inputs::remember_right_cameras(const CameraRefinement& found, bool used) {
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const ViewAgreement& v = found.views[i];
+    if (v.observations >= kFewestFeatures && (used ? v.after : v.before) <= kAgrees)
+      right_cameras_.insert(views[i].name);
+  }
+}
+
+/// The views whose outlines contradict the others', in ascending order; where the camera is known
+/// to be right, the mask alone.
 void Inputs::leave_out(std::span<const int> wrong, const std::string& why) {
   for (auto i = wrong.rbegin(); i != wrong.rend(); ++i) {
-    warn(concat("view ", views[*i].name, " is left out: ", why));
-    report_.left_out.push_back(views[*i].name);
+    const std::string name = views[*i].name;
+    if (right_cameras_.contains(name)) {
+      warn(concat("the mask of ", name, " is left out: ", why,
+                  "; the view stays, for features say that its camera is right"));
+      report_.masks_left_out.push_back(name);
+      views[*i].mask = {};
+      silhouettes[*i] = {};
+      continue;
+    }
+    warn(concat("view ", name, " is left out: ", why));
+    report_.left_out.push_back(name);
     views.erase(views.begin() + *i);
     scene.views.erase(scene.views.begin() + *i);
     cameras.erase(cameras.begin() + *i);

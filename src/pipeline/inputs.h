@@ -1,11 +1,13 @@
 // What a job works on: photographs, cameras, silhouettes and the lattice, read, checked and mended.
 #pragma once
 
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "calib/prepare_views.h"
+#include "calib/refine_cameras.h"
 #include "calib/silhouette.h"
 #include "core/grid.h"
 #include "core/progress.h"
@@ -47,7 +49,10 @@ class Inputs {
  private:
   void mend_given_masks(std::span<const MaskJudgement> masks);
   GridSpec lattice(std::span<const Camera> cameras) const;
+  void remember_right_cameras(const CameraRefinement& found, bool used);
   void leave_out(std::span<const int> wrong, const std::string& why);
+
+  std::set<std::string> right_cameras_;  ///< names of views
 
   const ReconstructOptions& options_;
   Report& report_;

@@ -24,7 +24,10 @@ std::string Report::to_json() const {
   for (const auto& [name, value] : options) j["options"][name] = value;
   j["box"] = {
       {"min", to_json_array(box.min)}, {"max", to_json_array(box.max)}, {"source", box_source}};
-  j["masks"] = {{"source", mask_source}, {"confidence", mask_confidence}, {"mended", masks_mended}, {"offset", mask_offset}};
+  j["masks"] = {{"source", mask_source},
+                {"confidence", mask_confidence},
+                {"mended", masks_mended},
+                {"offset", mask_offset}};
   if (std::isfinite(mask_disagreement)) j["masks"]["disagreement"] = mask_disagreement;
   j["masks"]["views"] = ordered_json::array();
   for (const MaskReport& m : masks)
@@ -38,6 +41,7 @@ std::string Report::to_json() const {
   if (!camera_refinement.empty()) j["camera_refinement"] = ordered_json::parse(camera_refinement);
   if (!photometric.empty()) j["photometric"] = ordered_json::parse(photometric);
   j["left_out"] = left_out;
+  j["masks"]["left_out"] = masks_left_out;
   if (!verdict_json.empty()) j["verdict"] = ordered_json::parse(verdict_json);
   j["stages"] = ordered_json::array();
   for (const StageReport& s : stages)

@@ -86,7 +86,8 @@ struct Report {
   assess::Verdict verdict;
   std::string verdict_json;           ///< the same with what it rests on (pipeline/self_check.h)
   std::vector<std::string> left_out;  ///< views whose silhouettes contradict the others'
-  double noise_sigma = 0;             ///< square-root-encoded units of full scale
+  std::vector<std::string> masks_left_out;  ///< of views whose cameras are right
+  double noise_sigma = 0;                   ///< square-root-encoded units of full scale
   GridSpec grid;
   std::vector<StageReport> stages;
   std::int64_t nodes_tested = 0, bricks_evaluated = 0;

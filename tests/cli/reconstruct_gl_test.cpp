@@ -57,7 +57,7 @@ TEST_F(Reconstruct, ReportHasTheDocumentedFields) {
     "cpu_seconds": 0.1, "peak_memory_bytes": 1, "warnings": [], "files": [], "stages": [],
     "left_out": [], "verdict": {"level": "good"},
     "options": {}, "scene": {"path": "", "format": "", "views": 1},
-    "box": {"min": [], "max": [], "source": ""}, "masks": {"source": "", "confidence": 0.1, "mended": 0, "offset": 0.1, "disagreement": 0.1},
+    "box": {"min": [], "max": [], "source": ""}, "masks": {"source": "", "confidence": 0.1, "mended": 0, "left_out": [], "offset": 0.1, "disagreement": 0.1},
     "grid": {"origin": [], "voxel_size": 0.1, "voxels": [], "bricks_stored": 1},
     "hull": {"nodes_tested": 1, "bricks_evaluated": 1},
     "photo": {"sweeps": 1, "voxels_judged": 1, "voxels_carved": 1, "voxels_undecided": 1},
