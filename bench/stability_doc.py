@@ -9,10 +9,29 @@
 Replaces what stands between the lines `<!-- stress:NAME -->` and `<!-- /stress:NAME -->` by the sections of the folders'
 summary.md, and copies the charts to docs/images. Without the second folder the promises in larger pictures stay as they are.
 """
+import json
 import re
 import shutil
 import sys
 from pathlib import Path
+
+# What is done about a degradation: its name, the axis, and the settings with and without it.
+CURES = [
+    ("cameras refined", "pose-error", "default", "cameras as given"),
+    ("intrinsics that views share refined", "intrinsics-error", "default", "cameras as given"),
+    ("the same", "pixel-centre", "default", "cameras as given"),
+    ("wrong views left out", "wrong-views", "default", "all views kept"),
+    ("wrong masks left out", "mask-wrong", "default", "all views kept"),
+    ("outlines moved to the edges", "mask-dilated", "default", "outlines as given"),
+    ("the same", "mask-eroded", "default", "outlines as given"),
+    ("holes mended", "mask-holes", "default", "holes kept"),
+    ("noise known", "noise", "default", "noise unknown"),
+    ("best pairs of views", "gloss", "default", "all pairs"),
+    ("the same", "haze", "default", "all pairs"),
+    ("photometric gains", "exposure", "gains", "default"),
+    ("the same", "white-balance", "gains", "default"),
+    ("the same", "vignetting", "gains", "default"),
+]
 
 DOCS = Path(__file__).resolve().parent.parent / "docs"
 
@@ -22,6 +41,23 @@ def section(folder, heading):
     text = (folder / "summary.md").read_text()
     found = re.search(rf"^## {re.escape(heading)}\n(.*?)(?=^## |\Z)", text, re.S | re.M)
     return found.group(1).strip() if found else ""
+
+
+def cures(folder):
+    """F at 0.25 % in percent, without and with each cure, at the clean and every other strength."""
+    curves = {(c["axis"], c["variant"]): c["points"] for c in json.loads((folder / "results.json").read_text())["curves"]}
+    lines = [
+        "F at 0.25 % of the diagonal, mean over scenes, without and with the cure.",
+        "",
+        "| cure | degradation | clean | strength: without, with |",
+        "|---|---|---|---|",
+    ]
+    for cure, axis, on, off in CURES:
+        pairs = list(zip(curves[axis, off], curves[axis, on], strict=True))
+        cells = [(with_["label"], f"{100 * without['f025']:.1f}, **{100 * with_['f025']:.1f}**") for without, with_ in pairs]
+        others = "; ".join(f"{label}: {text}" for label, text in cells[1:])
+        lines.append(f"| {cure} | {axis.replace('-', ' ')} | {cells[0][1]} | {others} |")
+    return "\n".join(lines)
 
 
 def pictures(folder):
@@ -55,6 +91,7 @@ def main():
     parts = {
         "marks-small": section(curves, "Promises"),
         "breakdown": section(curves, "Where it breaks"),
+        "cures": cures(curves),
         "bytes": section(curves, "Equal bytes"),
         "curves": pictures(curves),
     }

@@ -76,6 +76,7 @@ class Panel {
       axis["axisLabel"] = {{"color", "#222"}, {"fontSize", 11}, {"interval", 0}};
       if (axis_.kinds) axis["axisLabel"]["width"] = kPanelWidth / int(labels_.size()) - 4;
       if (axis_.kinds) axis["axisLabel"]["overflow"] = "break";
+      if (axis_.kinds) axis["axisLabel"]["lineHeight"] = 14;
       return axis;
     }
     std::vector<double> at;
