@@ -208,7 +208,7 @@ class Refiner {
     for (std::size_t i = 0; i < peaks.size(); ++i) peaks[i].weight *= trust[i];
     // Not at first: what no silhouette shows is still to be found under the hull.
     if (!first && any_silhouette(silhouettes_))
-      pull_to_hull(hull, graph, positions, matches.texture, options_.rims, peaks);
+      pull_to_hull(hull, graph, positions, matches.texture, trust, options_.rims, peaks);
     std::vector<float> moves =
         regularize(graph, peaks, positions, mesh.normals, trust, options_.regularize);
     if (!any_silhouette(silhouettes_))  // plain background is no surface: nothing says where it is
@@ -270,7 +270,7 @@ class Refiner {
       // What patches cannot be trusted with stays where it is.
       for (std::size_t k = 0; k < peaks.size(); ++k) peaks[k].offset *= trust[k];
       if (any_silhouette(silhouettes_))
-        pull_to_hull(hull, graph, positions, matches.texture, options_.rims, peaks);
+        pull_to_hull(hull, graph, positions, matches.texture, trust, options_.rims, peaks);
       RegularizeOptions smooth = options_.regularize;
       smooth.membrane = options_.fit.membrane, smooth.fairing = options_.fit.fairing;
       const std::vector<float> moves =

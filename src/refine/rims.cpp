@@ -4,12 +4,15 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace photohull::refine {
 
 namespace {
 
 constexpr int kRounds = 10;  // of averaging with the neighbours: three or four voxels around
+constexpr float kSure = 1, kToldAround = 0.7f;  // weights of peaks that the hull is measured by
+constexpr double kAssumed = 100;                // of them that lie on it, where none are known
 
 /// Weights of the peaks, none counted for more than 1, averaged over the surface around.
 std::vector<float> evidence_around(const VertexGraph& graph, const std::vector<Peak>& peaks) {
@@ -26,18 +29,34 @@ std::vector<float> evidence_around(const VertexGraph& graph, const std::vector<P
   return mean;
 }
 
+/// How far the hull may be believed where nothing checks it, [0, 1]: by the share of what
+/// photographs tell surely that lies on it.
+double tightness(const SparseVolume& hull, std::span<const glm::vec3> positions,
+                 const std::vector<Peak>& peaks, const std::vector<float>& told, double reach) {
+  double sure = kAssumed, on_hull = kAssumed;
+  for (std::size_t i = 0; i < peaks.size(); ++i) {
+    if (!(peaks[i].weight >= kSure && told[i] >= kToldAround)) continue;
+    sure += 1;
+    on_hull += -hull.interpolated(glm::dvec3(positions[i])) - peaks[i].offset < reach;
+  }
+  return std::pow(on_hull / sure, 4);
+}
+
 }  // namespace
 
 void pull_to_hull(const SparseVolume& hull, const VertexGraph& graph,
                   std::span<const glm::vec3> positions, std::span<const float> texture,
-                  const RimOptions& options, std::vector<Peak>& peaks) {
+                  std::span<const float> trust, const RimOptions& options,
+                  std::vector<Peak>& peaks) {
   const std::vector<float> told = evidence_around(graph, peaks);
+  const double strongest = options.weight * tightness(hull, positions, peaks, told, options.reach);
   tbb::parallel_for(std::size_t(0), peaks.size(), [&](std::size_t i) {
     const float under = float(-hull.interpolated(glm::dvec3(positions[i])));
     const float share = 1 - std::clamp(under, 0.0f, float(options.reach)) / float(options.reach);
     Peak& peak = peaks[i];
     const float open = std::max(0.0f, 1 - told[i] / float(options.told));
-    const float weight = float(options.weight) * share * open * (1 - texture[i]);
+    const float thick = trust[i] * trust[i];
+    const float weight = float(strongest) * thick * share * open * (1 - texture[i]);
     if (!(weight > 0)) return;
     peak.offset = (peak.weight * peak.offset + weight * under) / (peak.weight + weight);
     peak.weight += weight;

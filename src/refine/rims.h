@@ -11,17 +11,21 @@
 namespace photohull::refine {
 
 struct RimOptions {
-  double weight = 3.0;  ///< of the hull among the peaks, where nothing has texture; 0: none
-  double reach = 1.0;   ///< voxels under the hull at which it has lost its say
-  double told = 1.0;    ///< mean weight of the peaks around at which it has, too
+  double weight = 30;  ///< of a tight hull among the peaks, where nothing has texture; 0: none
+  double reach = 1.0;  ///< voxels under the hull at which it has lost its say
+  double told = 0.2;   ///< mean weight of the peaks around at which it has, too
 };
 
 /// Mixes into the peaks of vertices on the hull, or just under it, that they want to lie on it:
 /// the less texture a vertex has (Matches::texture), and the less the photographs tell around it,
 /// the more it counts. The hull holds the object with room to spare: where noise makes single
-/// peaks weak, many that agree still know better. `positions` in voxels of the hull's grid.
+/// peaks weak, many that agree still know better. A hull that is loose where photographs check it
+/// is not believed where they do not: the weight falls with the fourth power of the share of what
+/// they tell surely that lies on it. Nor is it at thin parts, which it makes too thick: the weight
+/// falls with the square of `trust` (trust_thickness). `positions` in voxels of the hull's grid.
 void pull_to_hull(const SparseVolume& hull, const VertexGraph& graph,
                   std::span<const glm::vec3> positions, std::span<const float> texture,
-                  const RimOptions& options, std::vector<Peak>& peaks);
+                  std::span<const float> trust, const RimOptions& options,
+                  std::vector<Peak>& peaks);
 
 }  // namespace photohull::refine

@@ -27,11 +27,12 @@ SparseVolume ball() {
 }
 
 /// The peak of a vertex so far under the ball's surface, after the hull has had its say.
-Peak pulled(float under, const Peak& peak, float texture, const RimOptions& options = {}) {
+Peak pulled(float under, const Peak& peak, float texture, const RimOptions& options = {},
+            float trust = 1) {
   const std::vector<vec3> positions = {vec3(12) + (8 - under) * glm::normalize(vec3(1, 2, -0.5))};
   std::vector<Peak> peaks = {peak};
   const VertexGraph alone{{0, 0}, {}};
-  pull_to_hull(ball(), alone, positions, {&texture, 1}, options, peaks);
+  pull_to_hull(ball(), alone, positions, {&texture, 1}, {&trust, 1}, options, peaks);
   return peaks[0];
 }
 
@@ -48,9 +49,9 @@ TEST(PullToHull, WhatLiesDeeperIsNotItsBusiness) {
 }
 
 TEST(PullToHull, TheMoreTextureTheLess) {
-  const Peak evidence = {-0.5f, 0.5f, 0.9f};
+  const Peak evidence = {-0.5f, 0.1f, 0.9f};
   EXPECT_FLOAT_EQ(pulled(0.2f, evidence, 1).offset, -0.5f);
-  EXPECT_NEAR(pulled(0.2f, evidence, 0.99f).offset, -0.5, 0.03);
+  EXPECT_NEAR(pulled(0.2f, evidence, 0.9999f).offset, -0.5, 0.03);
   EXPECT_GT(pulled(0.2f, evidence, 0).offset, pulled(0.2f, evidence, 0.5f).offset);
   EXPECT_GT(pulled(0.2f, evidence, 0.5f).offset, -0.3f);
 }
@@ -59,11 +60,11 @@ TEST(PullToHull, TheMoreTextureTheLess) {
 TEST(PullToHull, WherePhotographsTellAroundTheHullHasNoSay) {
   const VertexGraph row{{0, 1, 3, 4}, {1, 0, 2, 1}};
   const std::vector<vec3> positions(3, vec3(12) + 7.8f * glm::normalize(vec3(1, 2, -0.5)));
-  const std::vector<float> texture(3, 0);
+  const std::vector<float> texture(3, 0), trust(3, 1);
   const auto middle = [&](float weight_beside) {
     std::vector<Peak> peaks(3);
     peaks[0].weight = peaks[2].weight = weight_beside;
-    pull_to_hull(ball(), row, positions, texture, {.told = 0.5}, peaks);
+    pull_to_hull(ball(), row, positions, texture, trust, {.told = 0.5}, peaks);
     return peaks[1];
   };
   EXPECT_GT(middle(0).weight, 2);
@@ -71,6 +72,28 @@ TEST(PullToHull, WherePhotographsTellAroundTheHullHasNoSay) {
   EXPECT_GT(middle(0.3f).weight, 0);
   EXPECT_EQ(middle(1).weight, 0);
   EXPECT_EQ(middle(100).weight, 0);
+}
+
+TEST(PullToHull, ThinPartsAreThickerInTheHull) {
+  const float whole = pulled(0.2f, {}, 0).weight;
+  EXPECT_NEAR(pulled(0.2f, {}, 0, {}, 0.5f).weight, 0.25f * whole, 1e-4f * whole);
+  EXPECT_EQ(pulled(0.2f, {}, 0, {}, 0).weight, 0);
+}
+
+// A plain vertex on the hull, and a thousand that photographs put on it or far under it.
+TEST(PullToHull, AHullThatIsLooseElsewhereIsNotBelieved) {
+  const auto plain = [](float depth) {
+    const std::size_t count = 1001;
+    const std::vector<vec3> positions(count, vec3(12) + 7.8f * glm::normalize(vec3(1, 2, -0.5)));
+    const std::vector<float> texture(count, 0), trust(count, 1);
+    std::vector<Peak> peaks(count, Peak{0.2f - depth, 2, 0.9f});
+    peaks[0] = {};
+    const VertexGraph apart{std::vector<std::uint32_t>(count + 1, 0), {}};
+    pull_to_hull(ball(), apart, positions, texture, trust, {}, peaks);
+    return peaks[0].weight;
+  };
+  EXPECT_NEAR(plain(0.1f), 0.8 * RimOptions().weight, 0.1 * RimOptions().weight);
+  EXPECT_LT(plain(3), 0.001 * plain(0.1f));
 }
 
 TEST(PullToHull, NoWeightNoChange) {
