@@ -2,8 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 // Photo-consistency of tangent patches at offsets along the normal: all chosen views are projected
 // onto the patch by one affine footprint each, at the mip level of its area, and compared with the
-// reference view by zero-mean normalised cross-correlation over all channels, with the image noise
-// as a floor of both variances; the score is the mean of the best share of the pairs. The share of
+// reference view by zero-mean normalised cross-correlation over all channels, with the rounding of
+// 8-bit codes as a floor of both variances; the score is the mean of the best share of the pairs. The share of
 // the reference's variance that is not noise, at the middle offset, is the surfel's texture. With
 // PATCH_BENT patches follow the surface's curvature. One thread an offset of a surfel, so that the
 // threads of a vector share their views.
@@ -59,10 +59,10 @@ void main() {
     squares += dot(x, x);
   }
   const float n = float(kTaps);
-  float floor_of_noise = 3.0 * n * parameters.consistency.x;
+  float lift = 3.0 * n * parameters.consistency.z;
   float variance = max(squares - dot(sum, sum) / n, 0.0);
-  float scale = inversesqrt(variance + floor_of_noise);
-  if (gl_GlobalInvocationID.x % offsets == offsets / 2u) textures[i] = variance * scale * scale;
+  float scale = inversesqrt(variance + lift);
+  if (gl_GlobalInvocationID.x % offsets == offsets / 2u) textures[i] = variance / (variance + 3.0 * n * parameters.consistency.x);
 
   float pairs[kMatchViews - 1];
   for (int k = 0; k < kMatchViews - 1; ++k) pairs[k] = -1.0;
@@ -77,7 +77,7 @@ void main() {
       product += dot(x, patch_of_reference[k]);
     }
     float score = (product - dot(sum, other_sum) / n) * scale *
-                  inversesqrt(max(other_squares - dot(other_sum, other_sum) / n, 0.0) + floor_of_noise);
+                  inversesqrt(max(other_squares - dot(other_sum, other_sum) / n, 0.0) + lift);
     for (int k = 0; k < kMatchViews - 1; ++k) {
       float kept = max(pairs[k], score);
       score = min(pairs[k], score);

@@ -22,7 +22,8 @@ struct MatchParameters {
   ivec4 counts;      // x: surfels, y: views, z: offsets
   vec4 search;       // x: first offset along the normal, y: step between offsets; patch spacing is
                      // at least z voxels and w pixels of the reference
-  vec4 consistency;  // x: variance of image noise (square-root encoding), y: share of pairs that count
+  vec4 consistency;  // x: variance of image noise (square-root encoding), y: share of pairs that count,
+                     // z: variance that raises that of patches in their correlation
   vec4 visibility;   // x: shift of the receiver along the normal, y: bias of the depth test,
                      // z: least cosine between a normal and a camera it is matched in, w: one that sees it
   vec4 angles;       // x, y: cosines of the least and the largest angle to the reference,

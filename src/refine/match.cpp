@@ -31,7 +31,8 @@ shaders::MatchParameters parameters_of(std::size_t views, double noise_sigma,
   p.counts = {0, int(views), range.count, 0};
   p.search = {float(range.first), float(range.step), float(o.least_spacing),
               float(o.pixel_spacing)};
-  p.consistency = {float(noise_sigma * noise_sigma), float(o.best_pairs), 0, 0};
+  p.consistency = {float(noise_sigma * noise_sigma), float(o.best_pairs),
+                   float(variance_floor(noise_sigma)), 0};
   p.visibility = {float(o.shift), float(o.depth_bias), float(o.least_cosine), float(o.seen_cosine)};
   p.angles = {cosine(o.nearest_angle), cosine(o.farthest_angle), cosine(o.duplicate_angle), 0};
   return p;

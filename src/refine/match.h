@@ -1,6 +1,7 @@
 // Photo-consistency of surface patches against offsets along their normals.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -28,6 +29,14 @@ struct MatchOptions {
   double sparse_angle = 75;  ///< degrees that refine_surface widens it to where cameras are sparse
   double duplicate_angle = 8;  ///< degrees between views that tell nearly the same
 };
+
+/// What raises the variance of patches in their correlation: that of rounding to 8 bits, or the
+/// noise's where it is smaller. Not all of the noise's: it would lower scores where photographs are
+/// noisy, true and false ones alike, and Matches::texture says what noise leaves.
+inline double variance_floor(double noise_sigma) {
+  constexpr double kRounding = 0.288675 / 255;  // 1 / sqrt(12) of a code
+  return std::min(noise_sigma * noise_sigma, kRounding * kRounding);
+}
 
 /// Offsets along the normals, in voxels: first, first + step, ... (count of them).
 struct OffsetRange {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 
+#include "refine/match.h"
 #include "visibility/depth_maps.h"
 
 namespace photohull::refine::reference {
@@ -175,7 +176,7 @@ double match_patch(std::span<const MatchView> views, std::span<const int> chosen
   if (chosen.size() < 2) return shaders::kNoScore;
   const Frame f = frame(views[std::size_t(chosen[0])], patch, options);
   const std::vector<dvec3> own = taps(views[std::size_t(chosen[0])], patch, f.u, f.v);
-  const double noise = 3 * double(own.size()) * noise_sigma * noise_sigma;
+  const double noise = 3 * double(own.size()) * variance_floor(noise_sigma);
   std::vector<double> scores;
   for (const int other : chosen.subspan(1)) {
     const std::vector<dvec3> theirs = taps(views[std::size_t(other)], patch, f.u, f.v);

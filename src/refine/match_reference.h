@@ -54,7 +54,7 @@ struct Patch {
 /// Score in [-1, 1] of a patch in the chosen views (the reference view first), kNoScore below two
 /// (refine_match_patches.comp.glsl): the mean of the best share of the correlations with the
 /// reference view. Zero-mean normalised cross-correlation over the three channels together, the
-/// variance of each patch raised by the noise's; taps on a square lattice in the tangent plane
+/// variance of each patch raised by variance_floor; taps on a square lattice in the tangent plane
 /// (beyond a radius of 1 on every other place, as on a chessboard) or in the paraboloid of the
 /// bend, projected by the derivatives at the centre, bilinear at the mip level nearest to the size
 /// of a tap's footprint.

@@ -9,6 +9,7 @@
 #include "gpu/buffer.h"
 #include "gpu/program.h"
 #include "projtex/gpu_views.h"
+#include "refine/match.h"
 #include "shared/bake.h"
 #include "shared/refine.h"
 
@@ -212,7 +213,8 @@ class RayMatcher {
       shaders::MatchParameters p{};
       p.counts = {int(count), int(cameras_.size()), length, 0};
       p.search = {0, -1, float(options_.tap_spacing), 1};
-      p.consistency = {float(noise_ * noise_), float(options_.best_pairs), 0, 0};
+      p.consistency = {float(noise_ * noise_), float(options_.best_pairs),
+                       float(variance_floor(noise_)), 0};
       const Buffer uniforms(sizeof p, &p), surfel_buffer = Buffer::of(surfels),
                                            choice_buffer = Buffer::of(choices);
       const Buffer scores(count * std::size_t(length) * 4);

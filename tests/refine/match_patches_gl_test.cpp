@@ -47,7 +47,8 @@ class MatchPatches : public ::testing::Test {
     p.counts = {int(probes.size()), int(views_.size()), range_.count, 0};
     p.search = {float(range_.first), float(range_.step), float(options_.least_spacing),
                 float(options_.pixel_spacing)};
-    p.consistency = {float(noise_ * noise_), float(options_.best_pairs), 0, 0};
+    p.consistency = {float(noise_ * noise_), float(options_.best_pairs),
+                     float(variance_floor(noise_)), 0};
     const gpu::Buffer uniforms(sizeof p, &p), view_buffer = gpu::Buffer::of(gpu_views),
                                               surfel_buffer = gpu::Buffer::of(surfels),
                                               choice_buffer = gpu::Buffer::of(choices);
