@@ -69,8 +69,8 @@ struct CameraRefinement {
 /// the points. A round is only accepted when what was held out agrees better after it, judged by
 /// residuals weighed against their spread in the round before. Where errors of poses could be one
 /// error of what all views share, kWhereAlike takes the latter if by the Bayesian information
-/// criterion [Schwarz78] it spares the poses enough motion. Views are undistorted. Throws Cancelled, and Error for fewer
-/// than three views.
+/// criterion [Schwarz78] it spares the poses enough motion. Views are undistorted. Throws
+/// Cancelled, and Error for fewer than three views.
 CameraRefinement refine_cameras(std::span<const View> views, const RefineCamerasOptions& options,
                                 Progress& progress);
 
