@@ -24,13 +24,11 @@ class Reconstruct : public SphereScene {
   TriMesh mesh() const { return read_ply(path("out/mesh.ply")); }
   json report() const { return json::parse(read_bytes(path("out/report.json"))); }
   /// A textured block in path("block"), 24 views.
-  void synthesize_block(const std::string& image, const std::string& degradations) const {
-    write_bytes(path("block.json"),
-                R"({"geometry": {"shape": "block"}, "truth_samples": 100, "image": )" + image +
-                    R"(, "degradations": )" + degradations +
-                    R"(, "material": {"faces": true, "contrast": 0.6}, "cameras": {"rings": [
-                        {"count": 12, "elevation": 10},
-                        {"count": 12, "elevation": 40, "phase": 0.5}]}})");
+  void synthesize_block() const {
+    write_bytes(path("block.json"), R"({"geometry": {"shape": "block"}, "truth_samples": 100,
+        "image": {"width": 160, "height": 120, "samples": 2},
+        "material": {"faces": true, "contrast": 0.6}, "cameras": {"rings": [
+            {"count": 12, "elevation": 10}, {"count": 12, "elevation": 40, "phase": 0.5}]}})");
     succeed({"synthesize", path("block.json"), "--out", path("block")});
   }
   /// The scene file lists its views from the last to the first.
@@ -131,7 +129,7 @@ TEST_F(Reconstruct, OutlinesMoveByTheMaskOffset) {
 }
 
 TEST_F(Reconstruct, NoiseThatIsKnownReachesTheVerdict) {
-  synthesize_block(R"({"width": 160, "height": 120, "samples": 2})", "{}");
+  synthesize_block();
   // The hull is the same: what differs is how much of its texture the verdict believes.
   const auto with_noise = [&](const char* noise) {
     run_photohull({"reconstruct", path("block"), "--out", out(), "--resolution", "48", "--method",
@@ -145,17 +143,6 @@ TEST_F(Reconstruct, NoiseThatIsKnownReachesTheVerdict) {
             0.8 * double(quiet["verdict"]["signals"]["textured"]));
   for (const char* text : {"-1", "256", "nan"})
     fail(2, reconstruct({"--noise", text}), {std::string("--noise ") + text});
-}
-
-TEST_F(Reconstruct, AWrongMaskIsLeftOutAloneWhereFeaturesConfirmTheCamera) {
-  synthesize_block(R"({"width": 240, "height": 180, "samples": 2})", R"({"mask_wrong": [0, 7]})");
-  const Finished run = run_photohull({"reconstruct", path("block"), "--out", out(), "--resolution",
-                                      "32", "--method", "hull", "--refine-cameras", "poses"});
-  EXPECT_THAT(run.err, HasSubstr("the mask of 0007.png is left out"));
-  const json r = report();
-  EXPECT_THAT(r["masks"]["left_out"].get<std::vector<std::string>>(),
-              testing::UnorderedElementsAre("0000.png", "0007.png"));
-  EXPECT_EQ(r["left_out"], json::array());
 }
 
 TEST_F(Reconstruct, ViewsInAnotherOrderGiveTheSameBytes) {
