@@ -31,10 +31,9 @@ namespace fs = std::filesystem;
 constexpr double kOversized = 1.8;    // times the object's box: the box is made smaller
 constexpr int kCropMargin = 24;       // pixels around the box's projection: patches, mip levels
 constexpr double kSuspicious = 0.25;  // pixels between outlines' tangents: cameras look wrong
-constexpr double kQuantisation = 0.288675 / 255;  // noise that 8 bits alone leave: 1 / sqrt(12)
-constexpr int kFewestFeatures = 20;               // held-out ones that confirm a camera
-constexpr double kAgrees = 0.5;                   // pixels, of these
-constexpr double kFarOff = 0.005;                 // of the image's longer side: this view is wrong
+constexpr int kFewestFeatures = 20;   // held-out ones that confirm a camera
+constexpr double kAgrees = 0.5;       // pixels, of these
+constexpr double kFarOff = 0.005;     // of the image's longer side: this view is wrong
 
 double rounded(double pixels) { return std::round(100 * pixels) / 100; }
 
@@ -158,7 +157,7 @@ void Inputs::prepare() {
   PreparedViews prepared = prepare_views(scene, loader, prepare_options, progress_);
   views = std::move(prepared.views);
   report_.noise_sigma =
-      std::max(options_.noise ? *options_.noise / 255 : median_noise(views), kQuantisation);
+      std::max(options_.noise ? *options_.noise / 255 : median_noise(views), kRoundingNoise);
   for (const std::string& text : prepared.warnings) warn(text);
   report_.mask_source = prepared.mask_source;
   report_.mask_confidence = prepared.mask_confidence;

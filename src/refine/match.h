@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "calib/noise.h"
 #include "core/grid.h"
 #include "core/mesh.h"
 #include "gpu/context.h"
@@ -34,8 +35,7 @@ struct MatchOptions {
 /// noise's where it is smaller. Not all of the noise's: it would lower scores where photographs are
 /// noisy, true and false ones alike, and Matches::texture says what noise leaves.
 inline double variance_floor(double noise_sigma) {
-  constexpr double kRounding = 0.288675 / 255;  // 1 / sqrt(12) of a code
-  return std::min(noise_sigma * noise_sigma, kRounding * kRounding);
+  return std::min(noise_sigma * noise_sigma, kRoundingNoise * kRoundingNoise);
 }
 
 /// Offsets along the normals, in voxels: first, first + step, ... (count of them).

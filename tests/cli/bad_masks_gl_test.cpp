@@ -54,6 +54,27 @@ TEST_F(BadMasks, NotThereOrNotMasks) {
   refuse("cutouts", {mask_file(2), "10 x 10", "96 x 72"});
 }
 
+TEST_F(BadMasks, HolesInThemAreMendedUnlessTheyAreToBeKept) {
+  // Discs of 4 pixels' radius out of the sphere's middle, in every view.
+  for (int view = 0; view < kViews; ++view) {
+    const Mask mask = io::read_mask(mask_file(view));
+    std::vector<std::uint8_t> torn = mask.coverage;
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x)
+        if (std::hypot(x - 0.5 * kWidth, y - 0.5 * kHeight) < 4)
+          torn[std::size_t(y * kWidth + x)] = 0;
+    io::write_png(mask_file(view), kWidth, kHeight, 1, torn);
+  }
+  const auto kept_voxels = [&](const char* holes) {
+    run_photohull(reconstruct({"--method", "hull", "--mask-holes", holes}));
+    const auto report = nlohmann::json::parse(read_bytes(path("out/report.json")));
+    EXPECT_EQ(report["masks"]["mended"], std::string(holes) == "mend" ? kViews : 0);
+    return double(report["voxels_kept"]);
+  };
+  EXPECT_GT(kept_voxels("mend"), 1.05 * kept_voxels("keep"));
+  fail(2, reconstruct({"--mask-holes", "ignore"}), {"--mask-holes ignore", "mend or keep"});
+}
+
 TEST_F(BadMasks, OfSomethingElseAreNamedAndLeftOut) {
   for (const int view : {3, 7}) write_speck(view);
   succeed(reconstruct({"--masks", path("cutouts")}));
