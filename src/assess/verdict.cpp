@@ -30,8 +30,10 @@ constexpr double kHullOff = 0.18;             // of a hull's matches that are fa
 constexpr double kHullUnconfirmed = 0.36;     // of a hull's textured surface
 constexpr double kEnoughMatched = 0.7;        // of the textured surface
 constexpr double kLeastTexture = 0.1;         // of the surface, for shares of it to mean anything
+constexpr double kPlainConfidence = 0.93;     // mean, where there is less texture than that
 constexpr double kOutlying = 3;               // times what is usual: a view's residual
 constexpr int kFewestMatches = 5;             // of a view, to accuse it
+constexpr int kFewestOfAll = 20;              // of all views, to accuse their cameras
 
 std::string percent(double share) { return concat(std::lround(100 * share), " %"); }
 
@@ -84,7 +86,8 @@ class Judge {
   }
 
   void cameras() {
-    const double residual = s_.match.residual * s_.pixel_size / s_.far;
+    int matches = 0;  // each is of two views
+    for (const ViewResidual& v : s_.match.views) matches += v.matches;
     const std::vector<std::size_t> outlying = outlying_views(s_);
     if (!outlying.empty()) {
       double worst = 0;
@@ -98,9 +101,10 @@ class Judge {
                    ": calibrate them again, leave them out (--views), or try --refine-cameras "
                    "auto"));
     }
-    weigh(residual, kResidual,
-          concat("the cameras disagree by ", pixels(s_.match.residual),
-                 " (median): calibrate again, or try --refine-cameras auto"));
+    if (matches >= 2 * kFewestOfAll)
+      weigh(s_.match.residual * s_.pixel_size / s_.far, kResidual,
+            concat("the cameras disagree by ", pixels(s_.match.residual),
+                   " (median): calibrate again, or try --refine-cameras auto"));
     // Errors of single views are nearly gone from the mean of all, which is where the world lies.
     const double place = std::max(s_.cameras_moved_alike,
                                   s_.cameras_moved / std::sqrt(double(std::max(1, s_.views))));
@@ -116,8 +120,10 @@ class Judge {
 
   void surface() {
     if (s_.match.textured < kLeastTexture) {
-      // Silhouettes alone may still show all there is.
-      if (s_.unsure > kUnsure.doubtful || !s_.masks)
+      // Silhouettes alone may still show all there is. They do not when the few matches there are
+      // pull the surface about, or many views do not see parts of it.
+      const double confidence = s_.mean_confidence / std::max(1e-9, 1 - s_.unseen);
+      if (confidence < kPlainConfidence || !s_.masks)
         weigh(1 - s_.match.textured, {1 - kLeastTexture, INFINITY},
               concat("too little texture on ", percent(1 - s_.match.textured),
                      " of the surface: the hull stands there; paint or project a pattern, or add "

@@ -62,6 +62,16 @@ TEST(Verdict, WhenAllViewsDisagreeNoneIsNamed) {
   expect(judged(s), Level::kFailed, "cameras disagree by 2.5 px");
 }
 
+// A median of a handful of matches says nothing about the cameras.
+TEST(Verdict, FewMatchesAccuseNoCameras) {
+  Signals s = in_order();
+  s.match.residual = 2.5;
+  s.match.views.assign(20, {2.5, 1});
+  EXPECT_EQ(judged(s).level, Level::kGood);
+  s.match.views.assign(20, {2.5, 2});
+  expect(judged(s), Level::kFailed, "cameras disagree by 2.5 px");
+}
+
 // The same pixels matter less where they are smaller.
 TEST(Verdict, ResidualsCountByWhatTheyCoverOfTheObject) {
   Signals s = in_order();
@@ -104,6 +114,12 @@ TEST(Verdict, PlainSurfaceIsFineWhereSilhouettesShowIt) {
   Signals s = in_order();
   s.match.textured = 0.02, s.match.matched = 0;
   EXPECT_EQ(judged(s).level, Level::kGood);
+  s.unseen = 0.1, s.mean_confidence = 0.86;  // of what is seen, 0.96
+  EXPECT_EQ(judged(s).level, Level::kGood);
+  s.mean_confidence = 0.8;
+  expect(judged(s), Level::kDoubtful, "too little texture on 98 %");
+  s = in_order();
+  s.match.textured = 0.02, s.match.matched = 0;
   s.masks = false;
   expect(judged(s), Level::kDoubtful, "too little texture on 98 %");
 }
