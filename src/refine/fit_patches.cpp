@@ -57,7 +57,7 @@ shaders::FitParameters parameters_of(double noise_sigma, const FitOptions& o) {
   p.counts = {0, 0, o.steps, 0};
   p.search = {float(o.least_spacing), float(o.pixel_spacing), float(o.largest_offset),
               float(o.largest_step)};
-  p.robust = {float(noise_sigma * noise_sigma), float(o.least_score), float(o.sure_score),
+  p.robust = {float(o.noise * noise_sigma * noise_sigma), float(o.least_score), float(o.sure_score),
               float(o.slope)};
   return p;
 }

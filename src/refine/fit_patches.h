@@ -20,6 +20,7 @@ struct FitOptions {
   int hold_out = 4;             ///< one surfel in so many leaves a view out; 0: none does
   double least_spacing = 0.4;   ///< of a patch's taps, voxels
   double pixel_spacing = 1.0;   ///< of a patch's taps, pixels of the reference view
+  double noise = 0.6;           ///< share of the pixels' variance by noise that samples have
   double least_score = 0.3;     ///< correlation with the other views below which one has no weight
   double sure_score = 0.8;      ///< from which it has full weight
   double slope = 0.05;          ///< standard deviation of the surfels' slopes

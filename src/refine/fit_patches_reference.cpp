@@ -59,6 +59,7 @@ struct Frame {
   dvec3 curvature;
 };
 
+/// `noise`: variance of the samples that is noise.
 Sight look(const MatchView& view, const Frame& frame, const dvec3& theta, double noise) {
   Sight out;
   const dvec3 at = frame.position + theta.x * frame.normal;
@@ -95,7 +96,7 @@ Sight look(const MatchView& view, const Frame& frame, const dvec3& theta, double
     }
   // x = y / |y| with the noise's share in the length; derivatives by the quotient rule.
   centre(out.x);
-  const double length = std::sqrt(dot(out.x, out.x) + kValues * noise * noise);
+  const double length = std::sqrt(dot(out.x, out.x) + kValues * noise);
   for (double& x : out.x) x /= length;
   for (Values& by : out.by) {
     centre(by);
@@ -114,7 +115,8 @@ Model evaluate(std::span<const MatchView> views, std::span<const int> chosen, in
   double total = 0, scores = 0;
   int scored = 0;
   for (std::size_t slot = 0; slot < chosen.size(); ++slot) {
-    const Sight sight = look(views[std::size_t(chosen[slot])], frame, theta, noise);
+    const Sight sight =
+        look(views[std::size_t(chosen[slot])], frame, theta, options.noise * noise * noise);
     if (!sight.before_camera) continue;
     const double correlation = total > 0 ? dot(sight.x, sum) / total : 0;
     if (int(slot) == held) {

@@ -84,6 +84,7 @@ void check(const PeakOptions& o) {
 
 void check(const FitOptions& o) {
   require(o.steps >= 0 && o.steps <= 100, "fit.steps must be 0 to 100");
+  require(o.noise >= 0 && o.noise <= 1, "fit.noise must be 0 to 1");
   require(o.hold_out >= 0, "fit.hold_out must not be negative");
   require(o.least_spacing > 0 && is_length(o.least_spacing), "fit.least_spacing must be positive");
   require(is_length(o.pixel_spacing), "fit.pixel_spacing must not be negative");
