@@ -195,9 +195,12 @@ class Panel {
   bool log_ = false, categories_ = false;
 };
 
-std::vector<SeriesStyle> styles_for(const StressSummary& summary) {
+/// Those of one group: the page has more variants than colours.
+std::vector<SeriesStyle> styles_for(const StressPlan& plan, const StressSummary& summary,
+                                    const std::string& group) {
   std::vector<Outcome> names;
   for (const StressCurve& curve : summary.curves) {
+    if (plan.axes[curve.axis].group != group) continue;
     Outcome o;
     o.variant = curve.variant;
     names.push_back(o);
@@ -205,8 +208,8 @@ std::vector<SeriesStyle> styles_for(const StressSummary& summary) {
   return styles_of(names);
 }
 
-Chart group_chart(const StressPlan& plan, const StressSummary& summary, const std::string& group,
-                  const std::vector<SeriesStyle>& styles) {
+Chart group_chart(const StressPlan& plan, const StressSummary& summary, const std::string& group) {
+  const std::vector<SeriesStyle> styles = styles_for(plan, summary, group);
   std::vector<std::vector<const StressCurve*>> panels;
   std::vector<std::string> legend;
   bool failed = false;
@@ -294,13 +297,11 @@ Chart marks_chart(const StressPlan& plan, const StressSummary& summary) {
 std::vector<Chart> stress_charts(const StressPlan& plan, const StressSummary& summary) {
   std::vector<Chart> charts;
   if (!summary.marks.empty()) charts.push_back(marks_chart(plan, summary));
-  const std::vector<SeriesStyle> styles = styles_for(summary);
   std::vector<std::string> groups;
   for (const StressAxis& axis : plan.axes)
     if (std::find(groups.begin(), groups.end(), axis.group) == groups.end())
       groups.push_back(axis.group);
-  for (const std::string& group : groups)
-    charts.push_back(group_chart(plan, summary, group, styles));
+  for (const std::string& group : groups) charts.push_back(group_chart(plan, summary, group));
   return charts;
 }
 

@@ -10,7 +10,7 @@
 
 namespace photohull::chart {
 
-/// Colour and marker of a variant, the same in all charts of a page.
+/// Colour and marker of a variant, the same in all charts that share a list of styles.
 struct SeriesStyle {
   std::string name;
   std::string colour;     ///< "#rrggbb"
