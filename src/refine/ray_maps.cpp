@@ -87,6 +87,8 @@ class RayMatcher {
         tell(rays[i], rays[i].surface, confidence(s[best]));
       }
     });
+    tbb::parallel_for(std::size_t(0), unexplained.size(),
+                      [&](std::size_t i) { reach_through_hull(unexplained[i]); });
     search(unexplained);
     return std::move(maps_);
   }
@@ -122,6 +124,35 @@ class RayMatcher {
     }
   }
 
+  /// Calls visit(t) for places in the hull along a ray, from `t` voxels on, until it returns false.
+  template <typename Visit>
+  void walk(const glm::dvec3& from, const glm::dvec3& d, double t, Visit&& visit) const {
+    const glm::dvec3 high(hull_.grid.voxels() - 1);
+    double end = 1e9;
+    for (int a = 0; a < 3; ++a) {
+      if (std::abs(d[a]) < 1e-12) continue;
+      const double s = (0 - from[a]) / d[a], e = (high[a] - from[a]) / d[a];
+      t = std::max(t, std::min(s, e));
+      end = std::min(end, std::max(s, e));
+    }
+    while (t < end) {
+      const double value = value_at(hull_, from + t * d);
+      if (value <= 0.3 && !visit(t)) return;
+      t += std::max(0.5, std::abs(value) * 0.8);
+    }
+  }
+
+  /// A ray that ended where it met the surface goes on to where it leaves the hull.
+  void reach_through_hull(Ray& ray) const {
+    double last = ray.length - 1;
+    walk(ray.from, ray.direction, last, [&](double t) {
+      last = t;
+      return true;
+    });
+    ray.length = last + 1;
+  }
+
+  /// Rays through the hull, and with a surface only as far as that.
   std::vector<Ray> make_rays(const SparseVolume* surface) {
     maps_.resize(cameras_.size());
     std::vector<std::vector<Ray>> found(cameras_.size());
@@ -137,29 +168,18 @@ class RayMatcher {
       map.weight = map.depth;
       const glm::dmat3 m(c.projection[0], c.projection[1], c.projection[2]);
       const glm::dmat3 inverse = glm::inverse(m);
-      const glm::dvec3 high(hull_.grid.voxels() - 1);
       for (int y = 0; y < map.height; ++y)
         for (int x = 0; x < map.width; ++x) {
           const glm::dvec3 d = glm::normalize(
               inverse * glm::dvec3((x + 0.5) * map.stride - 0.5, (y + 0.5) * map.stride - 0.5, 1));
-          double t0 = 0, t1 = 1e9;
-          for (int a = 0; a < 3; ++a) {
-            if (std::abs(d[a]) < 1e-12) continue;
-            const double s = (0 - c.centre[a]) / d[a], e = (high[a] - c.centre[a]) / d[a];
-            t0 = std::max(t0, std::min(s, e));
-            t1 = std::min(t1, std::max(s, e));
-          }
           double first = -1, last = -1, at = -1;
-          for (double t = t0; t < t1;) {
-            const double value = value_at(hull_, c.centre + t * d);
-            if (value <= 0.3) {
-              if (first < 0) first = t;
-              last = t;
-              if (surface && at < 0 && value_at(*surface, c.centre + t * d) <= 0)
-                at = crossing(*surface, c.centre, d, t);
-            }
-            t += std::max(0.5, std::abs(value) * 0.8);
-          }
+          walk(c.centre, d, 0, [&](double t) {
+            if (first < 0) first = t;
+            last = t;
+            if (!surface || value_at(*surface, c.centre + t * d) > 0) return true;
+            at = crossing(*surface, c.centre, d, t);
+            return false;
+          });
           if (first < 0) continue;
           first -= 1;
           last += 1;

@@ -106,7 +106,7 @@ class Refiner {
               : bounded(distance_from_mesh(extract_mesh(volume), volume, hull.grid, kNearReach),
                         hull);
       restore(volume, hull, counts);
-      if (level == 1 && options_.voting) vote(volume, hull, counts);
+      if (level > 0 && options_.voting) vote(volume, hull, counts);
       const bool first = level == 0, last = level + 1 == grids.size();
       const int iterations = last    ? options_.fine_iterations
                              : first ? options_.coarse_iterations

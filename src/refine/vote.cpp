@@ -132,6 +132,7 @@ Revision vote_again(gpu::Context& context, SparseVolume& volume, const SparseVol
                     double noise_sigma, VoteOptions options) {
   options.ray_spacing = options.again_spacing;
   options.least_score = options.again_score;
+  options.least_weight = options.again_weight;
   return Voter(hull, cameras,
                match_rays_again(context, hull, volume, images, cameras, noise_sigma, options),
                options)

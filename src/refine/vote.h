@@ -12,7 +12,7 @@ namespace photohull::refine {
 
 struct VoteOptions {
   double ray_spacing = 1.0;    ///< between the rays of a view, voxels in the middle of the grid
-  double again_spacing = 1.5;  ///< between the rays of vote_again
+  double again_spacing = 2.5;  ///< between the rays of vote_again
   double again_score = 0.7;  ///< likewise: below, the surface explains nothing, a ray finds nothing
   double tap_spacing = 0.7;  ///< of the patches across the rays, voxels
   double best_pairs = 0.5;   ///< share of the pairs of views that the score is the mean of
@@ -20,6 +20,7 @@ struct VoteOptions {
   double distinct_by = 0.15;  ///< lead over the second best that gives a ray full weight
   double band = 1.5;          ///< voxels; at most kBand: a ray's say ends that far behind its depth
   double least_weight = 1.5;  ///< sum of the rays' weights below which a voxel stays
+  double again_weight = 2;    ///< likewise, of vote_again
 };
 
 /// The hull without what the views' depth maps see through: each view's rays are matched with views
@@ -37,7 +38,7 @@ struct Revision {
   std::size_t added = 0, freed = 0;  ///< voxels
 };
 
-/// Votes once more on a finer grid than the one `volume` comes from, by rays that its surface does
+/// Votes anew on a finer grid than the one `volume` comes from, by rays that its surface does
 /// not explain: thin parts before the surface, which coarser voxels took for free space, come back,
 /// and bodies that only coarser voxels could not look past go. Rays that the surface explains vote
 /// too. `volume` is on the hull's grid.
