@@ -20,6 +20,7 @@ bool is_length(double value) { return value >= 0 && value <= 1000; }
 void check(const VoteOptions& o) {
   require(o.ray_spacing > 0 && is_length(o.ray_spacing), "vote.ray_spacing must be positive");
   require(o.again_spacing > 0 && is_length(o.again_spacing), "vote.again_spacing must be positive");
+  require(o.last_spacing > 0 && is_length(o.last_spacing), "vote.last_spacing must be positive");
   require(is_score(o.again_score), "vote.again_score must lie in [-1, 1]");
   require(o.tap_spacing > 0 && is_length(o.tap_spacing), "vote.tap_spacing must be positive");
   require(is_share(o.best_pairs), "vote.best_pairs must lie in (0, 1]");

@@ -106,8 +106,8 @@ class Refiner {
               : bounded(distance_from_mesh(extract_mesh(volume), volume, hull.grid, kNearReach),
                         hull);
       restore(volume, hull, counts);
-      if (level > 0 && options_.voting) vote(volume, hull, counts);
       const bool first = level == 0, last = level + 1 == grids.size();
+      if (!first && options_.voting) vote(volume, hull, last, counts);
       const int iterations = last    ? options_.fine_iterations
                              : first ? options_.coarse_iterations
                                      : options_.middle_iterations;
@@ -159,9 +159,11 @@ class Refiner {
         restore_silhouettes(context_, volume, hull, cameras_, silhouettes_, options_.restore));
   }
 
-  void vote(SparseVolume& volume, const SparseVolume& hull, LevelReport& counts) {
+  void vote(SparseVolume& volume, const SparseVolume& hull, bool last, LevelReport& counts) {
+    VoteOptions options = options_.vote;
+    if (last) options.again_spacing = options.last_spacing;
     const Revision revision =
-        vote_again(context_, volume, hull, images_, cameras_, options_.noise_sigma, options_.vote);
+        vote_again(context_, volume, hull, images_, cameras_, options_.noise_sigma, options);
     counts.restored += std::int64_t(revision.added);
     counts.freed += std::int64_t(revision.freed);
   }

@@ -12,7 +12,8 @@ namespace photohull::refine {
 
 struct VoteOptions {
   double ray_spacing = 1.0;    ///< between the rays of a view, voxels in the middle of the grid
-  double again_spacing = 2.5;  ///< between the rays of vote_again
+  double again_spacing = 1.5;  ///< between the rays of vote_again
+  double last_spacing = 2.5;   ///< likewise at the last level, where voxels are smallest
   double again_score = 0.7;  ///< likewise: below, the surface explains nothing, a ray finds nothing
   double tap_spacing = 0.7;  ///< of the patches across the rays, voxels
   double best_pairs = 0.5;   ///< share of the pairs of views that the score is the mean of
