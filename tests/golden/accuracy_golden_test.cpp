@@ -44,14 +44,14 @@ TEST(Accuracy, Block) {
   expect_scores(SyntheticScene("block", 24, 320, 240), 96,
                 {{Method::kHull, 30.27, 29.3, 49.85, 48.8},
                  {Method::kSpaceCarving, 46.89, 45.9, 85.25, 84.2},
-                 {Method::kRefine, 88.18, 87.2, 93.24, 92.2}});
+                 {Method::kRefine, 89.74, 88.7, 93.88, 92.8}});
 }
 
 TEST(Accuracy, RodsBeforeTexture) {
   expect_scores(SyntheticScene("rods_before_texture", 24, 320, 240), 96,
                 {{Method::kHull, 20.55, 19.5, 26.6, 25.6},
                  {Method::kSpaceCarving, 20.77, 19.8, 28.31, 27.3},
-                 {Method::kRefine, 73.01, 71.5, 77.6, 76}});
+                 {Method::kRefine, 92.73, 91.7, 96.17, 95.1}});
 }
 
 TEST(Accuracy, Pawn) {
