@@ -13,7 +13,7 @@ constexpr int kWidth = 1000, kTop = 92, kPanelHeight = 190, kPanelRow = 296, kPa
 constexpr int kLeft[2] = {62, 566};
 constexpr const char* kPromised = "confidence";
 constexpr const char* kTrue = "within a voxel";
-constexpr const char* kPromisedColour = "#cc79a7";
+constexpr const char* kPromisedColour = "#8c564b";
 constexpr const char* kTrueColour = "#8a8a8a";
 
 double percent(double share) { return std::round(1e4 * share) / 100; }
