@@ -21,7 +21,7 @@ namespace photohull::refine {
 namespace {
 
 constexpr double kNearReach = kStillReach;  // voxels of exact distance that a step needs
-constexpr double kAnglePerSpacing = 1.6;  // reach of a view's partners, in spacings of the cameras
+constexpr double kAnglePerSpacing = 2.0;  // reach of a view's partners, in spacings of the cameras
 constexpr double kFullReach = SparseVolume::kBand;
 
 /// The grid with voxels twice as large over the same space.
