@@ -37,10 +37,15 @@ def judge(a, scene, method, folder):
                            str(a.resolution), '--hold-out', held_out)
         row.update(resolution=a.resolution, cpu_s=report['cpu_seconds'], triangles=report['mesh']['triangles'])
         mesh = os.path.join(out, 'mesh.ply')
+    def predicted(views, angle):
+        return photohull(a.program, 'evaluate', mesh, '--photos', path, '--views', views, '--least-angle', str(angle),
+                         '--picture', os.path.join(out, 'worst_%d.png' % angle))['photos']
     for angle in ANGLES:
-        row['angles'][str(angle)] = photohull(
-            a.program, 'evaluate', mesh, '--photos', path, '--views', held_out, '--least-angle', str(angle),
-            '--picture', os.path.join(out, 'worst_%d.png' % angle))['photos']
+        photos = predicted(held_out, angle)
+        masked = [i for i, view in zip(held_out.split(','), photos['views']) if view['masked']]
+        if 0 < len(masked) < len(photos['views']):  # without a mask, a whole photograph is foreground
+            photos = predicted(','.join(masked), angle)
+        row['angles'][str(angle)] = photos
     if os.path.isfile(truth):
         row['f'] = photohull(a.program, 'evaluate', mesh, '--truth', path, '--thresholds', '0.0025')['seen']['f'][0]['f']
     return row
