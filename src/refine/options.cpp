@@ -29,6 +29,7 @@ void check(const VoteOptions& o) {
   require(o.band > 0 && o.band <= SparseVolume::kBand, "vote.band must lie in (0, 3] voxels");
   require(o.least_weight > 0, "vote.least_weight must be positive");
   require(o.again_weight > 0, "vote.again_weight must be positive");
+  require(o.freeing_weight > 0, "vote.freeing_weight must be positive");
 }
 
 void check(const CloseOptions& o) {

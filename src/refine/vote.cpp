@@ -28,13 +28,15 @@ class Voter {
   /// they passed through it.
   Revision revise(SparseVolume& volume) const {
     Revision out;
-    for (const auto& [voxel, value] : votes(&RayMap::before, volume.grid, SparseVolume::kBand)) {
+    for (const auto& [voxel, value] :
+         votes(&RayMap::before, volume.grid, options_.least_weight, SparseVolume::kBand)) {
       const float old = volume.at(voxel);
       if (value > old - kNews) continue;
       out.added += value < 0 && old >= 0;
       stored(voxel, volume) = value;
     }
-    for (const auto& [voxel, value] : votes(&RayMap::through, volume.grid, -SparseVolume::kBand)) {
+    for (const auto& [voxel, value] :
+         votes(&RayMap::through, volume.grid, options_.freeing_weight, -SparseVolume::kBand)) {
       const float old = volume.at(voxel);
       if (value < old + kNews || value < 0) continue;
       out.freed += old < 0;
@@ -63,7 +65,8 @@ class Voter {
             const float hull = hull_.at(voxel);
             values[b * kBrickVoxels + std::size_t(voxel_offset({x, y, z}))] =
                 hull > 1 ? hull
-                         : std::max(hull, float(vote(glm::dvec3(voxel), -SparseVolume::kBand)));
+                         : std::max(hull, float(vote(glm::dvec3(voxel), options_.least_weight,
+                                                     -SparseVolume::kBand)));
           }
     });
     for (std::size_t b = 0; b < bricks.size(); ++b) {
@@ -77,7 +80,8 @@ class Voter {
  private:
   /// What the rays say of voxels beside points of the maps.
   std::vector<std::pair<glm::ivec3, float>> votes(std::vector<glm::vec3> RayMap::*points,
-                                                  const GridSpec& grid, double silent) const {
+                                                  const GridSpec& grid, double least,
+                                                  double silent) const {
     std::vector<glm::vec3> all;
     for (const RayMap& map : maps_)
       all.insert(all.end(), (map.*points).begin(), (map.*points).end());
@@ -85,13 +89,13 @@ class Voter {
     std::vector<std::pair<glm::ivec3, float>> out(voxels.size());
     tbb::parallel_for(std::size_t(0), voxels.size(), [&](std::size_t i) {
       const glm::ivec3 voxel = Lattice(grid).voxel(voxels[i]);
-      out[i] = {voxel, std::max(hull_.at(voxel), float(vote(glm::dvec3(voxel), silent)))};
+      out[i] = {voxel, std::max(hull_.at(voxel), float(vote(glm::dvec3(voxel), least, silent)))};
     });
     return out;
   }
 
-  /// `silent`: where the rays say too little.
-  double vote(const glm::dvec3& p, double silent) const {
+  /// `silent`: where the rays say too little, their weights' sum being below `least`.
+  double vote(const glm::dvec3& p, double least, double silent) const {
     double sum = 0, total = 0;
     for (std::size_t v = 0; v < cameras_.size(); ++v) {
       const RayMap& map = maps_[v];
@@ -107,7 +111,7 @@ class Voter {
       sum += map.weight[at] * std::min(ahead, 1.0);
       total += map.weight[at];
     }
-    if (total < options_.least_weight) return silent;
+    if (total < least) return silent;
     return sum / total * options_.band;
   }
 

@@ -21,7 +21,8 @@ struct VoteOptions {
   double distinct_by = 0.15;  ///< lead over the second best that gives a ray full weight
   double band = 1.5;          ///< voxels; at most kBand: a ray's say ends that far behind its depth
   double least_weight = 1.5;  ///< sum of the rays' weights below which a voxel stays
-  double again_weight = 2;    ///< likewise, of vote_again
+  double again_weight = 2;    ///< likewise, for what vote_again adds
+  double freeing_weight = 3;  ///< and for what it frees: plain surface is not explained either
 };
 
 /// The hull without what the views' depth maps see through: each view's rays are matched with views
