@@ -26,7 +26,7 @@ struct MatchOptions {
   double least_cosine = 0.2;   ///< between a normal and a camera's direction
   double seen_cosine = 0.02;   ///< likewise, above which a camera sees the surface at all
   double nearest_angle = 5;    ///< degrees between the reference and a view compared with it
-  double farthest_angle = 50;  ///< degrees
+  double farthest_angle = 70;  ///< degrees
   double sparse_angle = 75;  ///< degrees that refine_surface widens it to where cameras are sparse
   double duplicate_angle = 8;  ///< degrees between views that tell nearly the same
 };

@@ -12,9 +12,6 @@ namespace {
 using nlohmann::json;
 using testing::ElementsAre;
 
-/// The scene's cameras stand 50 degrees apart: farther than are matched by default.
-constexpr const char* kSparse = "match.farthest_angle=70";
-
 class Refine : public SphereScene {
  protected:
   json report() const { return json::parse(read_bytes(path("out/report.json"))); }
@@ -32,7 +29,7 @@ class Refine : public SphereScene {
 };
 
 TEST_F(Refine, StagesAndResult) {
-  succeed(reconstruct({"--method", "refine", "--tune", kSparse}));
+  succeed(reconstruct({"--method", "refine"}));
   // The hull of a sphere is the sphere: nothing is to be gained, and little may be lost.
   EXPECT_LT(error(), 0.25);
   const json r = report();
@@ -54,8 +51,7 @@ TEST_F(Refine, SameBytesInEveryRunWhateverTheThreads) {
 TEST_F(Refine, WithoutMasksBetterThanTheHull) {
   EXPECT_EQ(run_photohull(reconstruct({"--method", "hull", "--masks", "none"})).code, 3);
   const double hull = error();
-  succeed(reconstruct(
-      {"--method", "refine", "--masks", "none", "--tune", kSparse, "--tune", "levels=3"}));
+  succeed(reconstruct({"--method", "refine", "--masks", "none", "--tune", "levels=3"}));
   EXPECT_EQ(report()["masks"]["source"], "none");
   EXPECT_LT(error(), 0.6 * hull);
 }
