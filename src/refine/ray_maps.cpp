@@ -25,7 +25,8 @@ constexpr double kDuplicate = 8, kDuplicateCost = 30;
 constexpr std::size_t kMostThreads = std::size_t(1) << 21;  // of a dispatch
 // Samples about the surface that say whether it explains what a ray shows, voxels apart.
 constexpr int kSurfaceSamples = 2;
-constexpr double kBeside = 2;  // voxels from the surface within which a ray says nothing new
+constexpr double kBeside = 2;       // voxels from the surface within which a ray says nothing new
+constexpr double kLeastStride = 2;  // pixels between rays: closer ones show the same
 
 struct Ray {
   int view, x, y;
@@ -161,7 +162,7 @@ class RayMatcher {
       RayMap& map = maps_[v];
       const glm::dvec3 centre = 0.5 * glm::dvec3(hull_.grid.voxels());
       const double depth = (c.projection * glm::dvec4(centre, 1)).z;
-      map.stride = std::max(1.0, options_.ray_spacing * c.focal / std::max(depth, 1.0));
+      map.stride = std::max(kLeastStride, options_.ray_spacing * c.focal / std::max(depth, 1.0));
       map.width = int(std::ceil(c.width / map.stride));
       map.height = int(std::ceil(c.height / map.stride));
       map.depth.assign(std::size_t(map.width) * map.height, 0);
