@@ -25,8 +25,8 @@ constexpr double kDuplicate = 8, kDuplicateCost = 30;
 constexpr std::size_t kMostThreads = std::size_t(1) << 21;  // of a dispatch
 // Samples about the surface that say whether it explains what a ray shows, voxels apart.
 constexpr int kSurfaceSamples = 2;
-constexpr double kBeside = 2;       // voxels from the surface within which a ray says nothing new
-constexpr double kLeastStride = 2;  // pixels between rays: closer ones show the same
+constexpr double kBeside = 2;         // voxels from the surface within which a ray says nothing new
+constexpr double kLeastStride = 1.5;  // pixels between rays: closer ones show the same
 
 struct Ray {
   int view, x, y;
