@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "refine/ray_maps.h"
 #include "refine/vote.h"
 #include "support/gl_context.h"
 #include "wall_scene.h"
@@ -44,12 +45,10 @@ class VoteAgain : public WallScene {
     });
   }
 
-  Revision vote(SparseVolume& volume, double score = VoteOptions().again_score) {
+  Revision vote(SparseVolume& volume, const VoteOptions& options = {}) {
     SparseVolume hull = block();
     hull.grid = volume.grid = test::kGrid;
     gpu::Context& context = test::gl_context();
-    VoteOptions options;
-    options.again_score = score;
     return vote_again(context, volume, hull, projtex::ImageSet(views_), projtex::cameras_of(views_),
                       0.01, options);
   }
@@ -60,8 +59,9 @@ double nothing(const dvec3&) { return 100; }
 TEST_F(VoteAgain, RodBeforeTheWallComesBack) {
   photograph(true);
   SparseVolume volume = body(nothing);
-  // Half of a patch as wide as this rod shows the wall, so scores are low.
-  const Revision revision = vote(volume, 0.5);
+  VoteOptions options;
+  options.again_score = 0.5;  // half of a patch as wide as this rod shows the wall
+  const Revision revision = vote(volume, options);
   int axis = 0, inside = 0, stray = 0;
   for (int y = 10; y < 38; ++y)
     for (int x = 8; x < 40; ++x)
@@ -92,6 +92,34 @@ TEST_F(VoteAgain, BodyThatThePhotographsLookPastGoes) {
   EXPECT_EQ(wall, 0);
   EXPECT_GT(revision.freed, 100u);
   EXPECT_EQ(revision.added, 0u);
+}
+
+TEST_F(VoteAgain, FreeingAndAddingTakeVotesOfTheirOwn) {
+  photograph(true);
+  VoteOptions options;
+  options.again_score = 0.5;
+  const auto revise = [&](double adding, double freeing) {
+    options.again_weight = adding;
+    options.freeing_weight = freeing;
+    SparseVolume volume = body(sphere({30, 24, 24}, 3));
+    return vote(volume, options);
+  };
+  const double never = 1e6, usual = 1.5;
+  EXPECT_EQ(revise(usual, never).freed, 0u);
+  EXPECT_GT(revise(usual, never).added, 0u);
+  EXPECT_EQ(revise(never, usual).added, 0u);
+  EXPECT_GT(revise(never, usual).freed, 0u);
+}
+
+TEST_F(VoteAgain, RaysAreNoCloserThanPixelsTellApart) {
+  photograph(false);
+  SparseVolume hull = block();
+  hull.grid = test::kGrid;
+  VoteOptions options;
+  options.ray_spacing = 0.01;  // voxels, which are about a pixel wide here
+  for (const RayMap& map : match_rays(test::gl_context(), hull, projtex::ImageSet(views_),
+                                      projtex::cameras_of(views_), 0.01, options))
+    EXPECT_DOUBLE_EQ(map.stride, 1.5);
 }
 
 TEST_F(VoteAgain, WhatThePhotographsShowStays) {
