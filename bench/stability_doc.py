@@ -5,6 +5,7 @@
     build/release/photohull stress bench/plans/stress_marks.json --out out/stress_marks
     bench/stability_doc.py out/stress out/stress_marks
     bench/stability_doc.py --verdicts out/seed2               # the table of verdicts alone
+    bench/stability_doc.py --thin out/stress_thin             # the curves and the table of thin parts alone
 
 Replaces what stands between the lines `<!-- stress:NAME -->` and `<!-- /stress:NAME -->` by the sections of the folders'
 summary.md, and copies the charts to docs/images. Without the second folder the promises in larger pictures stay as they are.
@@ -60,6 +61,25 @@ def cures(folder):
     return "\n".join(lines)
 
 
+def thin(folder):
+    """Every scene's own figures, and the curves."""
+    results = json.loads((folder / "results.json").read_text())
+    lines = [
+        "| axis | point | scene | settings | F 0.1 % | F 0.25 % | F 0.5 % | silhouettes missed | verdict |",
+        "|---|---|---|---|---|---|---|---|---|",
+    ]
+    for s in results["samples"]:
+        run = json.loads((folder / "runs" / f"{s['run']}.json").read_text())
+        scores = {f["t"]: f["f"] for f in run.get("evaluation", {}).get("f", [])}
+        missed = s["report"]["verdict"]["signals"]["silhouettes_missed"] if s.get("report") else None
+        cells = [s["axis"].replace("-", " "), s["label"], s["scene"], s["variant"]]
+        cells.append(f"{100 * scores[0.001]:.1f}" if 0.001 in scores else "")
+        cells += [f"{100 * s['f025']:.1f}", f"{100 * s['f05']:.1f}"]
+        cells += ["" if missed is None else f"{100 * missed:.2f} %", s.get("verdict") or ""]
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n\n" + pictures(folder)
+
+
 def pictures(folder):
     lines = []
     for chart in sorted(folder.glob("stress--*.png")):
@@ -86,6 +106,9 @@ def main():
         sys.exit(__doc__)
     if sys.argv[1] == "--verdicts":
         replace({"verdicts": section(Path(sys.argv[2]), "Verdicts")})
+        return
+    if sys.argv[1] == "--thin":
+        replace({"thin": thin(Path(sys.argv[2]))})
         return
     curves = Path(sys.argv[1])
     parts = {

@@ -16,7 +16,8 @@ namespace {
 struct Arguments {
   SceneArguments scene;
   std::string out, quality = "normal", device = "auto", mesh_error = "0", unseen = "closed",
-                   mask_offset = "auto", mask_holes = "mend", photometric = "off";
+                   mask_offset = "auto", mask_holes = "mend", views_may_miss = "auto",
+                   photometric = "off";
   std::optional<std::string> method, refine_cameras, sampler, consistency, visibility;
   std::optional<int> resolution, supersample;
   std::optional<double> voxel_size, r_consistency, noise;
@@ -63,6 +64,7 @@ pipeline::ReconstructOptions to_options(const Arguments& a) {
   if (a.mask_holes != "mend" && a.mask_holes != "keep")
     throw UsageError(concat("--mask-holes ", a.mask_holes, ": expected mend or keep"));
   o.keep_mask_holes = a.mask_holes == "keep";
+  o.views_may_miss = pipeline::parse_views_may_miss(a.views_may_miss);
   o.noise = a.noise;
   o.keep_views = a.keep_views;
   o.device = a.device;
@@ -164,6 +166,10 @@ void add_reconstruct(CLI::App& app) {
                 "mend (holes and bites of given masks where the photograph shows the object's "
                 "colours) or keep")
       ->capture_default_str();
+  c->add_option("--views-may-miss", a->views_may_miss,
+                "silhouettes that may leave a point out and it stands all the same, or auto: up to "
+                "a third of the views, and only where masks show what would be missing otherwise")
+      ->capture_default_str();
   c->add_option("--noise", a->noise,
                 "standard deviation of the photographs' noise in 8-bit codes (default: measured)");
   c->add_flag("--keep-views", a->keep_views,
@@ -174,7 +180,8 @@ void add_reconstruct(CLI::App& app) {
   c->add_option("--tune", a->tune,
                 "NAME=VALUE: a parameter of the method changed, for experiments (repeatable)");
   c->add_flag("--evidence", a->evidence,
-              "write evidence.ply too: the uniform mesh with what confidence is computed from");
+              "write evidence.ply too, the uniform mesh with what confidence is computed from, and "
+              "missing.png: where the model leaves the masks empty");
   c->add_flag("--fresh", a->fresh,
               "start anew: else an interrupted refinement of the same job goes on after the last "
               "level that it finished");

@@ -25,7 +25,7 @@ packages=(
   libopenimageio-dev openimageio-tools libopencv-dev
   libglm-dev libcli11-dev nlohmann-json3-dev
   # Scenes of other programs; camera refinement.
-  libpugixml-dev zlib1g-dev libceres-dev
+  libpugixml-dev zlib1g-dev libceres-dev libeigen3-dev
   # Charts: JavaScript engine, SVG to PNG, hashes.
   duktape-dev librsvg2-dev libxxhash-dev pkg-config
   libgtest-dev libgmock-dev

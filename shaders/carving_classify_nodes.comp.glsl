@@ -81,6 +81,8 @@ void main() {
                 all(lessThanEqual(centre + half_edge, parameters.box_max.xyz));
   bool outside = out_of_box, inside = in_box;
   int partly_seen = 0, wholly_seen = 0;
+  int rejecting = 0, doubting = 0;  // views that show none of the node, and those that may not show all
+  int missing = parameters.limits.x;
   int words = parameters.counts.z;
   for (int word = 0; word < words; ++word) {
     uint bits = 0u;
@@ -102,16 +104,18 @@ void main() {
       wholly_seen += whole ? 1 : 0;
       // One pixel more on each side: samples are bilinear.
       vec2 range = coverage_range(v, max(low - 1.0, vec2(-0.5)), min(high + 1.0, view.size.xy - 0.51));
-      if (whole && range.y < 0.5) outside = true;
-      if (outside || range.x >= 0.5) continue;
-      float clearance = sphere_clearance(v, view, centre, half_edge * 1.7321);
+      if (range.x >= 0.5) continue;
+      bool rejects = range.y < 0.5;
+      float clearance = rejects ? 1.0 : sphere_clearance(v, view, centre, half_edge * 1.7321);
       if (clearance < 0.0) continue;
-      inside = false;
-      if (whole && clearance > 0.0) outside = true;
+      doubting += 1;
+      rejecting += whole && clearance > 0.0 ? 1 : 0;
+      outside = outside || rejecting > missing;
       bits |= 1u << uint(v & 31);
     }
     relevant[id * uint(words) + uint(word)] = bits;
   }
+  if (doubting > missing) inside = false;
   if (partly_seen < parameters.counts.w) outside = true;
   if (wholly_seen < parameters.counts.w) inside = false;
   classes[id] = (outside ? kNodeOutside : inside ? kNodeInside : kNodeSurface) |

@@ -1,7 +1,8 @@
 #version 450 core
 #extension GL_GOOGLE_include_directive : require
-// Truncated signed distance to the visual hull for every voxel of a brick: the greatest, over the
-// views that see the voxel, of its distance to the silhouette, brought from pixels to voxels by
+// Truncated signed distance to the visual hull for every voxel of a brick: the greatest (or, where
+// K silhouettes may leave a point out, the K + 1-th), over the views that see the voxel, of its
+// distance to the silhouette, brought from pixels to voxels by
 // depth / focal length. One work group a brick, one thread a block of 2^3 voxels: a look at the
 // block's centre tells which few views can be the greatest anywhere in it.
 // Reference: carving::reference::hull_distance.
@@ -35,6 +36,22 @@ bool near_border(GpuView view, vec3 p) {
   float margin = 2.0 * view.centre.w / p.z;
   return p.z < 4.0 || any(lessThan(pixel, vec2(margin))) ||
          any(greaterThan(pixel, view.size.xy - 1.0 - margin));
+}
+
+// The K + 1-th greatest distance that the views give a point; kNothing where no more than K see it.
+float distance_but_for(int missing, uint first, int relevant_count, vec3 p) {
+  float greatest[kMostMissing + 1];
+  for (int k = 0; k <= missing; ++k) greatest[k] = kNothing;
+  for (int i = 0; i < relevant_count; ++i) {
+    int v = int(first_and_views[first + uint(i)]);
+    float d = view_distance(v, views[v], project(views[v], p));
+    for (int k = 0; k <= missing; ++k) {
+      float lesser = min(greatest[k], d);
+      greatest[k] = max(greatest[k], d);
+      d = lesser;
+    }
+  }
+  return greatest[missing];
 }
 
 // Software devices run a masked branch in full, so work is skipped by shorter loops, not by `if`.
@@ -80,6 +97,13 @@ void main() {
       for (int j = 0; j < 8; ++j)
         value[j] = max(value[j], view_distance(v, view, project(view, base + vec3(j >> 2, (j >> 1) & 1, j & 1))));
     }
+  }
+  int missing = parameters.limits.x;
+  for (int j = 0; j < (missing > 0 ? 8 : 0); ++j) {
+    vec3 p = base + vec3(j >> 2, (j >> 1) & 1, j & 1);
+    vec3 beyond = max(parameters.box_min.xyz - p, p - parameters.box_max.xyz);
+    value[j] = max(max(beyond.x, max(beyond.y, beyond.z)),
+                   distance_but_for(missing, first, relevant_count, p));
   }
   // A point must be on the images of enough cameras; only where that is in doubt are they counted.
   int seen[8] = int[8](0, 0, 0, 0, 0, 0, 0, 0);

@@ -18,15 +18,18 @@ constexpr uint kNodeSurface = 2u;
 constexpr uint kNodeKindMask = 3u;
 constexpr uint kNodeUnsure = 4u;  // flag: fewer views show all of the node than must see a point
 
+constexpr int kMostMissing = 16;  // silhouettes that may leave a point out, at most
+
 struct HullParameters {
   vec4 box_min;   // region of interest in voxel coordinates (w unused)
   vec4 box_max;
   ivec4 counts;   // x: items, y: views, z: words of a view bit set, w: views that must see a point
   vec4 pyramid;   // x: pixels of a cell at level 0, y: levels, z: margin in voxels, w: band in voxels
+  ivec4 limits;   // x: silhouettes that may leave a point out, at most kMostMissing
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(HullParameters) == 64);
+static_assert(sizeof(HullParameters) == 80);
 }  // namespace photohull::shaders
 #endif
 

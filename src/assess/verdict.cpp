@@ -121,11 +121,12 @@ class Judge {
   void surface() {
     if (s_.match.textured < kLeastTexture) {
       // Silhouettes alone may still show all there is. They do not when the few matches there are
-      // pull the surface about, or many views do not see parts of it.
+      // pull the surface about, or many views do not see parts of it. Of stems, which are thinner
+      // than any patch, they tell all.
       const double confidence = s_.mean_confidence / std::max(1e-9, 1 - s_.unseen);
       if (confidence < kPlainConfidence || !s_.masks)
-        weigh(1 - s_.match.textured, {1 - kLeastTexture, INFINITY},
-              concat("too little texture on ", percent(1 - s_.match.textured),
+        weigh(1 - s_.match.textured - s_.stems, {1 - kLeastTexture, INFINITY},
+              concat("too little texture on ", percent(1 - s_.match.textured - s_.stems),
                      " of the surface: the hull stands there; paint or project a pattern, or add "
                      "light"));
       return;

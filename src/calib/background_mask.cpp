@@ -19,6 +19,7 @@ constexpr int kMixed = 2;             ///< pixels along the contour that mix bot
 /// Share of the brightest distance around at which coverage is full. It lies below 1 because sRGB
 /// values are not linear in light and since masks should rather be large.
 constexpr double kFullCoverage = 0.7;
+constexpr double kHalf = 128;  ///< coverage from which a pixel is the object's
 
 cv::Mat square(int radius) {
   return cv::getStructuringElement(cv::MORPH_RECT, {2 * radius + 1, 2 * radius + 1});
@@ -71,6 +72,29 @@ void fill_holes(cv::Mat& object, double limit) {
             }).selected;
 }
 
+/// Where the photograph does not tell, coverage tells how likely the object is there: more than a
+/// half where gaps were closed without evidence, less than a half where there is some evidence
+/// beside the object, at thin tips above all. `whole`: the object, 255 inside.
+void tell_doubt(const MaskEvidence& model, const cv::Mat& distance, const cv::Mat& whole,
+                cv::Mat& object) {
+  cv::Mat inner, outer;
+  cv::erode(whole, inner, square(kMixed));
+  cv::dilate(whole, outer, square(1));
+  const double none = 0.5 * model.weak;
+  for (int y = 0; y < object.rows; ++y) {
+    const std::uint8_t *own = distance.ptr(y), *deep = inner.ptr(y), *near = outer.ptr(y);
+    std::uint8_t* coverage = object.ptr(y);
+    for (int x = 0; x < object.cols; ++x) {
+      const double evidence =
+          std::clamp((own[x] - none) / std::max(model.strong - none, 1.0), 0.0, 1.0);
+      if (deep[x])
+        coverage[x] = std::uint8_t(std::lround(kHalf + (255 - kHalf) * evidence));
+      else if (!near[x])
+        coverage[x] = std::uint8_t(std::lround((kHalf - 1) * evidence));
+    }
+  }
+}
+
 }  // namespace
 
 /// Along the contour light of both sides mixes: coverage grows with the distance there.
@@ -118,7 +142,9 @@ Mask mask_from_evidence(const MaskEvidence& model) {
   object &= distance >= model.weak;
   cv::morphologyEx(object, object, cv::MORPH_CLOSE, square(2 * reach));
   fill_holes(object, kHole * trust * trust * cv::countNonZero(object));
+  const cv::Mat whole = object.clone();
   soften_contour(distance, object);
+  tell_doubt(model, distance, whole, object);
   object.copyTo(cv::Mat(height, width, CV_8U, mask.coverage.data())(box));
   return mask;
 }

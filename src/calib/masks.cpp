@@ -6,6 +6,7 @@
 #include <glm/gtc/packing.hpp>
 #include <map>
 
+#include "calib/mask_lines.h"
 #include "core/error.h"
 
 namespace photohull {
@@ -134,7 +135,9 @@ void check_masks(PreparedViews& views) {
     ++masks;
     const auto is_foreground = [](std::uint8_t coverage) { return coverage >= 128; };
     const auto& coverage = view.mask.coverage;
-    if (std::none_of(coverage.begin(), coverage.end(), is_foreground)) {
+    // An object may be thinner than a pixel everywhere.
+    if (std::none_of(coverage.begin(), coverage.end(), is_foreground) &&
+        find_lines(view.mask).empty()) {
       ++empty;
       views.warnings.push_back(concat(view.name, ": the mask is empty: the view shows no object"));
     } else if (std::all_of(coverage.begin(), coverage.end(), is_foreground)) {

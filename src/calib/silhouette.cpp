@@ -228,4 +228,16 @@ SilhouetteDistance silhouette_distance(const Mask& mask) {
   return result;
 }
 
+double interpolated(const SilhouetteDistance& distance, const glm::dvec2& pixel) {
+  const int left = int(std::floor(pixel.x)), top = int(std::floor(pixel.y));
+  const auto at = [&](int x, int y) {
+    return double(distance.pixels[std::size_t(std::clamp(y, 0, distance.height - 1)) *
+                                      std::size_t(distance.width) +
+                                  std::size_t(std::clamp(x, 0, distance.width - 1))]);
+  };
+  const double u = pixel.x - left, v = pixel.y - top;
+  return (1 - v) * ((1 - u) * at(left, top) + u * at(left + 1, top)) +
+         v * ((1 - u) * at(left, top + 1) + u * at(left + 1, top + 1));
+}
+
 }  // namespace photohull

@@ -1,6 +1,8 @@
 // Distance to the silhouette of a mask.
 #pragma once
 
+#include <glm/glm.hpp>
+
 #include "core/image.h"
 #include "core/silhouette.h"
 
@@ -12,5 +14,8 @@ namespace photohull {
 /// Close to the contour the error is a few hundredths of a pixel for anti-aliased masks (coverage
 /// is taken as the area that the object covers). `mask` must not be empty.
 SilhouetteDistance silhouette_distance(const Mask& mask);
+
+/// The distance at a pixel position, bilinear; beyond the frame it goes on as at its border.
+double interpolated(const SilhouetteDistance& distance, const glm::dvec2& pixel);
 
 }  // namespace photohull

@@ -101,6 +101,10 @@ class HullCarver {
     parameters_.box_min = to_voxels(box.min);
     parameters_.box_max = to_voxels(box.max);
     parameters_.counts = {0, views_, words_, options.min_views};
+    static_assert(HullOptions::kMostMissing == shaders::kMostMissing);
+    PHOTOHULL_CHECK(options.views_may_miss >= 0 &&
+                    options.views_may_miss <= HullOptions::kMostMissing);
+    parameters_.limits = {options.views_may_miss, 0, 0, 0};
     parameters_.pyramid = {MaskPyramid::kBlock, device_.levels, kSplitMargin, SparseVolume::kBand};
   }
 

@@ -19,12 +19,21 @@ namespace photohull::carving {
 struct Silhouette {
   const Mask* mask = nullptr;
   const SilhouetteDistance* distance = nullptr;
+  const std::vector<LinePoint>* lines = nullptr;  ///< of the mask before they were widened
+  /// Coverage is the chance that the object is there (masks that were made), not the share of a
+  /// pixel.
+  bool likelihood = false;
 };
 
 struct HullOptions {
   /// Cameras that must have a point on their image for it to stand (>= 1). With silhouettes one is
   /// enough; without, space seen by fewer than two cameras can never be judged and is dropped.
   int min_views = 1;
+  /// Silhouettes that may leave a point out and it stands all the same (0 to kMostMissing): for
+  /// cameras, masks or wind that are off in some views. Views that do not have the point on their
+  /// image say nothing and do not count.
+  int views_may_miss = 0;
+  static constexpr int kMostMissing = 16;
 };
 
 struct HullReport {

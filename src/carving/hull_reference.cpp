@@ -1,6 +1,7 @@
 // Double-precision references of the visual-hull kernels, written from the definition.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "carving/hull.h"
@@ -131,7 +132,7 @@ NodeClass classify_node(const GridSpec& grid, const Box& box, std::span<const Ca
     return NodeClass::kOutside;
   bool inside =
       glm::all(glm::greaterThanEqual(low, box_low)) && glm::all(glm::lessThanEqual(high, box_high));
-  int partly_seen = 0, wholly_seen = 0;
+  int partly_seen = 0, wholly_seen = 0, rejecting = 0, doubting = 0;
   for (std::size_t v = 0; v < cameras.size(); ++v) {
     const ProjectedCube cube = project_cube(grid, cameras[v], low, high);
     if (cube.place == Place::kStraddling) {
@@ -143,9 +144,11 @@ NodeClass classify_node(const GridSpec& grid, const Box& box, std::span<const Ca
     const bool whole = cameras[v].on_image(cube.low) && cameras[v].on_image(cube.high);
     wholly_seen += whole;
     const glm::dvec2 range = coverage_range(silhouettes[v], cameras[v].intrinsics, cube);
-    if (whole && range.y < 0.5) return NodeClass::kOutside;
-    inside = inside && range.x >= 0.5;
+    rejecting += whole && range.y < 0.5;
+    doubting += range.x < 0.5;
   }
+  if (rejecting > options.views_may_miss) return NodeClass::kOutside;
+  inside = inside && doubting <= options.views_may_miss;
   if (partly_seen < options.min_views) return NodeClass::kOutside;
   return inside && wholly_seen >= options.min_views ? NodeClass::kInside : NodeClass::kSurface;
 }
@@ -156,19 +159,20 @@ double hull_distance(const GridSpec& grid, const Box& box, std::span<const Camer
   const double band = SparseVolume::kBand;
   const glm::dvec3 world = grid.world(voxel);
   const glm::dvec3 beyond = glm::max(box.min - world, world - box.max) / grid.voxel_size;
-  double value = std::max({beyond.x, beyond.y, beyond.z});
-  int seen = 0;
+  std::vector<double> said;
   for (std::size_t v = 0; v < cameras.size(); ++v) {
     const auto pixel = cameras[v].project(world);
     if (!pixel || !cameras[v].on_image(*pixel)) continue;
-    ++seen;
     const Intrinsics& k = cameras[v].intrinsics;
     const double voxels_per_pixel =
         cameras[v].to_camera(world).z / std::sqrt(std::abs(k.fx * k.fy)) / grid.voxel_size;
-    value = std::max(value, bilinear_distance(silhouettes[v], *pixel) * voxels_per_pixel);
+    said.push_back(bilinear_distance(silhouettes[v], *pixel) * voxels_per_pixel);
   }
-  if (seen < options.min_views) return band;
-  return std::clamp(value, -band, band);
+  if (int(said.size()) < options.min_views) return band;
+  std::sort(said.begin(), said.end(), std::greater<>());
+  const auto missing = std::size_t(options.views_may_miss);
+  const double silhouettes_say = missing < said.size() ? said[missing] : -1e30;
+  return std::clamp(std::max({beyond.x, beyond.y, beyond.z, silhouettes_say}), -band, band);
 }
 
 }  // namespace photohull::carving::reference

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "calib/mask_lines.h"
 #include "calib/silhouette.h"
 
 namespace photohull::carving {
@@ -17,6 +18,13 @@ constexpr int kPasses = 6;
 constexpr double kSettled = 0.9;  // of the longest side: no gain in going on
 
 double longest(const glm::dvec3& size) { return std::max({size.x, size.y, size.z}); }
+
+/// The mask with room around its lines, which are the object's, too.
+Mask with_lines(const Mask& mask) {
+  Mask widened = mask;
+  widen_lines(find_lines(mask), widened);
+  return widened;
+}
 
 /// Longer side of the foreground's bounding rectangle, pixels.
 double foreground_size(const Mask& mask) {
@@ -113,7 +121,7 @@ bool box_is_oversized(const Box& box, std::span<const View> views) {
   for (const View& view : views) {
     if (view.mask.empty()) continue;
     ++masked;
-    small += foreground_size(view.mask) < kFilled * picture_size(box, view.camera);
+    small += foreground_size(with_lines(view.mask)) < kFilled * picture_size(box, view.camera);
     if (box.contains(view.camera.center())) return true;
   }
   return masked > 0 && 2 * small > masked;
@@ -122,7 +130,8 @@ bool box_is_oversized(const Box& box, std::span<const View> views) {
 Box object_box(const Box& box, std::span<const View> views) {
   std::vector<Silhouette> silhouettes;
   for (const View& view : views)
-    if (!view.mask.empty()) silhouettes.push_back({&view.camera, silhouette_distance(view.mask)});
+    if (!view.mask.empty())
+      silhouettes.push_back({&view.camera, silhouette_distance(with_lines(view.mask))});
   if (silhouettes.size() < 2) return box;
   Box best = box;
   for (int pass = 0; pass < kPasses; ++pass) {

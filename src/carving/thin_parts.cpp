@@ -4,8 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <functional>
 #include <vector>
 
+#include "calib/silhouette.h"
+#include "carving/join_parts.h"
 #include "projtex/gpu_views.h"
 
 namespace photohull::carving {
@@ -16,6 +20,8 @@ using glm::ivec3;
 
 constexpr float kReach = 0.87f;   // voxels from a voxel's centre to its corners
 constexpr float kOnSlope = 0.5f;  // drop to a neighbour that the boundary of a thick part has
+constexpr int kBeside = 2;        // pixels from a line
+constexpr int kFewestViews = 3;   // that show a stem
 constexpr double kFirstStep = 0.25, kLastStep = 0.05;  // of the search within a voxel
 
 /// The silhouettes in the lattice's frame.
@@ -25,17 +31,41 @@ class Field {
         std::span<const Silhouette> silhouettes, const HullOptions& options)
       : low_((box.min - grid.origin) / grid.voxel_size),
         high_((box.max - grid.origin) / grid.voxel_size),
-        least_views_(options.min_views) {
+        least_views_(options.min_views),
+        missing_(options.views_may_miss) {
     for (std::size_t v = 0; v < cameras.size(); ++v)
-      views_.push_back({projtex::to_grid(cameras[v], grid), silhouettes[v].distance});
+      views_.push_back({projtex::to_grid(cameras[v], grid), silhouettes[v].distance,
+                        beside_lines(silhouettes[v])});
   }
 
-  /// The greatest distance that a silhouette or the box gives a point, voxels; at least `enough`
-  /// stops the search for a greater one.
+  bool has_lines() const {
+    return std::any_of(views_.begin(), views_.end(),
+                       [](const View& v) { return !v.beside_lines.empty(); });
+  }
+
+  /// Does the point fall beside lines in a third of the views that see it, and in some at least?
+  bool on_stem(const dvec3& p) const {
+    int seen = 0, beside = 0;
+    for (const View& view : views_) {
+      const dvec3 q = view.camera.projection * glm::dvec4(p, 1);
+      if (q.z <= 0) continue;
+      const int x = int(std::lround(q.x / q.z)), y = int(std::lround(q.y / q.z));
+      if (x < 0 || y < 0 || x >= view.camera.width || y >= view.camera.height) continue;
+      ++seen;
+      beside += !view.beside_lines.empty() &&
+                view.beside_lines[std::size_t(y) * std::size_t(view.camera.width) + std::size_t(x)];
+    }
+    return beside >= kFewestViews && 3 * beside >= seen;
+  }
+
+  /// The greatest distance that a silhouette (but for those that may miss it) or the box gives a
+  /// point, voxels; at least `enough` stops the search for a greater one.
   double at(const dvec3& p, double enough) const {
     const dvec3 beyond = glm::max(low_ - p, p - high_);
     double value = std::max({beyond.x, beyond.y, beyond.z});
-    int seen = 0;
+    int seen = 0, beyond_enough = 0;
+    thread_local std::vector<double> said;
+    said.clear();
     for (const View& view : views_) {
       const dvec3 q = view.camera.projection * glm::dvec4(p, 1);
       if (q.z <= 0) continue;
@@ -43,32 +73,40 @@ class Field {
       if (x < -0.5 || y < -0.5 || x > view.camera.width - 0.5 || y > view.camera.height - 0.5)
         continue;
       ++seen;
-      if (view.distance)
-        value = std::max(value, bilinear(*view.distance, x, y) * q.z / view.camera.focal);
-      if (value >= enough) return value;
+      if (!view.distance) continue;
+      said.push_back(interpolated(*view.distance, {x, y}) * q.z / view.camera.focal);
+      beyond_enough += said.back() >= enough;
+      if (beyond_enough > missing_) return enough;
     }
-    return seen < least_views_ ? double(SparseVolume::kBand) : value;
+    if (seen < least_views_) return double(SparseVolume::kBand);
+    if (int(said.size()) <= missing_) return value;
+    std::nth_element(said.begin(), said.begin() + missing_, said.end(), std::greater<>());
+    return std::max(value, said[std::size_t(missing_)]);
   }
 
  private:
   struct View {
     projtex::GridCamera camera;
     const SilhouetteDistance* distance;
+    std::vector<std::uint8_t> beside_lines;  ///< a pixel each; empty where there are no lines
   };
 
-  static double bilinear(const SilhouetteDistance& d, double x, double y) {
-    const int left = int(std::floor(x)), top = int(std::floor(y));
-    const auto pixel = [&](int i, int j) {
-      return double(d.pixels[std::size_t(std::clamp(j, 0, d.height - 1)) * std::size_t(d.width) +
-                             std::size_t(std::clamp(i, 0, d.width - 1))]);
-    };
-    const double u = x - left, v = y - top;
-    return (1 - v) * ((1 - u) * pixel(left, top) + u * pixel(left + 1, top)) +
-           v * ((1 - u) * pixel(left, top + 1) + u * pixel(left + 1, top + 1));
+  static std::vector<std::uint8_t> beside_lines(const Silhouette& silhouette) {
+    std::vector<std::uint8_t> marks;
+    if (!silhouette.lines || silhouette.lines->empty() || !silhouette.distance) return marks;
+    const int width = silhouette.distance->width, height = silhouette.distance->height;
+    marks.resize(silhouette.distance->pixels.size());
+    for (const LinePoint& p : *silhouette.lines)
+      for (int y = std::max(int(p.y) - kBeside, 0); y <= std::min(int(p.y) + kBeside, height - 1);
+           ++y)
+        for (int x = std::max(int(p.x) - kBeside, 0); x <= std::min(int(p.x) + kBeside, width - 1);
+             ++x)
+          marks[std::size_t(y) * std::size_t(width) + std::size_t(x)] = 1;
+    return marks;
   }
 
   dvec3 low_, high_;
-  int least_views_;
+  int least_views_, missing_;
   std::vector<View> views_;
 };
 
@@ -99,6 +137,33 @@ double deepest(const Field& field, const ivec3& voxel, double start, dvec3& wher
   return best;
 }
 
+/// Voxels that hold a part of the hull which the volume does not have: those in valleys, or else
+/// the others on stems.
+std::vector<Joint> search(const Field& field, bool valleys, const SparseVolume& volume) {
+  std::vector<std::vector<Joint>> found(volume.bricks.size());
+  tbb::parallel_for(std::size_t(0), volume.bricks.size(), [&](std::size_t slot) {
+    for (int i = 0; i < kBrickVoxels; ++i) {
+      const float value = volume.distance[slot * kBrickVoxels + std::size_t(i)];
+      if (value <= 0 || value >= kReach) continue;
+      const ivec3 voxel = volume.bricks[slot] * kBrickEdge + ivec3(i >> 6, (i >> 3) & 7, i & 7);
+      if (in_valley(volume, voxel, value) != valleys) continue;
+      if (!valleys && !field.on_stem(dvec3(voxel))) continue;
+      dvec3 where;
+      const double depth = deepest(field, voxel, value, where);
+      if (depth < 0 && volume.interpolated(where) > 0) found[slot].push_back({voxel, float(depth)});
+    }
+  });
+  std::vector<Joint> all;
+  for (const std::vector<Joint>& list : found) all.insert(all.end(), list.begin(), list.end());
+  return all;
+}
+
+void put(const Joint& joint, SparseVolume& volume) {
+  const std::uint32_t slot = volume.table[volume.grid.brick_index(joint.voxel / kBrickEdge)];
+  volume.distance[std::size_t(slot) * kBrickVoxels +
+                  std::size_t(voxel_offset(joint.voxel % kBrickEdge))] = joint.distance;
+}
+
 }  // namespace
 
 std::size_t keep_thin_parts(SparseVolume& volume, const Box& box, std::span<const Camera> cameras,
@@ -107,30 +172,15 @@ std::size_t keep_thin_parts(SparseVolume& volume, const Box& box, std::span<cons
                    [](const Silhouette& s) { return s.distance; }))
     return 0;
   const Field field(volume.grid, box, cameras, silhouettes, options);
-  struct Change {
-    std::size_t index;
-    float distance;
-  };
-  std::vector<std::vector<Change>> changes(volume.bricks.size());
-  tbb::parallel_for(std::size_t(0), volume.bricks.size(), [&](std::size_t slot) {
-    for (int i = 0; i < kBrickVoxels; ++i) {
-      const std::size_t index = slot * kBrickVoxels + std::size_t(i);
-      const float value = volume.distance[index];
-      if (value <= 0 || value >= kReach) continue;
-      const ivec3 voxel = volume.bricks[slot] * kBrickEdge + ivec3(i >> 6, (i >> 3) & 7, i & 7);
-      if (!in_valley(volume, voxel, value)) continue;
-      dvec3 where;
-      const double depth = deepest(field, voxel, value, where);
-      if (depth < 0 && volume.interpolated(where) > 0)
-        changes[slot].push_back({index, float(depth)});
-    }
-  });
-  std::size_t changed = 0;
-  for (const std::vector<Change>& list : changes) {
-    changed += list.size();
-    for (const Change& change : list) volume.distance[change.index] = change.distance;
-  }
-  return changed;
+  const std::vector<Joint> found = search(field, true, volume);
+  for (const Joint& joint : found) put(joint, volume);
+  if (!field.has_lines()) return found.size();
+  // Beside something thicker there is no valley: where a leaf hangs on its stem. Of what lies
+  // there, what joins parts is taken, and no more.
+  const std::vector<Joint> joints = search(field, false, volume);
+  const std::vector<std::size_t> joining = find_joining(volume, joints);
+  for (const std::size_t i : joining) put(joints[i], volume);
+  return found.size() + joining.size();
 }
 
 }  // namespace photohull::carving

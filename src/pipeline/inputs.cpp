@@ -9,11 +9,13 @@
 #include "calib/crop.h"
 #include "calib/diagnose.h"
 #include "calib/mask_bias.h"
+#include "calib/mask_lines.h"
 #include "calib/noise.h"
 #include "calib/prepare_views.h"
 #include "calib/refine_cameras.h"
 #include "calib/torn_masks.h"
 #include "carving/fit_grid.h"
+#include "carving/missing_parts.h"
 #include "carving/object_box.h"
 #include "core/error.h"
 #include "io/image_file.h"
@@ -28,12 +30,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kOversized = 1.8;    // times the object's box: the box is made smaller
-constexpr int kCropMargin = 24;       // pixels around the box's projection: patches, mip levels
-constexpr double kSuspicious = 0.25;  // pixels between outlines' tangents: cameras look wrong
-constexpr int kFewestFeatures = 20;   // held-out ones that confirm a camera
-constexpr double kAgrees = 0.5;       // pixels, of these
-constexpr double kFarOff = 0.005;     // of the image's longer side: this view is wrong
+constexpr double kOversized = 1.8;     // times the object's box: the box is made smaller
+constexpr int kCropMargin = 24;        // pixels around the box's projection: patches, mip levels
+constexpr double kSuspicious = 0.25;   // pixels between outlines' tangents: cameras look wrong
+constexpr int kFewestFeatures = 20;    // held-out ones that confirm a camera
+constexpr double kAgrees = 0.5;        // pixels, of these
+constexpr double kUnexplained = 0.02;  // of the foreground: more is told
+constexpr double kFarOff = 0.005;      // of the image's longer side: this view is wrong
 
 double rounded(double pixels) { return std::round(100 * pixels) / 100; }
 
@@ -96,6 +99,10 @@ std::vector<int> views_off_tangents(std::span<const View> views) {
       off.push_back(int(i));
   }
   return 4 * off.size() > known ? std::vector<int>() : off;
+}
+
+bool was_given(const MaskJudgement& mask) {
+  return mask.source == "mask files" || mask.source == "alpha channels";
 }
 
 }  // namespace
@@ -164,6 +171,8 @@ void Inputs::prepare() {
   for (std::size_t i = 0; i < views.size(); ++i)
     report_.masks.push_back(
         {views[i].name, prepared.masks[i].source, prepared.masks[i].confidence});
+  for (std::size_t i = 0; i < views.size(); ++i)
+    if (!views[i].mask.empty() && !was_given(prepared.masks[i])) made_masks_.insert(views[i].name);
   if (!options_.keep_mask_holes) mend_given_masks(prepared.masks);
 }
 
@@ -171,8 +180,8 @@ void Inputs::mend_given_masks(std::span<const MaskJudgement> masks) {
   std::vector<MendedMask> mended(views.size());
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
     // Masks made from the photograph's colours have nothing to learn from them.
-    const bool given = masks[i].source == "mask files" || masks[i].source == "alpha channels";
-    if (given && !views[i].mask.empty()) mended[i] = mend_mask(views[i].image, views[i].mask);
+    if (was_given(masks[i]) && !views[i].mask.empty())
+      mended[i] = mend_mask(views[i].image, views[i].mask);
   });
   const auto worst = std::max_element(
       mended.begin(), mended.end(), [](const auto& a, const auto& b) { return a.share < b.share; });
@@ -267,6 +276,67 @@ void Inputs::leave_out_wrong_views() {
   if (!options_.keep_views)
     leave_out(found.wrong,
               "without it the other views' silhouettes agree (check its camera and its mask)");
+}
+
+void Inputs::widen_lines() {
+  lines.assign(views.size(), {});
+  widened.assign(views.size(), {});
+  tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
+    if (views[i].mask.empty()) return;
+    lines[i] = find_lines(views[i].mask);
+    if (lines[i].empty()) return;
+    widened[i] = views[i].mask;
+    photohull::widen_lines(lines[i], widened[i]);
+    silhouettes[i] = silhouette_distance(widened[i]);
+  });
+  for (const auto& list : lines) report_.thin.line_pixels += std::int64_t(list.size());
+}
+
+void Inputs::forget_masks() {
+  for (std::size_t i = 0; i < views.size(); ++i)
+    if (!lines[i].empty() || !widened[i].empty()) return;
+  for (View& view : views) std::vector<std::uint8_t>().swap(view.mask.coverage);
+}
+
+std::vector<carving::Silhouette> Inputs::silhouettes_of_views() const {
+  std::vector<carving::Silhouette> out;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const Mask& mask = views[i].mask;
+    if (mask.empty())
+      out.push_back({&mask});
+    else
+      out.push_back({widened[i].empty() ? &mask : &widened[i], &silhouettes[i], &lines[i],
+                     made_masks_.contains(views[i].name)});
+  }
+  return out;
+}
+
+void Inputs::explain_foreground() {
+  if (options_.views_may_miss || !any_mask()) return;
+  const carving::MissingParts found =
+      carving::find_missing_parts(*scene.box, cameras, silhouettes_of_views(), {}, &progress_);
+  tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
+    if (views[i].mask.empty()) return;
+    Mask mask = widened[i].empty() ? views[i].mask : widened[i];
+    if (!carving::mend_silhouette(found.parts, cameras[i], silhouettes[i], mask)) return;
+    silhouettes[i] = silhouette_distance(mask);
+    widened[i] = std::move(mask);
+  });
+  ThinReport& counts = report_.thin;
+  double worst = 0;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const carving::ExplainedView& v = found.views[i];
+    counts.looked_at += v.looked_at, counts.unexplained += v.unexplained, counts.placed += v.placed;
+    const double share = double(v.unexplained - v.placed) / std::max(v.looked_at, 1);
+    if (share > worst) worst = share, counts.worst_view = views[i].name;
+  }
+  // Masks that were made show likelihoods, too, and other views are free to tell otherwise.
+  if (report_.mask_confidence < 1) return;
+  const auto left = double(counts.unexplained - counts.placed);
+  if (left > kUnexplained * double(counts.looked_at))
+    warn(concat("the masks show parts (", std::round(1000 * left / double(counts.looked_at)) / 10,
+                " % of their foreground, most in ", counts.worst_view,
+                ") that too many other masks leave out: these are not in the model"));
 }
 
 /// Features of a view whose camera is right lie where those of other views say, whatever its mask.

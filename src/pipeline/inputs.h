@@ -9,6 +9,7 @@
 #include "calib/prepare_views.h"
 #include "calib/refine_cameras.h"
 #include "calib/silhouette.h"
+#include "carving/hull.h"
 #include "core/grid.h"
 #include "core/progress.h"
 #include "core/scene.h"
@@ -33,15 +34,28 @@ class Inputs {
   void measure_silhouettes();
   void correct_masks();
   void leave_out_wrong_views();
+  /// Gives stems and wires the room that voxels need; their width is known from `lines`.
+  void widen_lines();
+  /// Puts what masks show and not all views bear into the silhouettes that leave it out.
+  void explain_foreground();
 
   bool any_mask() const;
+  /// Frees the masks' pixels, if no view needs them for its lines or the verdict.
+  void forget_masks();
+  /// What the hull and the refinement go by, one a view.
+  std::vector<carving::Silhouette> silhouettes_of_views() const;
   void warn(const std::string& text);
 
   Scene scene;
   GridSpec grid;
   std::vector<View> views;  ///< undistorted, and from crop() on around the box alone
   std::vector<Camera> cameras;
+  /// Of `widened` where there is one, else of the masks.
   std::vector<SilhouetteDistance> silhouettes;
+  std::vector<std::vector<LinePoint>> lines;  ///< of the masks, a list a view
+  /// The masks with room around their lines, and with what other views put into them; an empty one
+  /// where nothing changed.
+  std::vector<Mask> widened;
   double contradiction = 0;  ///< share of the silhouettes' rays that other silhouettes leave empty
   double cameras_moved = 0;  ///< by refinement, pixels
   double cameras_moved_alike = 0;  ///< of it what all views have in common
@@ -53,6 +67,7 @@ class Inputs {
   void leave_out(std::span<const int> wrong, const std::string& why);
 
   std::set<std::string> right_cameras_;  ///< names of views
+  std::set<std::string> made_masks_;     ///< names of views whose masks come from the background
 
   const ReconstructOptions& options_;
   Report& report_;

@@ -9,6 +9,7 @@
 
 #include "assess/verdict.h"
 #include "carving/fit_grid.h"
+#include "carving/fit_stems.h"
 #include "carving/hull.h"
 #include "carving/photo.h"
 #include "carving/thin_parts.h"
@@ -17,6 +18,7 @@
 #include "pipeline/checks.h"
 #include "pipeline/inputs.h"
 #include "pipeline/job_identity.h"
+#include "pipeline/missing_picture.h"
 #include "pipeline/result_files.h"
 #include "pipeline/self_check.h"
 #include "pipeline/stage_clock.h"
@@ -24,6 +26,7 @@
 #include "pipeline/tuning.h"
 #include "projtex/image_set.h"
 #include "projtex/sample_images.h"
+#include "refine/dust.h"
 #include "refine/refine.h"
 #include "render/bake_colour.h"
 #include "render/choose_views.h"
@@ -54,7 +57,8 @@ constexpr double kDebrisFraction = 5e-4;  // of the largest part's voxels
 constexpr int kPhotometricVoxels = 160;   // along the box, of the hull that gains are measured on
 constexpr double kDetail = 1.5;           // pixels: what refinement resolves, by its patches
 constexpr std::size_t kFewestThinVoxels = 32;  // a hull of fewer, all of them thin, is none
-constexpr double kBoxSlack = 0.5;              // voxels that the surface may stand out of the box
+constexpr const char* kMissingPicture = "missing.png";
+constexpr double kBoxSlack = 0.5;  // voxels that the surface may stand out of the box
 
 class Job {
  public:
@@ -72,7 +76,7 @@ class Job {
     clock_.run("scene", Weights::kScene, [&] { in_.load(); });
     // What can fail at once does so before the photographs are decoded.
     std::vector<std::string> names = {"volume.vdb", "mesh.ply", "preview.png", "report.json"};
-    if (options_.evidence) names.emplace_back("evidence.ply");
+    if (options_.evidence) names.insert(names.end(), {"evidence.ply", kMissingPicture});
     ResultFiles files(options_.output, std::move(names));
     report_.files = files.names();
     clock_.run("device", Weights::kDevice, [&] { open_device(); });
@@ -87,6 +91,8 @@ class Job {
       in_.measure_silhouettes();
       in_.correct_masks();
       in_.leave_out_wrong_views();
+      in_.widen_lines();
+      in_.explain_foreground();
       return refining ? SparseVolume() : carve_hull();
     });
     // Before colours are compared, where silhouettes give a surface.
@@ -94,9 +100,8 @@ class Job {
     const bool on_hull = photometric && in_.any_mask();
     if (on_hull)
       clock_.run("photometric", Weights::kPhotometric, [&] { correct_photometric_on_hull(); });
-    // The other samplers weight by the masks.
-    if (!refining && sampler() == projtex::Sampler::kMipmap)
-      for (View& view : in_.views) std::vector<std::uint8_t>().swap(view.mask.coverage);
+    // The other samplers weight by the masks, and lines get their width from them.
+    if (!refining && sampler() == projtex::Sampler::kMipmap) in_.forget_masks();
     context_->release_deleted();
     images_ = clock_.run("images", Weights::kImages,
                          [&] { return std::make_unique<projtex::ImageSet>(in_.views); });
@@ -104,7 +109,7 @@ class Job {
       volume = clock_.run("refine", Weights::kRefine, [&] { return refine(); });
     else if (options_.effective_method() != Method::kHull)
       volume = clock_.run("photo", Weights::kPhoto, [&] { return carve_photo(volume); });
-    clock_.run("clean", Weights::kClean, [&] { remove_small_components(volume, kDebrisFraction); });
+    clock_.run("clean", Weights::kClean, [&] { remove_dust(volume); });
     TriMesh mesh = clock_.run("mesh", Weights::kMesh, [&] { return extract(volume); });
     if (photometric && !on_hull)
       clock_.run("photometric", Weights::kPhotometric, [&] {
@@ -119,7 +124,7 @@ class Job {
     });
     images_.reset();
     context_->release_deleted();
-    clock_.run("verdict", Weights::kVerdict, [&] { judge(mesh); });
+    clock_.run("verdict", Weights::kVerdict, [&] { judge(mesh, files); });
     if (options_.unseen == Unseen::kOpen) open_unseen(mesh);
     report_.uniform_triangles = std::int64_t(mesh.triangles.size());
     if (options_.mesh_error.value > 0)
@@ -162,18 +167,15 @@ class Job {
     report_.device = context_->device().renderer;
   }
 
-  std::vector<carving::Silhouette> silhouettes() const {
-    std::vector<carving::Silhouette> out;
-    for (std::size_t i = 0; i < in_.views.size(); ++i)
-      out.push_back(
-          {&in_.views[i].mask, in_.views[i].mask.empty() ? nullptr : &in_.silhouettes[i]});
-    return out;
-  }
-
   SparseVolume hull_at(const GridSpec& grid) {
-    const std::vector<carving::Silhouette> silhouettes = this->silhouettes();
+    const std::vector<carving::Silhouette> silhouettes = in_.silhouettes_of_views();
     carving::HullOptions hull_options;
     hull_options.min_views = in_.any_mask() ? 1 : 2;
+    hull_options.views_may_miss = options_.views_may_miss.value_or(0);
+    // Where hardly more views see a point than may leave it out, nothing would be known of it.
+    if (hull_options.views_may_miss > 0)
+      hull_options.min_views =
+          std::min(hull_options.views_may_miss + 2, std::max(int(in_.cameras.size()), 1));
     Box box = *in_.scene.box;
     box.min -= kBoxSlack * grid.voxel_size;
     box.max += kBoxSlack * grid.voxel_size;
@@ -213,8 +215,8 @@ class Job {
     if (options_.fresh) remove_checkpoint();
     refine::RefineReport counts;
     SparseVolume volume = refine::refine_surface(
-        *context_, in_.grid, [&](const GridSpec& grid) { return hull_at(grid); }, silhouettes(),
-        *images_, in_.cameras, o, progress_, &counts, &checkpoint);
+        *context_, in_.grid, [&](const GridSpec& grid) { return hull_at(grid); },
+        in_.silhouettes_of_views(), *images_, in_.cameras, o, progress_, &counts, &checkpoint);
     report_.resumed_levels = counts.resumed;
     for (const refine::FitReport& fit : counts.fits)
       report_.refine_fits.push_back(
@@ -298,6 +300,14 @@ class Job {
     return carving::carve_photo(*context_, hull, images, in_.cameras, photo, progress_, &counts);
   }
 
+  /// Small pieces go, but for those that masks ask for.
+  void remove_dust(SparseVolume& volume) {
+    remove_small_components(volume, kDebrisFraction, [&](auto pieces) {
+      return refine::are_asked_for(*context_, volume, pieces, in_.cameras,
+                                   in_.silhouettes_of_views(), {});
+    });
+  }
+
   TriMesh extract(const SparseVolume& volume) {
     TriMesh mesh = extract_mesh(volume);
     if (options_.effective_method() == Method::kRefine) {
@@ -305,7 +315,17 @@ class Job {
       report_.sharpened_vertices = std::int64_t(sharpen_edges(
           sharpen_, in_.grid.voxel_size, std::max(detail, in_.grid.voxel_size), mesh));
     }
+    fit_stems(mesh);
     return mesh;
+  }
+
+  /// Stems that are thinner than voxels get their width from the masks.
+  void fit_stems(TriMesh& mesh) {
+    std::vector<carving::StemView> views;
+    for (std::size_t i = 0; i < in_.views.size(); ++i)
+      if (!in_.views[i].mask.empty())
+        views.push_back({in_.cameras[i], &in_.views[i].mask, &in_.lines[i]});
+    report_.thin.stem_vertices = std::int64_t(carving::fit_stems(views, in_.grid.voxel_size, mesh));
   }
 
   void colour(TriMesh& mesh, ResultFiles& files) {
@@ -337,23 +357,39 @@ class Job {
     write_ply(files.open("evidence.ply"), mesh, scalars);
   }
 
-  void judge(const TriMesh& mesh) {
-    const assess::Signals signals =
-        gather_signals({.mesh = &mesh,
-                        .box = &*in_.scene.box,
-                        .voxel_size = in_.grid.voxel_size,
-                        .hull = options_.effective_method() == Method::kHull,
-                        .views = in_.views,
-                        .silhouettes = in_.silhouettes,
-                        .mask_confidence = report_.mask_confidence,
-                        .noise_sigma = report_.noise_sigma,
-                        .contradiction = in_.contradiction,
-                        .cameras_moved = in_.cameras_moved,
-                        .cameras_moved_alike = in_.cameras_moved_alike});
+  void judge(const TriMesh& mesh, ResultFiles& files) {
+    const CheckedResult result{.mesh = &mesh,
+                               .box = &*in_.scene.box,
+                               .voxel_size = in_.grid.voxel_size,
+                               .hull = options_.effective_method() == Method::kHull,
+                               .views = in_.views,
+                               .silhouettes = in_.silhouettes,
+                               .widened = in_.widened,
+                               .lines = in_.lines,
+                               .mask_confidence = report_.mask_confidence,
+                               .noise_sigma = report_.noise_sigma,
+                               .stems = double(report_.thin.stem_vertices) /
+                                        double(std::max<std::size_t>(mesh.positions.size(), 1)),
+                               .contradiction = in_.contradiction,
+                               .cameras_moved = in_.cameras_moved,
+                               .cameras_moved_alike = in_.cameras_moved_alike};
+    std::vector<assess::SilhouetteFit> fits;
+    const assess::Signals signals = gather_signals(result, &fits);
     std::vector<std::string> names;
     for (const View& view : in_.views) names.push_back(view.name);
     report_.verdict = assess::judge(signals, names);
     report_.verdict_json = to_json(report_.verdict, signals, in_.views);
+    if (options_.evidence) write_missing(draw_missing(result, fits), files);
+  }
+
+  /// A scene without masks has no such picture.
+  void write_missing(const MissingPicture& picture, ResultFiles& files) {
+    if (picture.rgb.empty()) {
+      std::erase(report_.files, kMissingPicture);
+      return;
+    }
+    report_.missing_view = picture.view;
+    io::write_png(files.open(kMissingPicture), picture.width, picture.height, 3, picture.rgb);
   }
 
   /// After colouring, which tells what is seen, and before simplification, which keeps the border.

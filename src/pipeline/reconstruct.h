@@ -37,6 +37,9 @@ struct MeshError {
 /// Reads "0.25" (voxels) or "0.002u" (world units). Throws UsageError.
 MeshError parse_mesh_error(const std::string& text);
 
+/// Reads "auto" (nothing) or a count of views. Throws UsageError.
+std::optional<int> parse_views_may_miss(const std::string& text);
+
 /// Reads "auto" (nothing) or pixels. Throws UsageError.
 std::optional<double> parse_mask_offset(const std::string& text);
 
@@ -53,6 +56,10 @@ struct ReconstructOptions {
   Photometric photometric = Photometric::kOff;
   /// Pixels by which outlines lie outside the masks'; nothing: measured (calib/mask_bias.h).
   std::optional<double> mask_offset;
+  /// Silhouettes that may leave a point out and it stands all the same, 0 to
+  /// carving::HullOptions::kMostMissing; nothing: as many as carving/missing_parts.h takes, and
+  /// only where what masks show would be missing otherwise.
+  std::optional<int> views_may_miss;
   bool keep_mask_holes = false;  ///< else calib/torn_masks.h mends masks that were given
   /// Of the photographs, standard deviation in 8-bit codes, 0 to 255; nothing: measured
   /// (calib/noise.h).

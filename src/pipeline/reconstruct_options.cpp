@@ -1,6 +1,8 @@
 // What a job's options mean, and which make sense.
+#include <charconv>
 #include <cmath>
 
+#include "carving/hull.h"
 #include "carving/photo.h"
 #include "carving/search_disc.h"
 #include "core/error.h"
@@ -116,6 +118,19 @@ MeshError parse_mesh_error(const std::string& text) {
   return error;
 }
 
+std::optional<int> parse_views_may_miss(const std::string& text) {
+  if (text == "auto") return std::nullopt;
+  int value = 0;
+  const char* end = text.data() + text.size();
+  const auto [last, problem] = std::from_chars(text.data(), end, value);
+  if (problem != std::errc() || last != end || value < 0 ||
+      value > carving::HullOptions::kMostMissing)
+    throw UsageError(concat("--views-may-miss ", text,
+                            ": expected auto, or a number of views from 0 to ",
+                            carving::HullOptions::kMostMissing));
+  return value;
+}
+
 std::optional<double> parse_mask_offset(const std::string& text) {
   if (text == "auto") return std::nullopt;
   char* end = nullptr;
@@ -182,6 +197,8 @@ NamedValues named_options(const ReconstructOptions& options) {
   list.emplace_back("unseen", to_string(options.unseen));
   list.emplace_back("masks", mask_option(options.load));
   list.emplace_back("mask_offset", options.mask_offset ? number(*options.mask_offset) : "auto");
+  list.emplace_back("views_may_miss",
+                    options.views_may_miss ? concat(*options.views_may_miss) : "auto");
   if (options.keep_mask_holes) list.emplace_back("mask_holes", "keep");
   if (options.noise) list.emplace_back("noise", number(*options.noise));
   if (options.keep_views) list.emplace_back("keep_views", "true");

@@ -60,6 +60,17 @@ struct SamplingReport {
   double r_consistency = 0;  ///< pixels
 };
 
+/// What silhouettes show of thin parts, and where they disagree (calib/mask_lines.h,
+/// carving/missing_parts.h, carving/fit_stems.h).
+struct ThinReport {
+  std::int64_t line_pixels = 0;    ///< of all masks: parts narrower than about two pixels
+  std::int64_t looked_at = 0;      ///< places of the foreground
+  std::int64_t unexplained = 0;    ///< of these, without a point that all silhouettes bear
+  std::int64_t placed = 0;         ///< of the unexplained, given the place that most views bear
+  std::int64_t stem_vertices = 0;  ///< of the mesh, put to where lines say
+  std::string worst_view;          ///< with the largest share left unexplained; empty: none
+};
+
 /// Where a view's mask came from, and how sure it is (calib's MaskJudgement).
 struct MaskReport {
   std::string view, source;
@@ -80,6 +91,8 @@ struct Report {
   int masks_mended = 0;           ///< by calib/torn_masks.h
   double mask_offset = 0;         ///< pixels by which the masks' outlines were moved outward
   std::vector<MaskReport> masks;  ///< of each view
+  ThinReport thin;
+  std::string missing_view;       ///< that missing.png shows; empty: there is none
   std::string camera_refinement;  ///< JSON (pipeline/refine_cameras.h); empty: not asked for
   std::string photometric;        ///< JSON (pipeline/photometric.h); empty: not asked for
   std::string photometric_line;   ///< the same, for the screen

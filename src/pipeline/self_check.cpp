@@ -1,10 +1,13 @@
 #include "pipeline/self_check.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "assess/silhouette_check.h"
 #include "assess/surface_probes.h"
+#include "calib/silhouette.h"
 #include "carving/fit_grid.h"
 #include "raycast/ray_scene.h"
 
@@ -28,18 +31,32 @@ double share_of(std::span<const assess::SurfaceProbe> probes, auto&& holds) {
          double(std::max<std::size_t>(1, probes.size()));
 }
 
-void compare_silhouettes(const CheckedResult& result, const RayScene& rays,
-                         std::span<const Camera> cameras, assess::Signals& s) {
+std::vector<assess::SilhouetteFit> compare_silhouettes(const CheckedResult& result,
+                                                       const RayScene& rays,
+                                                       std::span<const Camera> cameras,
+                                                       assess::Signals& s) {
+  // What a view's own mask shows is to be covered, whatever was put into its silhouette since.
+  std::vector<SilhouetteDistance> given(cameras.size());
+  std::vector<assess::CheckedSilhouette> checked(cameras.size());
+  tbb::parallel_for(std::size_t(0), cameras.size(), [&](std::size_t i) {
+    if (result.silhouettes[i].pixels.empty()) return;
+    const Mask& mask = result.views[i].mask;
+    checked[i] = {&result.silhouettes[i], &result.silhouettes[i], &result.lines[i],
+                  mask.empty() ? nullptr : &mask};
+    if (result.widened[i].empty()) return;
+    given[i] = silhouette_distance(result.views[i].mask);
+    checked[i].given = &given[i];
+  });
   const double tolerance =
       std::max(kContour, s.pixel_size > 0 ? kContourVoxels * result.voxel_size / s.pixel_size : 0);
-  const auto fits = assess::check_silhouettes(rays, *result.box, cameras,
-                                              pointers(result.silhouettes), tolerance);
+  auto fits = assess::check_silhouettes(rays, *result.box, cameras, checked, tolerance);
   int known = 0;
   for (const assess::SilhouetteFit& fit : fits) {
     known += fit.foreground > 0;
     s.missed += fit.missed, s.excess += fit.excess;
   }
   if (known > 0) s.missed /= known, s.excess /= known;
+  return fits;
 }
 
 }  // namespace
@@ -50,7 +67,8 @@ std::vector<const SilhouetteDistance*> pointers(std::span<const SilhouetteDistan
   return out;
 }
 
-assess::Signals gather_signals(const CheckedResult& result) {
+assess::Signals gather_signals(const CheckedResult& result,
+                               std::vector<assess::SilhouetteFit>* fits) {
   const TriMesh& mesh = *result.mesh;
   std::vector<Camera> cameras;
   for (const View& view : result.views) cameras.push_back(view.camera);
@@ -61,6 +79,7 @@ assess::Signals gather_signals(const CheckedResult& result) {
   assess::Signals s;
   s.views = int(result.views.size());
   s.hull = result.hull;
+  s.stems = result.stems;
   s.pixel_size = carving::pixel_footprint(*result.box, cameras);
   s.far = kFar * diagonal(mesh);
   s.cameras_moved = result.cameras_moved;
@@ -78,7 +97,10 @@ assess::Signals gather_signals(const CheckedResult& result) {
     const glm::dvec3 inside = glm::min(p.point - result.box->min, result.box->max - p.point);
     return !p.views.empty() && std::min({inside.x, inside.y, inside.z}) < result.voxel_size;
   });
-  if (s.masks) compare_silhouettes(result, rays, cameras, s);
+  if (s.masks) {
+    auto filled = compare_silhouettes(result, rays, cameras, s);
+    if (fits) *fits = std::move(filled);
+  }
   assess::MatchOptions options;
   options.near = result.voxel_size;
   options.far = s.far;
@@ -98,6 +120,7 @@ std::string to_json(const assess::Verdict& verdict, const assess::Signals& s,
                                 {"unseen", s.unseen},
                                 {"few_views", s.few_views},
                                 {"at_box", s.at_box},
+                                {"stems", s.stems},
                                 {"silhouettes_contradict", s.contradiction},
                                 {"silhouettes_missed", s.missed},
                                 {"silhouettes_excess", s.excess},

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "assess/silhouette_check.h"
 #include "assess/verdict.h"
 #include "core/image.h"
 #include "core/mesh.h"
@@ -21,14 +22,19 @@ struct CheckedResult {
   bool hull = false;      ///< made by silhouettes alone
   std::span<const View> views;
   std::span<const SilhouetteDistance> silhouettes;
+  std::span<const Mask> widened;  ///< that `silhouettes` are of, where they are not the views' own
+  std::span<const std::vector<LinePoint>> lines;  ///< of the views' masks
   double mask_confidence = 0;
   double noise_sigma = 0;    ///< of the images, on square roots of full scale
+  double stems = 0;          ///< share of the mesh's vertices that lines placed
   double contradiction = 0;  ///< of the silhouettes (assess::SilhouetteConsistency::uncovered_left)
   double cameras_moved = 0;  ///< pixels, by --refine-cameras
   double cameras_moved_alike = 0;  ///< pixels, of it what all views have in common
 };
 
-assess::Signals gather_signals(const CheckedResult& result);
+/// `fits`: how each view's silhouette is filled.
+assess::Signals gather_signals(const CheckedResult& result,
+                               std::vector<assess::SilhouetteFit>* fits = nullptr);
 
 /// JSON: level, reasons and signals.
 std::string to_json(const assess::Verdict& verdict, const assess::Signals& signals,

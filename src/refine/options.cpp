@@ -60,6 +60,17 @@ void check(const RimOptions& o) {
   require(o.told > 0 && o.told <= 1000, "rims.told must lie in (0, 1000]");
 }
 
+void check(const ThinHullOptions& o) {
+  require(o.depth >= 0 && o.depth <= SparseVolume::kBand, "thin.depth must lie in [0, 3] voxels");
+  require(o.reach >= 0 && o.reach <= SparseVolume::kBand, "thin.reach must lie in [0, 3] voxels");
+}
+
+void check(const UnprovenOptions& o) {
+  require(o.least_weight >= 0 && o.least_weight <= 1, "unproven.least_weight must lie in [0, 1]");
+  require(o.least_depth >= 0 && o.least_depth <= SparseVolume::kBand,
+          "unproven.least_depth must lie in [0, 3] voxels");
+}
+
 void check(const MatchOptions& o) {
   require(o.least_spacing > 0 && is_length(o.least_spacing),
           "match.least_spacing must be positive");
@@ -126,6 +137,8 @@ void RefineOptions::validate() const {
   check(vote);
   check(close);
   check(rims);
+  check(thin);
+  check(unproven);
   check(look);
   check(settle);
   require(restore.least_views >= 1, "restore.least_views must be at least 1");

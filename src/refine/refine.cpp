@@ -119,10 +119,15 @@ class Refiner {
         SparseVolume after = distance_from_mesh(extract_mesh(volume), volume, hull.grid, reach);
         keep_still(before, volume, after);
         volume = bounded(after, hull);
+        keep_thin(volume, hull, counts);
         if (last && i + 1 == iterations) restore(volume, hull, counts);
         progress.update((double(level) + double(i + 1) / iterations) / double(grids.size()));
       }
       if (last) fit(volume, hull, counts, progress, report);
+      if (last && any_silhouette(silhouettes_))
+        counts.restored += std::int64_t(fill_unproven(hull, proof_.positions, proof_.normals,
+                                                      proof_.weights, options_.unproven, volume));
+      if (last) keep_thin(volume, hull, counts);
       settled_ = next_settled_;
       counts.split = settled_.count(Settled::kSplit);
       counts.settled_pixels = settled_.count(Settled::kPixels);
@@ -157,6 +162,11 @@ class Refiner {
   void restore(SparseVolume& volume, const SparseVolume& hull, LevelReport& counts) {
     counts.restored += std::int64_t(
         restore_silhouettes(context_, volume, hull, cameras_, silhouettes_, options_.restore));
+  }
+
+  void keep_thin(SparseVolume& volume, const SparseVolume& hull, LevelReport& counts) {
+    if (any_silhouette(silhouettes_))
+      counts.restored += std::int64_t(keep_thin_hull(hull, options_.thin, volume));
   }
 
   void vote(SparseVolume& volume, const SparseVolume& hull, bool last, LevelReport& counts) {
@@ -205,6 +215,7 @@ class Refiner {
     const std::vector<Sightline> sightlines =
         find_sightlines(context_, volume.grid, known, images_, cameras_, options_.noise_sigma,
                         options_.match, options_.look);
+    remember_proof(positions, mesh.normals, peaks, seen, settled);
     const std::vector<float> trust =
         trust_thickness(volume, positions, mesh.normals, options_.peak.thick);
     for (std::size_t i = 0; i < peaks.size(); ++i) peaks[i].weight *= trust[i];
@@ -294,6 +305,29 @@ class Refiner {
     }
   }
 
+  /// What settled below the images' sampling says nothing anew; what is flat was found with
+  /// certainty before.
+  void remember_proof(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
+                      std::span<const Peak> peaks, const std::vector<bool>& seen,
+                      std::span<const Settled> settled) {
+    proof_ = {};
+    for (std::size_t i = 0; i < peaks.size(); ++i) {
+      if (settled[i] == Settled::kPixels || settled[i] == Settled::kUnseen) continue;
+      proof_.positions.push_back(positions[i]);
+      proof_.normals.push_back(normals[i]);
+      proof_.weights.push_back(!seen[i]                       ? -1.0f
+                               : settled[i] == Settled::kFlat ? 1.0f
+                                                              : peaks[i].weight);
+    }
+  }
+
+  /// What the photographs say of the surface that the last step found.
+  struct Proof {
+    std::vector<glm::vec3> positions, normals;
+    std::vector<float> weights;
+  };
+
+  Proof proof_;
   SettledBricks settled_, next_settled_;  // by the level before, and by this one
   gpu::Context& context_;
   const HullAt& hull_at_;

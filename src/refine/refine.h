@@ -21,6 +21,8 @@
 #include "refine/restore.h"
 #include "refine/rims.h"
 #include "refine/settle.h"
+#include "refine/thin_hull.h"
+#include "refine/unproven.h"
 #include "refine/vote.h"
 
 namespace photohull::refine {
@@ -45,6 +47,8 @@ struct RefineOptions {
   CloseOptions close;
   RestoreOptions restore;
   RimOptions rims;
+  ThinHullOptions thin;
+  UnprovenOptions unproven;
   MatchOptions match;
   LookOptions look;
   SettleOptions settle;

@@ -1,8 +1,10 @@
 #include "synth/degrade_cameras.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <glm/gtc/quaternion.hpp>
+#include <numbers>
 #include <numeric>
 
 #include "core/box.h"
@@ -12,7 +14,7 @@ namespace photohull::synth {
 namespace {
 
 using Cameras = std::vector<LensCamera>;
-constexpr std::uint64_t kWrongViews = 0x3207;
+enum Stream : std::uint64_t { kWrongViews = 0x3207, kShiftedViews = 0x3208 };
 
 /// The distance at which the points lie, on average.
 double mean_depth(const LensCamera& lens, const std::vector<glm::dvec3>& points) {
@@ -128,6 +130,23 @@ void turn_away(Cameras& cameras, const DegradationSpec& spec, std::uint64_t seed
   }
 }
 
+/// Views chosen at random, their principal points off by the same length in directions at random.
+void shift_views(Cameras& cameras, const DegradationSpec& spec, std::uint64_t seed) {
+  const double share = spec.view_shift_views * double(cameras.size());
+  const std::size_t count = std::size_t(std::max(1ll, std::llround(share)));
+  const std::vector<std::size_t> order = random_order(cameras.size(), Random(seed, kShiftedViews));
+  for (std::size_t i = 0; i < count; ++i) {
+    const double angle = 2 * std::numbers::pi * Random(seed, kShiftedViews, order[i] + 1).uniform();
+    Intrinsics& k = cameras[order[i]].camera.intrinsics;
+    k.cx += spec.view_shift * std::cos(angle);
+    k.cy += spec.view_shift * std::sin(angle);
+  }
+}
+
+bool shifts_views(const DegradationSpec& spec) {
+  return spec.view_shift > 0 && spec.view_shift_views > 0;
+}
+
 }  // namespace
 
 std::vector<std::size_t> random_order(std::size_t count, Random random) {
@@ -142,6 +161,7 @@ Cameras degrade_cameras(const Cameras& cameras, const DegradationSpec& spec, std
                         const std::vector<glm::dvec3>& points) {
   Cameras written = miscalibrated(cameras, spec, seed, points);
   if (spec.wrong_views > 0) turn_away(written, spec, seed, points);
+  if (shifts_views(spec)) shift_views(written, spec, seed);
   for (LensCamera& lens : written) {
     lens.camera.intrinsics.cx += spec.pixel_shift.x;
     lens.camera.intrinsics.cy += spec.pixel_shift.y;
@@ -152,7 +172,7 @@ Cameras degrade_cameras(const Cameras& cameras, const DegradationSpec& spec, std
 
 bool cameras_are_off(const DegradationSpec& spec) {
   return spec.pose_error > 0 || spec.intrinsics_error > 0 || spec.wrong_views > 0 ||
-         length(spec.pixel_shift) > 0 || spec.ignore_distortion;
+         shifts_views(spec) || length(spec.pixel_shift) > 0 || spec.ignore_distortion;
 }
 
 }  // namespace photohull::synth

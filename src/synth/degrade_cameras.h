@@ -17,7 +17,8 @@ double reprojection_error(const std::vector<LensCamera>& a, const std::vector<Le
 /// The cameras with errors of exactly the asked sizes over the points: poses turned and moved at
 /// random, each view by itself; focal length and principal point off by the same amounts in all
 /// views; with both, each is of its size by itself. Then a share of the views is turned about the
-/// middle of the points, all principal points are shifted, and distortion is forgotten.
+/// middle of the points, the principal points of another share are shifted by view_shift each in a
+/// direction of its own, all principal points are shifted, and distortion is forgotten.
 std::vector<LensCamera> degrade_cameras(const std::vector<LensCamera>& cameras,
                                         const DegradationSpec& spec, std::uint64_t seed,
                                         const std::vector<glm::dvec3>& points);

@@ -22,6 +22,11 @@ TriMesh make_rods(const ShapeValues& v);
 TriMesh make_leaves(const ShapeValues& v);
 TriMesh make_plant(const ShapeValues& v);
 
+// shapes_wire.cpp
+TriMesh make_seedling(const ShapeValues& v);
+TriMesh make_cage(const ShapeValues& v);
+TriMesh make_wheel(const ShapeValues& v);
+
 // shapes_implicit.cpp
 TriMesh make_gyroid(const ShapeValues& v);
 

@@ -92,6 +92,10 @@ void check_together(const Spec& s, const std::string& source) {
     fail(concat("image.bits: expected 8 or 16, found ", s.image.bits));
   if (s.image.bits == 16 && s.degradations.jpeg > 0)
     fail("image.bits: JPEG has 8 bits; set degradations.jpeg to 0 or image.bits to 8");
+  if (s.degradations.mask_style == kAliased && s.degradations.mask_grow != 0)
+    fail(
+        "degradations.mask_style: aliased masks cannot grow or shrink; set degradations.mask_grow "
+        "to 0 or choose cut");
   const int views = view_count(s.cameras);
   if (views > kMostViews)
     fail(concat("cameras: ", views, " views are more than ", kMostViews, "; ask for fewer"));

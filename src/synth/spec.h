@@ -99,6 +99,12 @@ struct CameraSpec {
   double roll = 0;                     ///< degrees, either way at random
 };
 
+// Styles of masks.
+constexpr const char* kCoverage = "coverage";
+constexpr const char* kAliased = "aliased";
+constexpr const char* kCut = "cut";
+constexpr const char* kEroded = "eroded";
+
 struct DegradationSpec {
   std::uint64_t seed = 0;                 ///< mixed with the scene's
   double photon_noise = 0;                ///< deviation at white, of 1 = white, linear light
@@ -116,7 +122,11 @@ struct DegradationSpec {
   bool ignore_distortion = false;         ///< the written cameras have no distortion
   double wrong_views = 0;                 ///< share of the views whose written poses are wrong
   double wrong_turn = 30;                 ///< by so many degrees about the object's middle
+  double view_shift = 0;                  ///< pixels that some written principal points are off
+  double view_shift_views = 0;            ///< share of the views that these are
   double mask_grow = 0;                   ///< pixels that masks are too large; negative: too small
+  std::string mask_style = kCoverage;     ///< "coverage", "aliased", "cut" or "eroded"
+  double mask_cut = 0.5;                  ///< least coverage that "cut" and "eroded" keep
   int mask_holes = 0;                     ///< a mask
   double mask_hole_radius = 6;            ///< pixels
   std::vector<int> mask_wrong;            ///< views that get the next view's mask

@@ -94,7 +94,11 @@ void visit_degradations(Visitor& v, DegradationSpec& d) {
   v.flag("ignore_distortion", d.ignore_distortion);
   v.number("wrong_views", d.wrong_views, 0, 1);
   v.number("wrong_turn", d.wrong_turn, 0, 180);
+  v.number("view_shift", d.view_shift, 0, 50);
+  v.number("view_shift_views", d.view_shift_views, 0, 1);
   v.number("mask_grow", d.mask_grow, -100, 100);
+  v.choice("mask_style", d.mask_style, {kCoverage, kAliased, kCut, kEroded});
+  v.number("mask_cut", d.mask_cut, 0.01, 1);
   v.integer("mask_holes", d.mask_holes, 0, 1000);
   v.number("mask_hole_radius", d.mask_hole_radius, 0.5, 500);
   v.integers("mask_wrong", d.mask_wrong, 0, kMostViews - 1);

@@ -137,10 +137,9 @@ double write_views(const Spec& spec, const Surface& surface, const std::vector<L
     const Picture picture = render(
         surface, shading, cameras[i], indices[i], spec.image.samples, spec.seed,
         [&] { progress.update(double(++rows_done) / rows); }, maps ? &*maps : nullptr);
-    masks[i] = exact_mask(picture);
-    const auto& coverage = masks[i].coverage;
-    fill[i] =
-        std::accumulate(coverage.begin(), coverage.end(), 0.0) / (255.0 * double(coverage.size()));
+    masks[i] = undegraded_mask(picture, spec.degradations);
+    const auto& coverage = picture.coverage;
+    fill[i] = std::accumulate(coverage.begin(), coverage.end(), 0.0) / double(coverage.size());
     if (fill[i] == 0)
       throw Error(concat("view ", names[i],
                          " sees nothing of the object; change cameras.distance, fill or "

@@ -9,6 +9,7 @@
 #include <bit>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -285,6 +286,32 @@ void Removal::perform() {
       volume_.table[brick] = SparseVolume::kOutside;
 }
 
+/// Takes back the nodes of those components that are wanted.
+void keep_wanted(const SparseVolume& volume, Components& components, const AreWanted& are_wanted,
+                 std::vector<bool>& dropped) {
+  std::map<std::uint32_t, std::size_t> piece_of;  // by root
+  std::vector<std::vector<glm::ivec3>> pieces;
+  const glm::ivec3 bricks = volume.grid.bricks;
+  for (std::size_t brick = 0; brick < volume.table.size(); ++brick)
+    for (auto node = components.first_node(brick); node < components.first_node(brick + 1);
+         ++node) {
+      if (!dropped[node]) continue;
+      const auto [at, is_new] = piece_of.try_emplace(components.root(node), pieces.size());
+      if (is_new) pieces.emplace_back();
+      const glm::ivec3 low =
+          kBrickEdge * glm::ivec3(brick % std::size_t(bricks.x),
+                                  brick / std::size_t(bricks.x) % std::size_t(bricks.y),
+                                  brick / (std::size_t(bricks.x) * std::size_t(bricks.y)));
+      for (int i = 0; i < kBrickVoxels; ++i)
+        if (components.mask(node)[std::size_t(i >> 6)] >> (i & 63) & 1)
+          pieces[at->second].push_back(low + glm::ivec3(i >> 6, (i >> 3) & 7, i & 7));
+    }
+  if (pieces.empty()) return;
+  const std::vector<bool> wanted = are_wanted(pieces);
+  for (std::uint32_t node = 0; node < dropped.size(); ++node)
+    if (dropped[node] && wanted[piece_of.at(components.root(node))]) dropped[node] = false;
+}
+
 }  // namespace
 
 std::vector<std::size_t> component_sizes(const SparseVolume& volume) {
@@ -294,7 +321,8 @@ std::vector<std::size_t> component_sizes(const SparseVolume& volume) {
   return sizes;
 }
 
-RemovedComponents remove_small_components(SparseVolume& volume, double fraction) {
+RemovedComponents remove_small_components(SparseVolume& volume, double fraction,
+                                          const AreWanted& are_wanted) {
   if (!(fraction >= 0 && fraction <= 1))
     throw UsageError(
         concat("smallest component to keep is ", fraction, "; choose a fraction from 0 to 1."));
@@ -306,6 +334,9 @@ RemovedComponents remove_small_components(SparseVolume& volume, double fraction)
   std::vector<bool> dropped(sizes.size());
   for (std::uint32_t node = 0; node < sizes.size(); ++node) {
     dropped[node] = double(sizes[components.root(node)]) < least;
+  }
+  if (are_wanted) keep_wanted(volume, components, are_wanted, dropped);
+  for (std::uint32_t node = 0; node < sizes.size(); ++node) {
     if (!dropped[node] || components.root(node) != node) continue;
     ++removed.components;
     removed.voxels += sizes[node];

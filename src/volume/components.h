@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "core/grid.h"
@@ -19,9 +21,14 @@ struct RemovedComponents {
   std::size_t voxels = 0;
 };
 
+/// Says of each small component, given by its voxels, whether it is wanted all the same.
+using AreWanted = std::function<std::vector<bool>(std::span<const std::vector<glm::ivec3>>)>;
+
 /// Drops the components with fewer voxels than `fraction` of the largest one's: their voxels, and
 /// the positive distances around them that no kept component is near, become +kBand. Bricks stay
-/// stored. Throws UsageError when fraction is not in [0, 1].
-RemovedComponents remove_small_components(SparseVolume& volume, double fraction);
+/// stored. `are_wanted` is asked once, if there are any. Throws UsageError when fraction is not in
+/// [0, 1].
+RemovedComponents remove_small_components(SparseVolume& volume, double fraction,
+                                          const AreWanted& are_wanted = {});
 
 }  // namespace photohull

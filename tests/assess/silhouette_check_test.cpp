@@ -13,11 +13,11 @@ const std::vector<Camera> kCameras = test::cameras_around({0, 0, 0}, 5, 3, 180, 
 
 std::vector<SilhouetteFit> check(const TriMesh& mesh, double radius, double tolerance = 1.5) {
   std::vector<test::Outline> outlines;
-  std::vector<const SilhouetteDistance*> silhouettes;
+  std::vector<CheckedSilhouette> silhouettes;
   for (const Camera& camera : kCameras)
     outlines.push_back(test::sphere_outline(camera, {0, 0, 0}, radius));
-  for (const test::Outline& o : outlines) silhouettes.push_back(&o.distance);
-  silhouettes.back() = nullptr;
+  for (const test::Outline& o : outlines) silhouettes.push_back({&o.distance, &o.distance});
+  silhouettes.back() = {};
   return check_silhouettes(RayScene(mesh), kBox, kCameras, silhouettes, tolerance);
 }
 

@@ -124,6 +124,15 @@ TEST(Verdict, PlainSurfaceIsFineWhereSilhouettesShowIt) {
   expect(judged(s), Level::kDoubtful, "too little texture on 98 %");
 }
 
+TEST(Verdict, StemsNeedNoTexture) {
+  Signals s = in_order();
+  s.match.textured = 0.02, s.match.matched = 0, s.mean_confidence = 0.8;
+  s.stems = 0.7;
+  EXPECT_EQ(judged(s).level, Level::kGood);
+  s.stems = 0.05;
+  expect(judged(s), Level::kDoubtful, "too little texture on 93 %");
+}
+
 TEST(Verdict, SilhouettesDoNotCountWhereThereAreNone) {
   Signals s = in_order();
   s.masks = false;

@@ -131,6 +131,32 @@ TEST(Background, ClosesShadowsOfDoubtfulScenes) {
       60);  // of 11300; where a crack meets the contour
 }
 
+TEST(Background, GreyTellsHowSureAPixelIs) {
+  // Cracks of background colour are closed.
+  const auto crack = [](double x, double y) {
+    return disc(x, y) > 0.9 && std::abs(std::fmod(x + 0.5 * y, 40) - 20) < 1.5;
+  };
+  const auto images = photograph([&](double x, double y) {
+    const double shade = 0.02 + 0.98 * std::pow(0.5 + 0.5 * std::sin(0.15 * y), 2);
+    return mix(glm::vec3(0.0f), float((crack(x, y) ? 0.0 : 1.0) * shade) * clay(x, y), disc(x, y));
+  });
+  const Mask mask = mask_from_background(estimate_background(pointers(images)), images[0]);
+  double in_cracks = 0, cracks = 0, in_body = 0, body = 0;
+  for (int y = 80; y < 160; ++y)
+    for (int x = 110; x < 190; ++x) {
+      const double c = mask.coverage[std::size_t(y) * kWidth + std::size_t(x)];
+      ASSERT_GE(c, 128) << x << "," << y;
+      (crack(x, y) ? in_cracks : in_body) += c, (crack(x, y) ? cracks : body) += 1;
+    }
+  ASSERT_GT(cracks, 100);
+  EXPECT_LT(in_cracks / cracks, 190);
+  EXPECT_GT(in_body / body, in_cracks / cracks + 30);
+  // Far outside there is nothing.
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 260; x < kWidth; ++x)
+      ASSERT_EQ(mask.coverage[std::size_t(y) * kWidth + std::size_t(x)], 0) << x << "," << y;
+}
+
 TEST(Background, ObjectCutByTheFrameStaysWhole) {
   // The bar runs out of the picture at the right in one view of four.
   auto images =

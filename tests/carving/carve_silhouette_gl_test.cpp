@@ -183,5 +183,94 @@ TEST_F(CarveSilhouette, PointsThatNoImageShowsAreJudgedAlikeAtEveryLevel) {
   expect_equals_dense(carve(scene), scene);
 }
 
+test::Outline nothing(const Camera& camera) {
+  return test::rasterise(camera.intrinsics.width, camera.intrinsics.height,
+                         [](const glm::dvec2&) { return 32768.0; });
+}
+
+/// A view that would leave everything out if what it does not have on its image counted.
+void add_empty_view(HullScene& scene, const Camera& camera) {
+  scene.cameras.push_back(camera);
+  scene.outlines.push_back(nothing(camera));
+}
+
+TEST_F(CarveSilhouette, AnEmptySilhouetteOfEightTakesTheBallUnlessOneMayMiss) {
+  HullScene scene = sphere_scene(40, 8);
+  const std::uint64_t whole = carve(scene).inside_voxels();
+  scene.outlines[3] = nothing(scene.cameras[3]);
+  EXPECT_EQ(carve(scene).inside_voxels(), 0u);
+  scene.options.views_may_miss = 1;
+  SparseVolume volume = carve(scene);
+  expect_equals_dense(volume, scene);
+  // Of the other seven silhouettes none may miss anything: nothing of the ball is lost, and where
+  // all eight masks are right what one of them cuts off comes back.
+  EXPECT_GE(volume.inside_voxels(), whole);
+  EXPECT_LT(double(volume.inside_voxels()), 1.3 * double(whole));
+  scene.outlines[5] = nothing(scene.cameras[5]);
+  EXPECT_EQ(carve(scene).inside_voxels(), 0u);
+  scene.options.views_may_miss = 2;
+  EXPECT_GE(carve(scene).inside_voxels(), whole);
+}
+
+TEST_F(CarveSilhouette, HullsThatMoreMayMissContainEachOther) {
+  HullScene scene = sphere_scene(32, 6);
+  std::vector<SparseVolume> hulls;
+  for (int missing = 0; missing <= 7; ++missing) {
+    scene.options.views_may_miss = missing;
+    hulls.push_back(carve(scene));
+    expect_equals_dense(hulls.back(), scene);
+  }
+  for (std::size_t i = 1; i < hulls.size(); ++i)
+    for_each_voxel(scene.grid, [&](const ivec3& voxel) {
+      EXPECT_LE(hulls[i].at(voxel), hulls[i - 1].at(voxel) + 1e-3f);
+    });
+  // Where all silhouettes may miss, the box is what is left.
+  EXPECT_EQ(hulls[6].inside_voxels(), 32u * 32 * 32);
+  EXPECT_EQ(hulls[7].inside_voxels(), 32u * 32 * 32);
+}
+
+TEST_F(CarveSilhouette, AViewLeavesNothingOutThatIsBesideItsFrame) {
+  HullScene scene = sphere_scene(40, 8);
+  const std::uint64_t whole = carve(scene).inside_voxels();
+  // The ball stands to the left of the frame.
+  add_empty_view(scene, test::look_at(kCentre + glm::dvec3(4, 0, 0), kCentre + glm::dvec3(0, 5, 0),
+                                      190, 160, 120));
+  const SparseVolume volume = carve(scene);
+  expect_equals_dense(volume, scene);
+  EXPECT_EQ(volume.inside_voxels(), whole);
+  // Nor does it use up the one that may miss.
+  add_empty_view(scene, test::look_at(kCentre + glm::dvec3(0, 4, 0), kCentre, 190, 160, 120));
+  EXPECT_EQ(carve(scene).inside_voxels(), 0u);
+  scene.options.views_may_miss = 1;
+  EXPECT_GE(carve(scene).inside_voxels(), whole);
+}
+
+TEST_F(CarveSilhouette, AViewLeavesNothingOutThatIsBehindItsCamera) {
+  HullScene scene = sphere_scene(40, 8);
+  const std::uint64_t whole = carve(scene).inside_voxels();
+  // It looks away from the ball, whose mirror image would fall into the frame.
+  add_empty_view(scene, test::look_at(kCentre + glm::dvec3(4, 0, 0), kCentre + glm::dvec3(9, 0, 0),
+                                      190, 160, 120));
+  const SparseVolume volume = carve(scene);
+  expect_equals_dense(volume, scene);
+  EXPECT_EQ(volume.inside_voxels(), whole);
+  add_empty_view(scene, test::look_at(kCentre + glm::dvec3(0, 4, 0), kCentre, 190, 160, 120));
+  EXPECT_EQ(carve(scene).inside_voxels(), 0u);
+  scene.options.views_may_miss = 1;
+  EXPECT_GE(carve(scene).inside_voxels(), whole);
+}
+
+TEST_F(CarveSilhouette, ViewsWithoutSilhouettesMissNothing) {
+  HullScene scene = sphere_scene(40, 8);
+  for (const int view : {0, 4, 6}) scene.outlines[view] = {};
+  scene.outlines[1] = nothing(scene.cameras[1]);
+  scene.options.views_may_miss = 1;
+  const SparseVolume volume = carve(scene);
+  expect_equals_dense(volume, scene);
+  EXPECT_GT(volume.inside_voxels(), 0u);
+  scene.options.views_may_miss = 0;
+  EXPECT_EQ(carve(scene).inside_voxels(), 0u);
+}
+
 }  // namespace
 }  // namespace photohull::carving

@@ -175,6 +175,65 @@ TEST_F(HullKernelTest, DistancesFromMoreViewsThanTheKernelLists) {
   EXPECT_GT(found.within_band, 500);
 }
 
+TEST_F(HullKernelTest, DistancesThatSomeViewsMayMiss) {
+  for (const int missing : {1, 2, 3}) {
+    int within_band = 0;
+    for (int trial = 0; trial < 4; ++trial) {
+      HullScene scene = empty_scene({4, 3, 3});
+      add_random(scene, rng_, 4 + 2 * trial);
+      if (trial == 1) scene.outlines[0] = scene.outlines[3] = {};
+      if (trial >= 2)  // many voxels off the images
+        for (Camera& camera : scene.cameras) camera.intrinsics.cx += 25;
+      scene.options.min_views = 1 + trial / 3;
+      scene.options.views_may_miss = missing;
+      const Difference found = compare(scene);
+      EXPECT_LT(found.worst, kDistanceBound) << missing << " may miss, trial " << trial;
+      within_band += found.within_band;
+    }
+    EXPECT_GT(within_band, 5000) << missing;
+  }
+}
+
+TEST_F(HullKernelTest, DistancesWhereAllViewsMayMiss) {
+  for (const int missing : {3, 4, HullOptions::kMostMissing}) {
+    HullScene scene = empty_scene({3, 3, 3});
+    add_random(scene, rng_, 3);
+    scene.options.views_may_miss = missing;
+    const Difference found = compare(scene);
+    EXPECT_LT(found.worst, kDistanceBound) << missing;
+    EXPECT_GT(found.within_band, 0) << missing;  // beside the box's faces
+  }
+}
+
+TEST_F(HullKernelTest, DistancesFromMoreViewsThanTheKernelListsThatSomeMayMiss) {
+  HullScene scene = empty_scene({2, 2, 2});
+  for (int i = 0; i < 75; ++i) {
+    const Camera camera = test::random_camera(rng_, scene.grid.bounds(), 64, 64);
+    add(scene, camera, test::rasterise(64, 64, [&](const glm::dvec2& p) {
+          return glm::length(p - glm::dvec2(32)) - 20;
+        }));
+  }
+  for (const int missing : {3, HullOptions::kMostMissing}) {
+    scene.options.views_may_miss = missing;
+    const Difference found = compare(scene);
+    EXPECT_LT(found.worst, kDistanceBound) << missing;
+    EXPECT_GT(found.within_band, 300) << missing;
+  }
+}
+
+TEST_F(HullKernelTest, DistancesFromCamerasInsideTheBoxThatSomeMayMiss) {
+  HullScene scene = empty_scene({4, 3, 3});
+  for (int i = 0; i < 8; ++i) {
+    const glm::dvec3 eye = test::uniform_in(rng_, scene.box);
+    const Camera camera = test::look_at(eye, eye + test::random_direction(rng_), 40, 80, 60);
+    add(scene, camera, test::random_outline(rng_, 80, 60));
+  }
+  for (const int missing : {1, 2}) {
+    scene.options.views_may_miss = missing;
+    EXPECT_LT(compare(scene).worst, kDistanceBound) << missing;
+  }
+}
+
 /// Counts of a classification against the reference's.
 struct Agreement {
   int wrong = 0;      ///< called outside or inside where the reference does not
@@ -240,11 +299,35 @@ TEST_F(ClassifyTest, IsConservativeOffTheImagesAndAroundCameras) {
   }
 }
 
+TEST_F(ClassifyTest, IsConservativeWhereSomeViewsMayMiss) {
+  Agreement all;
+  for (const int missing : {1, 2, 3, 9}) {
+    for (int trial = 0; trial < 8; ++trial) {
+      HullScene scene = empty_scene({6, 5, 4});
+      add_random(scene, rng_, 3 + trial);
+      if (trial % 3 == 0) scene.outlines[0] = {};
+      if (trial % 4 == 3) {  // off the images, and from within the box
+        for (Camera& camera : scene.cameras) camera.intrinsics.cx += 25;
+        const glm::dvec3 eye = test::uniform_in(rng_, scene.box);
+        add(scene, test::look_at(eye, eye + test::random_direction(rng_), 40, 80, 60),
+            test::random_outline(rng_, 80, 60));
+      }
+      scene.options.views_may_miss = missing;
+      const Agreement one = classify(scene);
+      EXPECT_EQ(one.wrong, 0) << missing << " may miss, trial " << trial;
+      all.decided += one.decided;
+      all.decidable += one.decidable;
+    }
+  }
+  EXPECT_GT(all.decided, 0.6 * all.decidable) << all.decidable;
+}
+
 TEST_F(ClassifyTest, SignsOfAllVoxelsFollowTheNodes) {
-  for (int trial = 0; trial < 6; ++trial) {
+  for (int trial = 0; trial < 9; ++trial) {
     HullScene scene = empty_scene({6, 5, 4});
     add_random(scene, rng_, 4);
     scene.options.min_views = 2;
+    scene.options.views_may_miss = std::max(trial - 5, 0);
     const std::vector<Silhouette> silhouettes = scene.silhouettes();
     const std::vector<ivec4> nodes = nodes_of(scene.grid, 0);
     const std::vector<std::uint32_t> found = HullKernels(context_, scene).classify(nodes, kMargin);

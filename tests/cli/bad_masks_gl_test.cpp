@@ -81,8 +81,19 @@ TEST_F(BadMasks, OfSomethingElseAreNamedAndLeftOut) {
   const auto report = nlohmann::json::parse(read_bytes(path("out/report.json")));
   EXPECT_THAT(report["left_out"].get<std::vector<std::string>>(),
               testing::UnorderedElementsAre("view3.png", "view7.png"));
-  fail(1, reconstruct({"--masks", path("cutouts"), "--keep-views"}),
+  const std::int64_t kept = report["voxels_kept"];
+  fail(1, reconstruct({"--masks", path("cutouts"), "--keep-views", "--views-may-miss", "0"}),
        {"nothing is left of the box"});
+  fail(1, reconstruct({"--masks", path("cutouts"), "--keep-views", "--views-may-miss", "1"}),
+       {"nothing is left of the box"});
+  // Two may miss: what the other fourteen have stands, and the verdict tells of the two.
+  const Finished both = run_photohull(
+      reconstruct({"--masks", path("cutouts"), "--keep-views", "--views-may-miss", "2"}));
+  EXPECT_EQ(both.code, 3);
+  EXPECT_THAT(both.err, HasSubstr("the silhouettes contradict each other"));
+  const auto other = nlohmann::json::parse(read_bytes(path("out/report.json")));
+  EXPECT_EQ(other["left_out"].size(), 0u);
+  EXPECT_NEAR(double(other["voxels_kept"]), double(kept), 0.02 * double(kept));
 }
 
 TEST_F(BadMasks, ThatCarveEverythingAwayNameTheViews) {

@@ -95,6 +95,12 @@ TEST_F(Usage, NumbersOutOfRange) {
   for (const char* bad : {"0.3", "-1", "nan"}) refuse({"--pixel-center", bad}, {"--pixel-center"});
 }
 
+TEST_F(Usage, ViewsThatMayMiss) {
+  for (const char* bad : {"-1", "17", "some", "", "1.5", "2 ", "99999999999"})
+    refuse({"--views-may-miss", bad}, {"--views-may-miss " + std::string(bad),
+                                       "expected auto, or a number of views from 0 to 16"});
+}
+
 TEST_F(Usage, WordsThatAreNotChoices) {
   refuse({"--quality", "best"}, {"--quality best", "draft, normal, high"});
   refuse({"--method", "magic"}, {"--method magic", "hull, voxel-coloring, space-carving"});

@@ -49,7 +49,8 @@ TEST(Accuracy, Block) {
 
 TEST(Accuracy, RodsBeforeTexture) {
   expect_scores(SyntheticScene("rods_before_texture", 24, 320, 240), 96,
-                {{Method::kHull, 20.55, 19.5, 26.6, 25.6},
+                // An outer bound: half a pixel of room around rods of a pixel is much at this size.
+                {{Method::kHull, 18.97, 18.4, 25.1, 24.5},
                  {Method::kSpaceCarving, 20.77, 19.8, 28.31, 27.3},
                  {Method::kRefine, 92.73, 91.7, 96.17, 95.1}});
 }

@@ -216,5 +216,31 @@ TEST(PlaceCameras, RefusesCamerasInsideOrTooNear) {
   EXPECT_THROW(Small(R"({"degradations": {"k1": -5}, "cameras": {"distance": 0.6}})"), Error);
 }
 
+TEST(Render, StemsThinnerThanAPixelCoverTheirShare) {
+  // The bare stem of a seedling, from 1.2 pixels at the ground to 0.3 at the top.
+  Spec spec = parse_spec(R"({"geometry": {"shape": "seedling", "parameters": {"shoots": 0}},
+      "image": {"width": 400, "height": 400, "samples": 8},
+      "cameras": {"layout": "arc", "count": 1, "elevation": 0}})",
+                         "test", "");
+  auto& stem = spec.geometry.parameters.at("stem");
+  const auto camera = [&] { return place_cameras(spec, make_surface(spec.geometry))[0]; };
+  stem = 0.6 / 2 * length(camera().camera.center() - glm::dvec3(0, 0, 1)) /
+         camera().camera.intrinsics.fx;
+  const Surface surface = make_surface(spec.geometry);
+  const LensCamera lens = camera();
+  const Shading shading(spec, surface, 0.01);
+  const Picture picture = render(surface, shading, lens, 0, spec.image.samples, 1);
+  for (const double height : {0.1, 0.5, 0.95}) {
+    const glm::dvec3 middle(0, 0, 2 * height);
+    const double pixel = lens.camera.to_camera(middle).z / lens.camera.intrinsics.fx;
+    const int row = int(std::lround(lens.project(middle)->y));
+    double width = 0;
+    for (int y = row - 7; y <= row + 7; ++y)
+      for (int x = 0; x < 400; ++x) width += picture.coverage[std::size_t(y) * 400 + x] / 15;
+    const double exact = 2 * 2 * stem * (1 - 0.75 * height) / pixel;
+    EXPECT_NEAR(width, exact, 0.05 * exact) << height;
+  }
+}
+
 }  // namespace
 }  // namespace photohull::synth

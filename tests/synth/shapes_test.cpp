@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <map>
+#include <numeric>
 #include <random>
 
 #include "raycast/ray_scene.h"
@@ -52,6 +54,44 @@ std::vector<int> crossings(const Surface& s, const glm::dvec3& from, const glm::
   return signs;
 }
 
+/// Numbers of the parts that the vertices belong to.
+std::vector<std::uint32_t> parts_of(const TriMesh& mesh) {
+  std::vector<std::uint32_t> parent(mesh.positions.size());
+  std::iota(parent.begin(), parent.end(), 0u);
+  const auto root = [&](std::uint32_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  for (const auto& [a, b, c] : mesh.triangles) {
+    parent[root(b)] = root(a);
+    parent[root(c)] = root(a);
+  }
+  for (std::uint32_t i = 0; i < parent.size(); ++i) parent[i] = root(i);
+  return parent;
+}
+
+/// Edges that run through a triangle of another part: none where parts do not meet.
+int meeting_edges(const Surface& s) {
+  const std::vector<std::uint32_t> part = parts_of(s.mesh);
+  int meeting = 0;
+  for (const auto& t : s.mesh.triangles)
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+      if (a > b) continue;  // every edge once
+      const glm::dvec3 from = s.mesh.world(a), along = s.mesh.world(b) - from;
+      double start = 0;
+      // An edge meets its own part, too, and is to be followed past it.
+      while (const auto hit = s.rays->closest(from, along, start, 1)) {
+        if (part[s.mesh.triangles[hit->triangle][0]] != part[a]) {
+          ++meeting;
+          break;
+        }
+        start = hit->t + 0.01;
+      }
+    }
+  return meeting;
+}
+
 class EveryShape : public testing::TestWithParam<std::string> {};
 
 TEST_P(EveryShape, IsClosedAndFacesOutward) {
@@ -87,6 +127,63 @@ std::vector<std::string> shape_names() {
   std::vector<std::string> names;
   for (const Shape& s : shapes()) names.push_back(s.name);
   return names;
+}
+
+/// Every parameter but the size at one end of its range.
+ShapeValues extreme(const Shape& shape, bool high) {
+  ShapeValues values = defaults(shape);
+  for (const ShapeParameter& p : shape.parameters)
+    if (p.high < 100) values[p.name] = high ? p.high : p.low;
+  return values;
+}
+
+TEST(WireShapes, PartsDoNotMeet) {
+  for (const char* name : {"cage", "seedling", "wheel"}) {
+    const Shape& shape = *find_shape(name);
+    for (const ShapeValues& values :
+         {defaults(shape), extreme(shape, false), extreme(shape, true)}) {
+      const Surface s = make_surface(make_shape(shape, values), name);
+      EXPECT_EQ(meeting_edges(s), 0) << name;
+      EXPECT_EQ(open_edges(s.mesh), 0) << name;
+    }
+  }
+  // The measure itself: two tubes that cross, and one beside the other.
+  const auto tubes_meet = [](double aside) {
+    MeshBuilder builder;
+    const auto radius = [](double) { return 0.1; };
+    builder.add_tube([](double s) { return glm::dvec3(0, 0, s); }, radius, 8, 12, {1, 0, 0});
+    builder.add_tube([&](double s) { return glm::dvec3(s - 0.5, aside, 0.5); }, radius, 8, 12,
+                     {0, 0, 1});
+    return meeting_edges(make_surface(builder.take(), "tubes")) > 0;
+  };
+  EXPECT_TRUE(tubes_meet(0.15));
+  EXPECT_FALSE(tubes_meet(0.21));
+}
+
+TEST(WireShapes, FacetsFollowTheirCurves) {
+  // Middles of the facets of the first part, less than 1e-4 of the diagonal off.
+  const auto worst = [](const char* name, const std::function<double(const glm::dvec3&)>& off) {
+    const TriMesh mesh = make_shape(*find_shape(name));
+    const std::vector<std::uint32_t> part = parts_of(mesh);
+    double most = 0;
+    for (const auto& [a, b, c] : mesh.triangles)
+      if (part[a] == part[0])
+        most = std::max(most, std::abs(off((mesh.world(a) + mesh.world(b) + mesh.world(c)) / 3.0)));
+    return most;
+  };
+  EXPECT_LT(worst("wheel",  // the tyre
+                  [](const glm::dvec3& p) {
+                    return std::hypot(std::hypot(p.x, p.z - 1) - 0.96, p.y) - 0.04;
+                  }),
+            1e-4 * std::sqrt(8.0));
+  EXPECT_LT(worst("seedling",  // the stem
+                  [](const glm::dvec3& p) {
+                    const double s = p.z / 2;
+                    if (s < 0 || s > 1) return 0.0;  // its round ends
+                    return std::hypot(p.x - 0.04 * std::sin(3 * s), p.y - 0.024 * std::sin(5 * s)) -
+                           0.00314 * (1 - 0.75 * s);
+                  }),
+            1e-4 * 2);
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, EveryShape, testing::ValuesIn(shape_names()),

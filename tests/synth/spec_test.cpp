@@ -33,7 +33,8 @@ TEST(Spec, WrittenOutItReadsBackEqual) {
     "geometry": {"shape": "torus", "parameters": {"tube": 0.3}, "rotate": [1, 2, 3]},
     "light": {"point": [{"position": [1, 2, 3]}], "directional": []},
     "cameras": {"layout": "arc", "count": 7, "distances": [1, 2]},
-    "degradations": {"mask_wrong": [1], "jpeg": 80, "k1": -0.1}})";
+    "degradations": {"mask_wrong": [1], "jpeg": 80, "k1": -0.1, "mask_style": "eroded",
+                     "mask_cut": 0.25, "view_shift": 1.5, "view_shift_views": 0.125}})";
   const std::string once = spec_text(parse_spec(text, "a", ""), R"({"views": ["0000"]})");
   const Spec again = parse_spec(once, "b", "");
   EXPECT_EQ(spec_text(again, R"({"views": ["0000"]})"), once);
@@ -43,6 +44,10 @@ TEST(Spec, WrittenOutItReadsBackEqual) {
   EXPECT_EQ(again.light.directional.size(), 0u);
   EXPECT_EQ(again.light.point.at(0).position.y, 2.0);
   EXPECT_EQ(again.degradations.mask_wrong, std::vector<int>{1});
+  EXPECT_EQ(again.degradations.mask_style, "eroded");
+  EXPECT_EQ(again.degradations.mask_cut, 0.25);
+  EXPECT_EQ(again.degradations.view_shift, 1.5);
+  EXPECT_EQ(again.degradations.view_shift_views, 0.125);
 }
 
 TEST(Spec, UnknownFieldsAreNamedWithTheNearestKnownOne) {
@@ -80,6 +85,20 @@ TEST(Spec, WrongTypesAndRangesAreNamed) {
               AllOf(HasSubstr("image.bits"), HasSubstr("8 or 16"), HasSubstr("12")));
   EXPECT_THAT(message_of(R"({"image": {"bits": 16}, "degradations": {"jpeg": 50}})"),
               HasSubstr("JPEG has 8 bits"));
+  EXPECT_THAT(
+      message_of(R"({"degradations": {"mask_style": "alised"}})"),
+      AllOf(HasSubstr("degradations.mask_style"), HasSubstr("coverage, aliased, cut, eroded"),
+            HasSubstr("did you mean aliased?")));
+  EXPECT_THAT(message_of(R"({"degradations": {"mask_cut": 0}})"),
+              AllOf(HasSubstr("degradations.mask_cut"), HasSubstr("0.01 to 1")));
+  EXPECT_THAT(message_of(R"({"degradations": {"mask_style": "aliased", "mask_grow": -1}})"),
+              AllOf(HasSubstr("degradations.mask_style"), HasSubstr("degradations.mask_grow")));
+  EXPECT_EQ(message_of(R"({"degradations": {"mask_style": "eroded", "mask_grow": -1}})"),
+            "accepted");
+  EXPECT_THAT(message_of(R"({"degradations": {"view_shift": 51}})"),
+              AllOf(HasSubstr("degradations.view_shift"), HasSubstr("0 to 50")));
+  EXPECT_THAT(message_of(R"({"degradations": {"view_shift_views": 2}})"),
+              AllOf(HasSubstr("degradations.view_shift_views"), HasSubstr("0 to 1")));
   EXPECT_THAT(message_of("[1]"), HasSubstr("object"));
   EXPECT_THAT(message_of("{"), HasSubstr("not valid JSON"));
   constexpr int kLevels = 300000;  // more than the stack has room for

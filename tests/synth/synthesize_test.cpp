@@ -193,6 +193,54 @@ TEST(Synthesize, WrittenPosesAreOffAndTheTrueOnesKept) {
   EXPECT_GT(length(off.views[0].camera.center() - exact[0].camera.center()), 1e-4);
 }
 
+TEST(Synthesize, ShiftedViewsAreWrittenInEveryFormat) {
+  const ScratchFolder scratch;
+  Spec spec = small(kBlock);
+  spec.degradations.view_shift = 1.5;
+  spec.degradations.view_shift_views = 0.3;
+  make(spec, scratch / "scene");
+  const auto exact = place_cameras(spec, make_surface(spec.geometry));
+  expect_cameras(io::load_scene(scratch / "scene" / "true_cameras"), exact);
+  for (const char* format : {"", "middlebury", "colmap_text", "colmap_binary"}) {
+    const Scene scene = io::load_scene(scratch / "scene" / format);
+    int shifted = 0;
+    for (std::size_t i = 0; i < exact.size(); ++i) {
+      const Intrinsics &a = scene.views[i].camera.intrinsics, &b = exact[i].camera.intrinsics;
+      const double shift = std::hypot(a.cx - b.cx, a.cy - b.cy);
+      if (shift < 1e-9) continue;
+      ++shifted;
+      EXPECT_NEAR(shift, 1.5, 1e-9) << format;
+    }
+    EXPECT_EQ(shifted, 1) << format;
+  }
+}
+
+TEST(Synthesize, MasksHaveTheStyleAskedFor) {
+  const ScratchFolder scratch;
+  Spec spec = small(kBlock);
+  std::map<std::string, Mask> masks;
+  for (const char* style : {"coverage", "aliased", "cut", "eroded"}) {
+    spec.degradations.mask_style = style;
+    make(spec, scratch / "scene");
+    masks[style] = io::read_mask(scratch / "scene" / "masks" / "0001.png");
+  }
+  int soft = 0, centres = 0, eaten = 0;
+  for (std::size_t i = 0; i < 96 * 72; ++i) {
+    const std::uint8_t share = masks["coverage"].coverage[i];
+    const std::uint8_t aliased = masks["aliased"].coverage[i], cut = masks["cut"].coverage[i];
+    soft += share > 0 && share < 255;
+    ASSERT_TRUE(aliased == 0 || aliased == 255);
+    ASSERT_EQ(cut, share >= 128 ? 255 : 0);
+    ASSERT_LE(masks["eroded"].coverage[i], cut);
+    centres += aliased != cut;
+    eaten += masks["eroded"].coverage[i] != cut;
+  }
+  EXPECT_GT(soft, 50);
+  EXPECT_GT(centres, 0);  // a pixel's centre and its area may tell otherwise
+  EXPECT_LT(centres, soft);
+  EXPECT_GT(eaten, 50);
+}
+
 TEST(Synthesize, ShuffledViewsAreTheSameInAnotherOrder) {
   const ScratchFolder folder;
   Spec spec = small(kBlock);

@@ -105,6 +105,36 @@ TEST(Components, UnstoredInsideBricksGoToo) {
   EXPECT_EQ(open_edges(extract_mesh(volume)), 0u);
 }
 
+TEST(Components, SmallOnesThatAreWantedStay) {
+  const auto body = [](const glm::dvec3& p) {
+    return std::min(
+        {sphere({20, 20, 20}, 10)(p), sphere({40, 20, 20}, 1.5)(p), sphere({20, 40, 20}, 1.5)(p)});
+  };
+  SparseVolume volume = sample_volume({7, 7, 7}, body);
+  ASSERT_EQ(component_sizes(volume).size(), 3u);
+  int asked = 0;
+  const RemovedComponents removed =
+      remove_small_components(volume, 0.1, [&](std::span<const std::vector<glm::ivec3>> pieces) {
+        ++asked;
+        std::vector<bool> wanted;
+        for (const auto& piece : pieces) {
+          for (const glm::ivec3& voxel : piece) EXPECT_LT(volume.at(voxel), 0);
+          wanted.push_back(piece.front().x > 30);
+        }
+        return wanted;
+      });
+  EXPECT_EQ(asked, 1);
+  EXPECT_EQ(removed.components, 1u);
+  EXPECT_LT(volume.at({40, 20, 20}), 0);
+  EXPECT_GT(volume.at({20, 40, 20}), 0);
+  // Nobody is asked where nothing is small.
+  remove_small_components(volume, 0, [&](std::span<const std::vector<glm::ivec3>> pieces) {
+    ++asked;
+    return std::vector<bool>(pieces.size());
+  });
+  EXPECT_EQ(asked, 1);
+}
+
 TEST(Components, KeepsWhatIsLargeEnough) {
   const auto two = [](const glm::dvec3& p) {
     return std::min(sphere({15, 15, 15}, 8)(p), sphere({45, 15, 15}, 7)(p));

@@ -1,0 +1,31 @@
+// Stems as thin as the masks say they are.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/image.h"
+#include "core/mesh.h"
+#include "core/silhouette.h"
+
+namespace photohull::carving {
+
+/// A view's mask as it was given, and its lines; nullptr both where there is no mask.
+struct StemView {
+  Camera camera;
+  const Mask* mask = nullptr;
+  const std::vector<LinePoint>* lines = nullptr;
+};
+
+/// Moves the vertices of parts that show as lines in a third of the views that see them, and in
+/// three at least, to where these lines say: the middle of a stem is the point nearest to the
+/// planes through the cameras and the lines, in pixels; its radius follows from the integral of the
+/// coverage across it, a mean over all views in which nothing else stands beside it. Sheets that
+/// show on edge in so many views move along their one known direction. `voxel_size` (world units)
+/// is how far off vertices may be. Faces, and with them what is connected, stay. Returns the number
+/// of vertices that moved; normals are not touched.
+std::size_t fit_stems(std::span<const StemView> views, double voxel_size, TriMesh& mesh);
+
+}  // namespace photohull::carving

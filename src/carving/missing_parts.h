@@ -1,0 +1,60 @@
+// What masks show and the visual hull lacks, because some cameras or masks are off.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "carving/hull.h"
+#include "core/box.h"
+#include "core/camera.h"
+#include "core/progress.h"
+
+namespace photohull::carving {
+
+struct MissingOptions {
+  /// Share of the views that may leave a place out and it is taken all the same, [0, 0.5].
+  double most_missing = 0.34;
+  /// Views in which the place must fall on foreground that no hull explains, at least, and their
+  /// share of the views that have it on their image.
+  int least_support = 3;
+  double support_share = 0.15;
+  /// Pixels beside an outline at which a view leaves a place out altogether; nearer ones count in
+  /// part.
+  double full_miss = 2;
+};
+
+/// A ball that belongs to the object. World units.
+struct MissingPart {
+  glm::dvec3 centre{0.0};
+  double radius = 0;
+};
+
+/// What became of the foreground of one view.
+struct ExplainedView {
+  int looked_at = 0;    ///< places of the foreground whose rays were searched
+  int unexplained = 0;  ///< of these, with no point that all silhouettes bear
+  int placed = 0;       ///< of the unexplained, given a place that most views bear
+};
+
+struct MissingParts {
+  std::vector<MissingPart> parts;
+  std::vector<ExplainedView> views;  ///< one for each camera; zeros where there is no silhouette
+};
+
+/// Searches the rays of the silhouettes' lines, and of a lattice of places well within thicker
+/// foreground, for a point that every silhouette bears. Where a ray has none in the box, nor in the
+/// box twice as large, the point is taken that most views bear, if at least
+/// 1 - most_missing of those that see it do and enough of them show unexplained foreground there,
+/// too. Views that do not have a point on their image say nothing about it. `silhouettes`: one for
+/// each camera; those without a distance count as not there. Throws Cancelled when `progress` was
+/// asked to stop.
+MissingParts find_missing_parts(const Box& box, std::span<const Camera> cameras,
+                                std::span<const Silhouette> silhouettes,
+                                const MissingOptions& options, Progress* progress = nullptr);
+
+/// Draws the parts into a view's silhouette, each with room for what cameras and interpolation err,
+/// where they are not well within it anyway. `distance` is that of `mask`. Was there any?
+bool mend_silhouette(std::span<const MissingPart> parts, const Camera& camera,
+                     const SilhouetteDistance& distance, Mask& mask);
+
+}  // namespace photohull::carving

@@ -1,0 +1,123 @@
+#include "refine/unproven.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
+
+namespace photohull::refine {
+namespace {
+
+using glm::ivec3;
+
+constexpr std::uint32_t kNone = 0xffffffffu;
+constexpr float kAhead = 0.8f;  // voxels before a vertex: in what it looks into
+constexpr int kPositions = 4;   // along the normal
+
+/// The connected parts of the space under the hull that the volume leaves empty, as far as the
+/// volume's bricks reach.
+class Hollows {
+ public:
+  Hollows(const SparseVolume& hull, const SparseVolume& volume, float least_depth)
+      : volume_(volume), label_(volume.distance.size(), kNone) {
+    for (std::size_t slot = 0; slot < volume.bricks.size(); ++slot)
+      for (int i = 0; i < kBrickVoxels; ++i) {
+        const std::size_t index = slot * kBrickVoxels + std::size_t(i);
+        if (volume.distance[index] <= 0) continue;
+        if (hull.at(voxel_of(slot, i)) >= -least_depth) continue;
+        label_[index] = std::uint32_t(parent_.size());
+        parent_.push_back(std::uint32_t(parent_.size()));
+      }
+    for (std::size_t slot = 0; slot < volume.bricks.size(); ++slot)
+      for (int i = 0; i < kBrickVoxels; ++i) {
+        const std::uint32_t own = label_[slot * kBrickVoxels + std::size_t(i)];
+        if (own == kNone) continue;
+        for (int axis = 0; axis < 3; ++axis) {
+          ivec3 step(0);
+          step[axis] = 1;
+          if (const std::uint32_t other = at(voxel_of(slot, i) + step); other != kNone)
+            unite(own, other);
+        }
+      }
+  }
+
+  std::size_t size() const { return parent_.size(); }
+  ivec3 voxel_of(std::size_t slot, int i) const {
+    return volume_.bricks[slot] * kBrickEdge + ivec3(i >> 6, (i >> 3) & 7, i & 7);
+  }
+  /// Which part the voxel belongs to, by a number below size(); kNone: none.
+  std::uint32_t part(const ivec3& voxel) {
+    const std::uint32_t label = at(voxel);
+    return label == kNone ? kNone : root(label);
+  }
+  std::uint32_t part(std::size_t index) {
+    return label_[index] == kNone ? kNone : root(label_[index]);
+  }
+
+ private:
+  std::uint32_t at(const ivec3& voxel) const {
+    if (glm::any(glm::lessThan(voxel, ivec3(0))) ||
+        glm::any(glm::greaterThanEqual(voxel, volume_.grid.voxels())))
+      return kNone;
+    const std::uint32_t slot = volume_.table[volume_.grid.brick_index(voxel / kBrickEdge)];
+    if (slot >= volume_.bricks.size()) return kNone;
+    return label_[std::size_t(slot) * kBrickVoxels + std::size_t(voxel_offset(voxel % kBrickEdge))];
+  }
+  std::uint32_t root(std::uint32_t node) {
+    while (parent_[node] != node) node = parent_[node] = parent_[parent_[node]];
+    return node;
+  }
+  void unite(std::uint32_t a, std::uint32_t b) {
+    a = root(a), b = root(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+  const SparseVolume& volume_;
+  std::vector<std::uint32_t> label_;
+  std::vector<std::uint32_t> parent_;
+};
+
+}  // namespace
+
+std::size_t fill_unproven(const SparseVolume& hull, std::span<const glm::vec3> positions,
+                          std::span<const glm::vec3> normals, std::span<const float> weights,
+                          const UnprovenOptions& options, SparseVolume& volume) {
+  if (options.least_weight == 0) return 0;
+  Hollows hollows(hull, volume, float(options.least_depth));
+  if (hollows.size() == 0) return 0;
+  struct Sum {
+    double weight = 0, count = 0, unseen = 0;
+  };
+  std::vector<Sum> sums(hollows.size());
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    for (int k = 0; k < kPositions; ++k) {
+      const glm::vec3 ahead = positions[i] + kAhead * float(k) * normals[i];
+      const std::uint32_t part = hollows.part(ivec3(glm::floor(ahead + 0.5f)));
+      if (part == kNone) continue;
+      sums[part].weight += std::max(weights[i], 0.0f);
+      (weights[i] < 0 ? sums[part].unseen : sums[part].count) += 1;
+      break;
+    }
+  std::vector<std::pair<std::size_t, float>> changes;
+  std::size_t filled = 0;
+  for (std::size_t slot = 0; slot < volume.bricks.size(); ++slot)
+    for (int i = 0; i < kBrickVoxels; ++i) {
+      const std::size_t index = slot * kBrickVoxels + std::size_t(i);
+      const auto is_unproven = [&](std::uint32_t part) {
+        return part != kNone && sums[part].unseen <= sums[part].count &&
+               sums[part].weight < options.least_weight * sums[part].count;
+      };
+      const ivec3 voxel = hollows.voxel_of(slot, i);
+      const bool own = is_unproven(hollows.part(index));
+      bool beside = own;
+      for (int n = 0; n < 27 && !beside && volume.distance[index] > 0; ++n)
+        beside = is_unproven(hollows.part(voxel + ivec3(n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1)));
+      const float bound = hull.at(voxel);
+      if (!beside || !(bound < volume.distance[index])) continue;
+      changes.emplace_back(index, bound);
+      filled += own;
+    }
+  for (const auto& [index, value] : changes) volume.distance[index] = value;
+  return filled;
+}
+
+}  // namespace photohull::refine
