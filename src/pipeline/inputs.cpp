@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "assess/wrong_views.h"
 #include "calib/crop.h"
@@ -22,6 +23,7 @@
 #include "pipeline/checks.h"
 #include "pipeline/mask_policy.h"
 #include "pipeline/self_check.h"
+#include "pipeline/tuning.h"
 #include "pipeline/view_order.h"
 #include "projtex/gpu_views.h"
 
@@ -32,10 +34,10 @@ namespace fs = std::filesystem;
 
 constexpr double kOversized = 1.8;     // times the object's box: the box is made smaller
 constexpr int kCropMargin = 24;        // pixels around the box's projection: patches, mip levels
-constexpr double kSuspicious = 0.25;   // pixels between outlines' tangents: cameras look wrong
 constexpr int kFewestFeatures = 20;    // held-out ones that confirm a camera
 constexpr double kAgrees = 0.5;        // pixels, of these
 constexpr double kUnexplained = 0.02;  // of the foreground: more is told
+constexpr double kMended = 0.5;        // of what the outlines of views were off
 constexpr double kFarOff = 0.005;      // of the image's longer side: this view is wrong
 
 double rounded(double pixels) { return std::round(100 * pixels) / 100; }
@@ -78,6 +80,12 @@ std::vector<Camera> cameras_of(std::span<const SourceView> views) {
   return cameras;
 }
 
+std::vector<Camera> cameras_of(std::span<const View> views) {
+  std::vector<Camera> cameras;
+  for (const View& view : views) cameras.push_back(view.camera);
+  return cameras;
+}
+
 double median_noise(std::span<const View> views) {
   std::vector<double> values(views.size());
   tbb::parallel_for(std::size_t(0), views.size(),
@@ -89,7 +97,7 @@ double median_noise(std::span<const View> views) {
 /// Views whose outlines' tangents are far from all others', who agree; none where these are more
 /// than a quarter.
 std::vector<int> views_off_tangents(std::span<const View> views) {
-  const std::vector<ViewFit> fits = fit_silhouettes(views);
+  const std::vector<ViewFit> fits = fit_silhouettes(cameras_of(views), views);
   std::vector<int> off;
   std::size_t known = 0;
   for (std::size_t i = 0; i < fits.size(); ++i) {
@@ -99,6 +107,10 @@ std::vector<int> views_off_tangents(std::span<const View> views) {
       off.push_back(int(i));
   }
   return 4 * off.size() > known ? std::vector<int>() : off;
+}
+
+double sum(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
 bool was_given(const MaskJudgement& mask) {
@@ -196,11 +208,40 @@ void Inputs::mend_given_masks(std::span<const MaskJudgement> masks) {
               " % of it): they were filled (--mask-holes keep takes the masks as they are)"));
 }
 
+/// Refines the cameras of the views that are off; all others agree and stay as they are.
+void Inputs::refine_cameras_of(const std::vector<double>& off) {
+  RefineCamerasOptions o;
+  for (std::size_t i = 0; i < off.size(); ++i)
+    if (off[i] == 0) o.held.push_back(int(i));
+  o.given = undistorted_tracks(scene, views);
+  o.box = scene.box;
+  const CameraRefinement found = photohull::refine_cameras(views, o, progress_);
+  const double left = sum(outlines_off(found.cameras, views));
+  const bool use = found.changed && left < kMended * sum(off);
+  report_.camera_refinement = to_json(found, scene, use);
+  if (!use) return;
+  const std::size_t count = off.size() - o.held.size();
+  warn(concat(
+      "the outlines of ", count, count == 1 ? " view" : " views",
+      " are off what the others say, by up to ", rounded(*std::max_element(off.begin(), off.end())),
+      " px: the cameras of these were refined (--refine-cameras off takes them as they are)"));
+  use_cameras(found);
+}
+
+void Inputs::use_cameras(const CameraRefinement& found) {
+  apply(found, scene);
+  for (std::size_t i = 0; i < views.size(); ++i) views[i].camera = found.cameras[i];
+}
+
 void Inputs::refine_cameras() {
   const bool asked = options_.refine_cameras.has_value();
   if (!asked) {
     report_.mask_disagreement = tangent_disagreement(views);
-    if (!(report_.mask_disagreement > kSuspicious)) return;
+    if (!(report_.mask_disagreement > kSuspiciousTangents)) {
+      const std::vector<double> off = outlines_off(cameras_of(views), views);
+      if (sum(off) > 0) refine_cameras_of(off);
+      return;
+    }
   }
   RefineCamerasOptions o;
   if (options_.refine_cameras == RefineCameras::kPosesAndIntrinsics)
@@ -226,8 +267,7 @@ void Inputs::refine_cameras() {
                 " (--refine-cameras off takes them as they are)"));
   cameras_moved = found.moved;
   cameras_moved_alike = found.moved_alike;
-  apply(found, scene);
-  for (std::size_t i = 0; i < views.size(); ++i) views[i].camera = found.cameras[i];
+  use_cameras(found);
 }
 
 void Inputs::crop() {
@@ -278,16 +318,36 @@ void Inputs::leave_out_wrong_views() {
               "without it the other views' silhouettes agree (check its camera and its mask)");
 }
 
+/// The outline of a view that is off by a pixel would carve a pixel off the object, whatever all
+/// others show. So it gets as much room as outlines tell that it is off.
+void Inputs::bear_disagreement() {
+  room_.assign(views.size(), 0);
+  if (options_.views_may_miss || !any_mask()) return;
+  room_ = outlines_off(cameras, views);
+  for (std::size_t i = 0; i < room_.size(); ++i)
+    if (room_[i] > 0) report_.outline_room.push_back({views[i].name, room_[i]});
+  if (report_.outline_room.empty()) return;
+  const auto worst =
+      std::max_element(report_.outline_room.begin(), report_.outline_room.end(),
+                       [](const auto& a, const auto& b) { return a.pixels < b.pixels; });
+  const std::size_t count = report_.outline_room.size();
+  warn(concat("the ", count == 1 ? "outline" : "outlines", " of ", count,
+              count == 1 ? " view is" : " views are", " off what the others say (most in ",
+              worst->view, ", by about ", rounded(worst->pixels),
+              " px): they carve with as much room (check these cameras and masks)"));
+}
+
 void Inputs::widen_lines() {
   lines.assign(views.size(), {});
   widened.assign(views.size(), {});
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
     if (views[i].mask.empty()) return;
     lines[i] = find_lines(views[i].mask);
-    if (lines[i].empty()) return;
+    if (lines[i].empty() && room_[i] == 0) return;
     widened[i] = views[i].mask;
     photohull::widen_lines(lines[i], widened[i]);
     silhouettes[i] = silhouette_distance(widened[i]);
+    if (room_[i] > 0) move_outline(room_[i], widened[i], silhouettes[i]);
   });
   for (const auto& list : lines) report_.thin.line_pixels += std::int64_t(list.size());
 }
@@ -313,8 +373,10 @@ std::vector<carving::Silhouette> Inputs::silhouettes_of_views() const {
 
 void Inputs::explain_foreground() {
   if (options_.views_may_miss || !any_mask()) return;
+  carving::MissingOptions missing;
+  tune(options_.tune, missing);
   const carving::MissingParts found =
-      carving::find_missing_parts(*scene.box, cameras, silhouettes_of_views(), {}, &progress_);
+      carving::find_missing_parts(*scene.box, cameras, silhouettes_of_views(), missing, &progress_);
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
     if (views[i].mask.empty()) return;
     Mask mask = widened[i].empty() ? views[i].mask : widened[i];

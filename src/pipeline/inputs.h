@@ -34,6 +34,8 @@ class Inputs {
   void measure_silhouettes();
   void correct_masks();
   void leave_out_wrong_views();
+  /// Gives silhouettes that are a little off as much room as they are off.
+  void bear_disagreement();
   /// Gives stems and wires the room that voxels need; their width is known from `lines`.
   void widen_lines();
   /// Puts what masks show and not all views bear into the silhouettes that leave it out.
@@ -63,9 +65,12 @@ class Inputs {
  private:
   void mend_given_masks(std::span<const MaskJudgement> masks);
   GridSpec lattice(std::span<const Camera> cameras) const;
+  void refine_cameras_of(const std::vector<double>& off);
+  void use_cameras(const CameraRefinement& found);
   void remember_right_cameras(const CameraRefinement& found, bool used);
   void leave_out(std::span<const int> wrong, const std::string& why);
 
+  std::vector<double> room_;             ///< pixels around each view's outline, for what it is off
   std::set<std::string> right_cameras_;  ///< names of views
   std::set<std::string> made_masks_;     ///< names of views whose masks come from the background
 

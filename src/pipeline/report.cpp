@@ -49,6 +49,7 @@ std::string Report::to_json() const {
   if (!photometric.empty()) j["photometric"] = ordered_json::parse(photometric);
   j["left_out"] = left_out;
   j["masks"]["left_out"] = masks_left_out;
+  for (const OutlineRoom& r : outline_room) j["masks"]["outline_room_pixels"][r.view] = r.pixels;
   if (!verdict_json.empty()) j["verdict"] = ordered_json::parse(verdict_json);
   j["stages"] = ordered_json::array();
   for (const StageReport& s : stages)

@@ -71,6 +71,12 @@ struct ThinReport {
   std::string worst_view;          ///< with the largest share left unexplained; empty: none
 };
 
+/// A view whose outline is off what the other views' say.
+struct OutlineRoom {
+  std::string view;
+  double pixels = 0;  ///< by which its outline was widened
+};
+
 /// Where a view's mask came from, and how sure it is (calib's MaskJudgement).
 struct MaskReport {
   std::string view, source;
@@ -89,6 +95,7 @@ struct Report {
   /// Pixels (calib/refine_cameras.h, tangent_disagreement); NaN where it was not looked at.
   double mask_disagreement = NAN;
   int masks_mended = 0;           ///< by calib/torn_masks.h
+  std::vector<OutlineRoom> outline_room;  ///< of views whose outlines are off
   double mask_offset = 0;         ///< pixels by which the masks' outlines were moved outward
   std::vector<MaskReport> masks;  ///< of each view
   ThinReport thin;

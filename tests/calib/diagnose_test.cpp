@@ -200,7 +200,9 @@ TEST_F(Diagnose, SilhouettesServeWhereThereAreNoMatches) {
 TEST_F(Diagnose, SilhouettesAloneNameTheViewThatIsTurned) {
   turn(views_[3].camera, 20);
   views_[5].mask = {};
-  const std::vector<ViewFit> fits = fit_silhouettes(views_);
+  std::vector<Camera> cameras;
+  for (const View& view : views_) cameras.push_back(view.camera);
+  const std::vector<ViewFit> fits = fit_silhouettes(cameras, views_);
   ASSERT_EQ(fits.size(), views_.size());
   for (std::size_t i = 0; i < fits.size(); ++i) {
     EXPECT_EQ(fits[i].disagrees, i == 3) << i;
