@@ -18,8 +18,8 @@ constexpr std::int64_t kFewest = 2;
 /// Weight of the guess against one view's axis where the axes are parallel and meet nowhere.
 constexpr double kGuess = 1e-3;
 
-/// What a view shows: direction from the middle, direction of its axis, logarithm of its distance.
-using Feature = std::array<double, 7>;
+/// What a view shows: its place about the middle, and the direction of its axis.
+using Feature = std::array<double, 6>;
 
 double squared_distance(const Feature& a, const Feature& b) {
   double sum = 0;
@@ -58,11 +58,19 @@ bool faces(const Camera& camera, const Box& box) {
   return false;
 }
 
-Feature feature_of(const Camera& camera, const glm::dvec3& middle) {
-  const glm::dvec3 offset = camera.center() - middle, axis = camera.forward();
-  const double distance = std::max(glm::length(offset), std::numeric_limits<double>::min());
-  const glm::dvec3 u = offset / distance;
-  return {u.x, u.y, u.z, axis.x, axis.y, axis.z, std::log(distance)};
+double median_distance(const std::vector<SourceView>& views, const glm::dvec3& middle) {
+  std::vector<double> distances;
+  for (const SourceView& view : views)
+    distances.push_back(glm::length(view.camera.center() - middle));
+  const auto half = distances.begin() + std::ptrdiff_t(distances.size() / 2);
+  std::nth_element(distances.begin(), half, distances.end());
+  return std::max(*half, std::numeric_limits<double>::min());
+}
+
+Feature feature_of(const Camera& camera, const glm::dvec3& middle, double distance) {
+  const glm::dvec3 p = (camera.center() - middle) / distance, axis = camera.forward();
+  const glm::dvec3 place = 2.0 / (1 + glm::length(p)) * p;
+  return {place.x, place.y, place.z, axis.x, axis.y, axis.z};
 }
 
 std::vector<std::size_t> by_name(const std::vector<SourceView>& views) {
@@ -95,10 +103,11 @@ std::vector<std::size_t> spread_views(const std::vector<SourceView>& views,
     return chosen;
   }
   const glm::dvec3 middle = box ? box->center() : middle_of_axes(views);
+  const double distance = median_distance(views, middle);
   std::vector<Feature> features;
   Feature mean{};
   for (const std::size_t i : order) {
-    features.push_back(feature_of(views[i].camera, middle));
+    features.push_back(feature_of(views[i].camera, middle, distance));
     for (std::size_t k = 0; k < mean.size(); ++k)
       mean[k] += features.back()[k] / double(views.size());
   }

@@ -16,11 +16,12 @@ std::optional<std::size_t> parse_spread(const std::string& selection);
 
 /// Indices, ascending, of `count` of the views (all, where there are no more) by farthest-point
 /// sampling [Gonzalez85]: each next view is the one that is least like those chosen before it.
-/// Views differ by the direction in which the middle of the box sees them, by the direction in
-/// which they look (each as the distance of unit vectors) and by the logarithm of their distance
-/// from the middle, that is, by angle of view and by resolution. Without a box the middle is the
-/// point nearest to all optical axes. Views with the whole box behind them come last. The choice
-/// does not depend on the order of the views, only on their names'.
+/// Views differ by the direction in which they look, a unit vector, and by their place: with p from
+/// the middle of the box in units of the median distance, 2 p / (1 + |p|), so that angles count
+/// alike in both, distance counts too, and no view is far from all others for its distance alone.
+/// Without a box the middle is the point nearest to all optical axes. Views with the whole box
+/// behind them come last. The choice does not depend on the order of the views, only on their
+/// names'.
 std::vector<std::size_t> spread_views(const std::vector<SourceView>& views,
                                       const std::optional<Box>& box, std::size_t count);
 

@@ -1,5 +1,6 @@
 // Photographs that are missing, damaged or of another size than their cameras are for.
 #include <fstream>
+#include <set>
 
 #include "core/scaled_size.h"
 #include "io/image_file.h"
@@ -223,7 +224,10 @@ TEST_F(UsableViews, NamesAreShared) {
   const Scene loaded = load_scene(folder_ / "images/left");
   EXPECT_EQ(loaded.views.size(), 7u);
   EXPECT_THAT(loaded.warnings, ElementsAre(HasSubstr("1 of 8 photographs was not found")));
-  for (const SourceView& view : loaded.views) EXPECT_TRUE(view.name.find('/') != std::string::npos);
+  std::set<fs::path> images;
+  for (const SourceView& view : loaded.views) images.insert(view.image);
+  EXPECT_EQ(images.size(), 7u);
+  EXPECT_EQ(loaded.views[6].image.filename(), "x3.png");
 }
 
 TEST_F(UsableViews, FormatsThatReadTheImageThemselvesLeaveItOutToo) {
