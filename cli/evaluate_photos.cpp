@@ -55,13 +55,18 @@ Lists lists_of(const PhotoArguments& a, const Scene& scene) {
   if (lists.lenders.empty())
     throw UsageError(concat("--views: all ", names.size(),
                             " views are held out, none is left to lend colour; hold out fewer"));
-  lists = {usable(lists.held_out, scene), usable(lists.lenders, scene)};
-  if (lists.held_out.empty() || lists.lenders.empty())
-    throw Error(concat(scene.path.string(), ": ",
-                       lists.held_out.empty() ? "none of the views of --views has"
-                                              : "none of the views that lend colour has",
-                       " a photograph that can be used; choose others"));
-  return lists;
+  const auto refuse = [&](const char* which, std::size_t first) {
+    const auto why =
+        std::find_if(scene.left_out.begin(), scene.left_out.end(),
+                     [&](const LeftOutView& view) { return view.name == names[first]; });
+    throw Error(concat(scene.path.string(), ": no photograph of ", which, " can be used (",
+                       names[first], why == scene.left_out.end() ? "" : ": " + why->detail,
+                       "); choose others"));
+  };
+  const Lists found = {usable(lists.held_out, scene), usable(lists.lenders, scene)};
+  if (found.held_out.empty()) refuse("--views", lists.held_out.front());
+  if (found.lenders.empty()) refuse("the views that lend colour", lists.lenders.front());
+  return found;
 }
 
 pipeline::Photometric parse_photometric(const std::string& text) {

@@ -319,17 +319,21 @@ TEST_F(PrepareViews, ScalesMasksOfScaledCopies) {
   const Mask large = prepare().views[0].mask;
   ASSERT_EQ(large.width, kWidth);
   masks_["masks/a.png"] = paint_mask(kWidth / 2, kHeight / 2, [](double x, double y) {
-    return std::clamp((7 - std::hypot(x - 14.75, y - 11.75)) * 2 + 0.5, 0.0, 1.0);
+    return std::clamp(7 - std::hypot(x - 14.75, y - 11.75) + 0.5, 0.0, 1.0);
   });
   const Mask small = prepare().views[0].mask;
   ASSERT_EQ(small.height, kHeight);
-  double apart_large = 0, apart_small = 0;
-  for (std::size_t i = 0; i < kDisc.coverage.size(); ++i) {
-    apart_large = std::max(apart_large, std::abs(double(large.coverage[i]) - kDisc.coverage[i]));
-    apart_small += std::abs(double(small.coverage[i]) - kDisc.coverage[i]) / 255;
+  // The same place and size: a mask that is half a pixel off would be told.
+  for (const Mask& mask : {large, small}) {
+    double area = 0, x = 0, y = 0, right = 0;
+    for (std::size_t i = 0; i < kDisc.coverage.size(); ++i) {
+      area += mask.coverage[i], right += kDisc.coverage[i];
+      x += mask.coverage[i] * double(i % kWidth), y += mask.coverage[i] * double(i / kWidth);
+    }
+    EXPECT_NEAR(x / area, 30, 0.02);
+    EXPECT_NEAR(y / area, 24, 0.02);
+    EXPECT_NEAR(area / right, 1, 0.01);
   }
-  EXPECT_LT(apart_large, 30);
-  EXPECT_LT(apart_small, 15);  // pixels; a mask that is half a pixel off differs by 28
 }
 
 TEST_F(PrepareViews, RejectsEmptyScenesAndBadOptions) {

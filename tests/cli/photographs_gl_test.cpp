@@ -166,7 +166,7 @@ TEST_F(PhotographsOfScenes, HeldOutViewsKeepTheirIndices) {
   EXPECT_THAT(judged("1,8"), Not(HasSubstr("view1.png ")));
   Arguments none = judge;
   none.push_back("1");
-  fail(1, none, {"none of the views of --views has a photograph"});
+  fail(1, none, {"no photograph of --views can be used (view1.png"});
 }
 
 TEST_F(PhotographsOfScenes, AVideoIsThinnedOut) {
