@@ -68,7 +68,7 @@ struct LoadSceneOptions {
 };
 
 /// What `most_views` is for commands that reconstruct: docs/benchmarks.md, "How many views".
-inline constexpr std::size_t kEnoughViews = 150;
+inline constexpr std::size_t kEnoughViews = 120;
 
 /// Reads a scene from a folder or from the file that lists its views, in any SceneFormat
 /// (docs/formats.md).

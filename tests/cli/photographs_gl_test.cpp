@@ -183,8 +183,8 @@ TEST_F(PhotographsOfScenes, AVideoIsThinnedOut) {
   }
   io::write_transforms(video, folder_ / "video");
   const Finished run = succeed({"info", path("video")});
-  EXPECT_THAT(run.out, HasSubstr("150 of 2000 photographs are used"));
-  EXPECT_THAT(run.out, HasSubstr("150 of 2000 (transforms format)"));
+  EXPECT_THAT(run.out, HasSubstr("120 of 2000 photographs are used"));
+  EXPECT_THAT(run.out, HasSubstr("120 of 2000 (transforms format)"));
   EXPECT_THAT(succeed({"info", path("video"), "--views", "all"}).out,
               HasSubstr("views          2000 ("));
   EXPECT_THAT(succeed({"info", path("video"), "--views", "spread:24"}).out,
