@@ -67,7 +67,8 @@ struct LoadSceneOptions {
   void validate() const;
 };
 
-/// What `most_views` is for commands that reconstruct: docs/benchmarks.md, "How many views".
+/// What `most_views` is for commands that reconstruct: more cost time and add nothing, as measured
+/// in docs/benchmarks.md, "How many views".
 inline constexpr std::size_t kEnoughViews = 120;
 
 /// Reads a scene from a folder or from the file that lists its views, in any SceneFormat
