@@ -39,7 +39,9 @@ void print_views(const Scene& scene) {
     distorted += view.distortion.model != DistortionModel::kNone;
     masked += !view.mask.empty();
   }
-  std::printf("views          %zu (%s format)\n", scene.views.size(), to_string(scene.format));
+  std::printf("views          %zu", scene.views.size());
+  if (scene.listed.size() > scene.views.size()) std::printf(" of %zu", scene.listed.size());
+  std::printf(" (%s format)\n", to_string(scene.format));
   std::printf("image size     %.0f x %.0f", width.low, height.low);
   if (width.low != width.high || height.low != height.high)
     std::printf(" to %.0f x %.0f", width.high, height.high);
@@ -171,11 +173,12 @@ nlohmann::ordered_json diagnosis_json(const CameraDiagnosis& d, const Scene& sce
   return j;
 }
 
-PreparedViews prepare(const Scene& scene, const SceneArguments& arguments, Progress& progress) {
+PreparedViews prepare(Scene& scene, const SceneArguments& arguments, Progress& progress) {
   const ViewLoader loader{[](const std::filesystem::path& path) { return io::read_image(path); },
                           [](const std::filesystem::path& path) { return io::read_mask(path); }};
   PrepareOptions options;
   options.masks = pipeline::mask_policy(arguments.options().masks);
+  options.strict = arguments.strict;
   progress.stage("views", 1);
   return prepare_views(scene, loader, options, progress);
 }
@@ -233,6 +236,11 @@ void print_json(const pipeline::Inspection& info, const CameraDiagnosis* diagnos
                           {"centre", {c.x, c.y, c.z}},
                           {"mask", v.mask.string()}});
   }
+  j["listed"] = info.scene.listed.size();
+  j["left_out"] = nlohmann::ordered_json::array();
+  for (const LeftOutView& v : info.scene.left_out)
+    j["left_out"].push_back(
+        {{"name", v.name}, {"reason", to_string(v.reason)}, {"detail", v.detail}});
   if (info.scene.box) {
     const Box& b = *info.scene.box;
     j["box"] = {{"min", {b.min.x, b.min.y, b.min.z}},
@@ -253,12 +261,18 @@ void print_json(const pipeline::Inspection& info, const CameraDiagnosis* diagnos
 }
 
 void run(const Arguments& a) {
-  const Scene scene = io::load_scene(a.scene.scene, a.scene.options());
+  io::LoadSceneOptions load = a.scene.options();
+  load.most_views = io::kEnoughViews;  // as reconstruct has it
+  Scene scene = io::load_scene(a.scene.scene, load);
   std::optional<CameraDiagnosis> diagnosis;
   std::optional<PreparedViews> prepared;
   if (a.cameras || a.masks) {
     TerminalProgress progress(a.cameras ? 4 : 1);
+    const std::size_t known = scene.left_out.size();
     prepared = prepare(scene, a.scene, progress);
+    // Of what else was found in the photographs --check-masks tells.
+    if (scene.left_out.size() > known && !a.masks)
+      scene.warnings.push_back(prepared->warnings.front());
     if (a.cameras) diagnosis = diagnose(scene, *prepared, progress);
     progress.finish();
   }

@@ -60,7 +60,9 @@ void run(const Arguments& a) {
                           [](const fs::path& path) { return io::read_mask(path); }};
   PrepareOptions prepare;
   prepare.masks = pipeline::mask_policy(a.scene.options().masks);
+  prepare.strict = a.scene.strict;
   TerminalProgress progress(4);
+  for (const std::string& text : scene.warnings) progress.warn(text);
   progress.stage("views", 1);
   const PreparedViews prepared = prepare_views(scene, loader, prepare, progress);
   for (const std::string& text : prepared.warnings) progress.warn(text);

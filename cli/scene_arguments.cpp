@@ -53,13 +53,20 @@ std::vector<CLI::Option*> SceneArguments::add_reading_options(CLI::App& command)
                          "stands still, or a folder with one for every view"),
       command.add_option("--pixel-center", pixel_center,
                          "coordinate of the top-left pixel's centre in the scene file, 0, 0.5 or 1 "
-                         "(default: the format's)")};
+                         "(default: the format's)"),
+      command.add_flag("--strict", strict,
+                       "refuse scenes whose photographs are not all there, readable and of their "
+                       "cameras' shape (default: such are left out while two of three remain)")};
 }
 
 void SceneArguments::add_to(CLI::App& command) {
   command.add_option("SCENE", scene, "folder or file of the scene")->required();
   command.add_option("--box", box, "region of interest \"x0 y0 z0 x1 y1 z1\" in world units");
-  command.add_option("--views", views, "views to use, e.g. \"0-10,15,img_*.png\" (default: all)");
+  command.add_option(
+      "--views", views,
+      "views to use, e.g. \"0-10,15,img_*.png\"; spread:N (N that show the object from all "
+      "sides) or all (default: all; to reconstruct, spread:" +
+          std::to_string(io::kEnoughViews) + " where there are more)");
   command.add_option("--hold-out", hold_out,
                      "views to leave out of these, a list of the same kind; 'photohull evaluate "
                      "--photos' judges by them");
@@ -71,6 +78,7 @@ io::LoadSceneOptions SceneArguments::options() const {
   if (scene.empty()) throw UsageError("SCENE is empty: give the folder or file of the scene");
   if (format) out.format = parse_format("--format", *format);
   out.pixel_center = pixel_center;
+  out.strict = strict;
   if (box) out.box = parse_box(*box);
   if (views && views->empty()) throw UsageError("--views is empty: write e.g. 0-10,15");
   out.views = views.value_or("");

@@ -21,9 +21,11 @@ struct SceneArguments {
   std::optional<std::string> format, box, views, hold_out;
   std::optional<std::string> background;
   std::optional<double> pixel_center;
+  bool strict = false;
 
   void add_to(CLI::App& command);
-  /// Only those that say how the scene's files are read: format, masks, pixel centre.
+  /// Only those that say how the scene's files are read: format, masks, pixel centre,
+  /// whether all photographs must be there.
   std::vector<CLI::Option*> add_reading_options(CLI::App& command);
   /// Throws UsageError for values that are not understood.
   io::LoadSceneOptions options() const;

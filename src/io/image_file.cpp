@@ -241,8 +241,8 @@ std::unique_ptr<std::uint8_t[]> read_quantised(OpenImage& file) {
 }
 
 [[noreturn]] void out_of_memory(const OpenImage& file) {
-  throw Error(concat(file.path.string(), ": there is not enough memory for ", file.spec.width,
-                     " x ", file.spec.height, " pixels; scale the image down"));
+  throw MemoryError(concat(file.path.string(), ": there is not enough memory for ", file.spec.width,
+                           " x ", file.spec.height, " pixels; scale the image down"));
 }
 
 }  // namespace

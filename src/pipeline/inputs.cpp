@@ -130,6 +130,9 @@ void Inputs::load() {
   report_.scene = scene.path.string();
   report_.format = to_string(scene.format);
   report_.views = int(scene.views.size());
+  report_.photographs_listed = int(scene.listed.size());
+  report_.photographs_scaled = scene.scaled;
+  report_.photographs_passed_over = scene.passed_over;
   for (const std::string& text : scene.warnings) warn(text);
   if (!scene.box)
     throw Error(concat(scene.path.string(),
@@ -173,8 +176,11 @@ void Inputs::prepare() {
                           [](const fs::path& path) { return io::read_mask(path); }};
   PrepareOptions prepare_options;
   prepare_options.masks = mask_policy(options_.load.masks);
+  prepare_options.strict = options_.load.strict;
   PreparedViews prepared = prepare_views(scene, loader, prepare_options, progress_);
   views = std::move(prepared.views);
+  report_.views = int(views.size());
+  report_.photographs_left_out = scene.left_out;
   report_.noise_sigma =
       std::max(options_.noise ? *options_.noise / 255 : median_noise(views), kRoundingNoise);
   for (const std::string& text : prepared.warnings) warn(text);

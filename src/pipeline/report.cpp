@@ -20,6 +20,13 @@ std::string Report::to_json() const {
   ordered_json j;
   j["photohull"] = version;
   j["scene"] = {{"path", scene}, {"format", format}, {"views", views}};
+  j["photographs"] = {{"listed", photographs_listed},
+                      {"scaled", photographs_scaled},
+                      {"passed_over", photographs_passed_over},
+                      {"left_out", ordered_json::array()}};
+  for (const LeftOutView& v : photographs_left_out)
+    j["photographs"]["left_out"].push_back(
+        {{"name", v.name}, {"reason", to_string(v.reason)}, {"detail", v.detail}});
   j["device"] = device;
   for (const auto& [name, value] : options) j["options"][name] = value;
   j["box"] = {

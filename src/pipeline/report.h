@@ -11,6 +11,7 @@
 #include "assess/verdict.h"
 #include "core/box.h"
 #include "core/grid.h"
+#include "core/scene.h"
 
 namespace photohull::pipeline {
 
@@ -88,6 +89,10 @@ struct Report {
   std::string scene, format, device;
   std::vector<std::pair<std::string, std::string>> options;
   int views = 0;
+  int photographs_listed = 0;                     ///< by the scene's file
+  int photographs_scaled = 0;                     ///< as Scene::scaled
+  int photographs_passed_over = 0;                ///< as Scene::passed_over
+  std::vector<LeftOutView> photographs_left_out;  ///< for they cannot be used
   Box box;
   std::string box_source;
   std::string mask_source;

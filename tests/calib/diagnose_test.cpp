@@ -34,7 +34,7 @@ class Diagnose : public testing::Test {
     ScratchFolder folder;
     Progress progress;
     synth::synthesize(spec, folder / "scene", progress);
-    const Scene scene = io::load_scene(folder / "scene/transforms.json");
+    Scene scene = io::load_scene(folder / "scene/transforms.json");
     const ViewLoader loader{[](const fs::path& file) { return io::read_image(file); },
                             [](const fs::path& file) { return io::read_mask(file); }};
     healthy_ = new std::vector<View>(prepare_views(scene, loader, {}, progress).views);
