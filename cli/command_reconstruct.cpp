@@ -33,6 +33,7 @@ pipeline::ReconstructOptions to_options(const Arguments& a) {
   o.scene = a.scene.scene;
   o.output = a.out;
   o.load = a.scene.options();
+  o.box = a.scene.box_options();
   o.quality = parse_name("--quality", a.quality,
                          std::array{Quality::kDraft, Quality::kNormal, Quality::kHigh});
   if (a.method)

@@ -20,6 +20,7 @@
 #include "core/error.h"
 #include "io/image_file.h"
 #include "pipeline/checks.h"
+#include "pipeline/complete_box.h"
 #include "pipeline/mask_policy.h"
 #include "pipeline/self_check.h"
 #include "pipeline/view_order.h"
@@ -118,11 +119,8 @@ void Inputs::load() {
   report_.scene = scene.path.string();
   report_.format = to_string(scene.format);
   report_.views = int(scene.views.size());
+  complete_box(options_.box, mask_policy(options_.load.masks), scene, progress_);
   for (const std::string& text : scene.warnings) warn(text);
-  if (!scene.box)
-    throw Error(concat(scene.path.string(),
-                       ": nothing tells where the object is: give --box "
-                       "\"x0 y0 z0 x1 y1 z1\" or a bbox.txt beside the scene"));
   report_.box = *scene.box;
   report_.box_source = scene.box_source;
   for (const std::string& text : check_box(*scene.box, scene.box_source, scene.views)) warn(text);
