@@ -57,8 +57,10 @@ void print_text(const pipeline::Inspection& info) {
   if (info.scene.box) {
     const Box& b = *info.scene.box;
     const glm::ivec3 n = info.grid.voxels();
-    std::printf("box            (%g %g %g) to (%g %g %g), from %s\n", b.min.x, b.min.y, b.min.z,
-                b.max.x, b.max.y, b.max.z, info.scene.box_source.c_str());
+    std::printf("box            (%g %g %g) to (%g %g %g), %s%s\n", b.min.x, b.min.y, b.min.z,
+                b.max.x, b.max.y, b.max.z,
+                info.scene.box_source.starts_with("found") ? "" : "from ",
+                info.scene.box_source.c_str());
     std::printf("view angles    %.1f degrees to the nearest (median), %.1f at most\n",
                 info.nearest_angle, info.farthest_angle);
     std::printf("pixel          %g world units at the box's centre\n", info.voxel_size);
@@ -260,8 +262,8 @@ std::string find_box(const Arguments& a, Scene& scene, std::vector<ScenePoint>& 
   TerminalProgress progress(1);
   progress.stage("box", 1);
   try {
-    points = pipeline::complete_box(a.scene.box_options(),
-                                    pipeline::mask_policy(a.scene.options().masks), scene, progress);
+    points = pipeline::complete_box(
+        a.scene.box_options(), pipeline::mask_policy(a.scene.options().masks), scene, progress);
   } catch (const UsageError&) {
     throw;
   } catch (const Cancelled&) {
@@ -280,8 +282,9 @@ void write_picture(const std::string& path, const pipeline::Inspection& info,
   std::vector<ScenePoint> listed;
   if (points.empty())
     for (const glm::dvec3& p : info.scene.points) listed.push_back({p, {}});
-  const pipeline::BoxPicture picture = pipeline::draw_box(
-      info.scene, info.grid.voxel_size, points.empty() ? std::span<const ScenePoint>(listed) : points);
+  const pipeline::BoxPicture picture =
+      pipeline::draw_box(info.scene, info.grid.voxel_size,
+                         points.empty() ? std::span<const ScenePoint>(listed) : points);
   io::write_png(path, picture.width, picture.height, 3, picture.rgb);
 }
 

@@ -19,7 +19,8 @@ Box parse_box(const std::string& text) {
   double v[6];
   for (double& x : v)
     if (!(in >> x))
-      throw UsageError("--box: expected auto or six numbers \"x0 y0 z0 x1 y1 z1\", found '" + text + "'");
+      throw UsageError("--box: expected auto or six numbers \"x0 y0 z0 x1 y1 z1\", found '" + text +
+                       "'");
   std::string rest;
   if (in >> rest) throw UsageError("--box: '" + rest + "' follows the six numbers");
   const glm::dvec3 a(v[0], v[1], v[2]), b(v[3], v[4], v[5]);

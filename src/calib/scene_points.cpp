@@ -12,11 +12,11 @@ namespace photohull {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr int kFeatures = 2000;          // a view
-constexpr double kEpipolar = 4;          // pixels
-constexpr double kLargestResidual = 2;   // pixels, root mean square
-constexpr double kSmallestAngle = 2;     // degrees between two of the rays
-constexpr double kLargestTurn = 60;      // degrees between the axes of neighbours
+constexpr int kFeatures = 2000;                   // a view
+constexpr double kEpipolar = 4;                   // pixels
+constexpr double kLargestResidual = 2;            // pixels, root mean square
+constexpr double kSmallestAngle = 2;              // degrees between two of the rays
+constexpr double kLargestTurn = 60;               // degrees between the axes of neighbours
 constexpr int kRanks[] = {0, 1, 2, 3, 5, 8, 12};  // of the neighbours by distance: gaps grow
 
 /// Pairs of views that may show the same, ascending.

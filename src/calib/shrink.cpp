@@ -25,7 +25,8 @@ ColourImage shrink(const ColourImage& image, int width, int height) {
   out.bytes.resize(std::size_t(width) * height * out.bytes_per_pixel());
   const bool srgb = image.encoding == ColourImage::Encoding::kSrgb8;
   const int type = srgb ? CV_8UC4 : CV_16FC4;
-  const cv::Mat from(image.height, image.width, type, const_cast<std::uint8_t*>(image.bytes.data()));
+  const cv::Mat from(image.height, image.width, type,
+                     const_cast<std::uint8_t*>(image.bytes.data()));
   cv::Mat to(height, width, type, out.bytes.data());
   if (srgb) {
     cv::resize(from, to, to.size(), 0, 0, cv::INTER_AREA);

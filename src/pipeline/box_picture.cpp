@@ -48,9 +48,10 @@ glm::dvec3 corner(const Box& box, int i) {
 
 namespace {
 
-constexpr int kFrame = 40;          // pixels of the panel around the photograph: boxes reach out
-constexpr int kInset = 190;         // pixels, of the magnified part
-constexpr double kInsetVoxels = 12; // across it
+constexpr int kFrame = 24;           // pixels of the panel around photograph and box
+constexpr double kMostBeside = 0.5;  // of the photograph's size, for a box beside it
+constexpr int kInset = 190;          // pixels, of the magnified part
+constexpr double kInsetVoxels = 12;  // across it
 constexpr std::size_t kPhotographs = 3;
 
 /// Views that have the box's middle on their images, from sides that differ most.
@@ -71,9 +72,9 @@ std::vector<std::size_t> telling_views(const Scene& scene) {
       for (const std::size_t c : chosen) most = std::max(most, glm::dot(side(i), side(c)));
       return most;
     };
-    chosen.push_back(*std::min_element(
-        candidates.begin(), candidates.end(),
-        [&](std::size_t a, std::size_t b) { return likeness(a) < likeness(b); }));
+    chosen.push_back(
+        *std::min_element(candidates.begin(), candidates.end(),
+                          [&](std::size_t a, std::size_t b) { return likeness(a) < likeness(b); }));
   }
   std::sort(chosen.begin(), chosen.end());
   return chosen;
@@ -107,9 +108,7 @@ cv::Mat bgr(const ColourImage& image) {
 struct Placed {
   Camera camera;  ///< of the shrunk photograph
   cv::Point2d origin;
-  cv::Point2d at(const glm::dvec2& pixel) const {
-    return origin + cv::Point2d(pixel.x, pixel.y);
-  }
+  cv::Point2d at(const glm::dvec2& pixel) const { return origin + cv::Point2d(pixel.x, pixel.y); }
 };
 
 /// The part of a segment before the camera, on the panel.
@@ -156,7 +155,7 @@ void draw_edges(cv::Mat& panel, const Placed& placed, const Box& box) {
         if (other == i || front != (i != farthest && other != farthest)) continue;
         const auto drawn = segment(placed, corner(box, i), corner(box, other));
         if (!drawn) continue;
-        const cv::Scalar colour = front ? kAxis[axis] : 0.6 * kAxis[axis];
+        const cv::Scalar colour = front ? kAxis[axis] : 0.75 * kAxis[axis];
         draw_line(panel, drawn->first, drawn->second, cv::Scalar(0, 0, 0), front ? 4 : 2);
         draw_line(panel, drawn->first, drawn->second, colour, front ? 2 : 1);
       }
@@ -177,12 +176,12 @@ void draw_corners(cv::Mat& panel, const Placed& placed, const Box& box, const cv
     std::optional<cv::Rect> place;
     double least = 1e300;
     for (int dy = -140; dy <= 140; dy += 7)
-      for (const int dx : {8, -8 - size.width, -size.width / 2, 60, -60 - size.width}) {
+      for (const int dx : {9, -9 - size.width, -size.width / 2, 60, -60 - size.width}) {
         const cv::Rect r(int(at.x) + dx, int(at.y) + dy - size.height / 2, size.width, size.height);
         const double off = std::abs(dy) + 0.6 * std::abs(dx + size.width / 2);
-        const bool free = (r & room) == r && std::none_of(used.begin(), used.end(), [&](auto& u) {
-                            return (u & r).area() > 0;
-                          });
+        const bool free =
+            (r & room) == r && !r.contains(cv::Point(at)) &&
+            std::none_of(used.begin(), used.end(), [&](auto& u) { return (u & r).area() > 0; });
         if (free && off < least) least = off, place = r;
       }
     if (!place) continue;
@@ -222,22 +221,38 @@ void draw_inset(cv::Mat& panel, const View& view, const Box& box, double voxel_s
   cv::rectangle(panel, place, kInk, 1);
 }
 
+/// Where the photograph lies on its panel: made smaller and moved, as far as it stays legible, so
+/// that the box fits, too.
+cv::Rect place_on_panel(const Camera& camera, const Box& box) {
+  const Intrinsics& k = camera.intrinsics;
+  const glm::dvec2 room(kPanelWidth - 2 * kFrame, kPanelHeight - kTitle - 2 * kFrame);
+  const glm::dvec2 size(k.width, k.height);
+  glm::dvec2 low(0.0), high = size;
+  for (int i = 0; i < 8; ++i)
+    if (const auto pixel = camera.project(corner(box, i))) {
+      low = glm::max(glm::min(low, *pixel), -kMostBeside * size);
+      high = glm::min(glm::max(high, *pixel), (1 + kMostBeside) * size);
+    }
+  const glm::dvec2 fits = room / (high - low);
+  const double factor = std::min(fits.x, fits.y);
+  const glm::dvec2 corner =
+      glm::dvec2(kFrame, kTitle + kFrame) + 0.5 * (room - factor * (high - low)) - factor * low;
+  return {int(corner.x), int(corner.y), std::max(1, int(factor * size.x)),
+          std::max(1, int(factor * size.y))};
+}
+
 cv::Mat draw_photograph(const SourceView& source, std::size_t index, const Box& box,
                         double voxel_size) {
   const View view = load(source);
   cv::Mat panel(kPanelHeight, kPanelWidth, CV_8UC3, kPaper);
-  const double factor = std::min({1.0 * (kPanelWidth - 2 * kFrame) / view.image.width,
-                                  1.0 * (kPanelHeight - kTitle - 2 * kFrame) / view.image.height});
-  const int width = std::max(1, int(factor * view.image.width)),
-            height = std::max(1, int(factor * view.image.height));
-  const cv::Rect place((kPanelWidth - width) / 2, kTitle + (kPanelHeight - kTitle - height) / 2,
-                       width, height);
+  const cv::Rect place = place_on_panel(view.camera, box);
   cv::Mat small;
   cv::resize(bgr(view.image), small, place.size(), 0, 0,
-             factor < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
+             place.width < view.image.width ? cv::INTER_AREA : cv::INTER_LINEAR);
   small = 0.8 * small;
   small.copyTo(panel(place));
-  const Placed placed{resized(view.camera, width, height), cv::Point2d(place.x, place.y)};
+  const Placed placed{resized(view.camera, place.width, place.height),
+                      cv::Point2d(place.x, place.y)};
   draw_edges(panel, placed, box);
   const cv::Rect inset(kPanelWidth - kInset - 8, kPanelHeight - kInset - 8, kInset, kInset);
   draw_corners(panel, placed, box, inset);
@@ -268,14 +283,15 @@ BoxPicture draw_box(const Scene& scene, double voxel_size, std::span<const Scene
   cv::Mat sheet(out.height, out.width, CV_8UC3, cv::Scalar(60, 60, 60));
   sheet(cv::Rect(0, 0, out.width, head)).setTo(kPaper);
   for (int i = 0; i < int(panels.size()); ++i)
-    panels[std::size_t(i)].copyTo(sheet(cv::Rect(i % 2 * (kPanelWidth + gap),
-                                                 head + i / 2 * (kPanelHeight + gap), kPanelWidth,
-                                                 kPanelHeight)));
+    panels[std::size_t(i)].copyTo(
+        sheet(cv::Rect(i % 2 * (kPanelWidth + gap), head + i / 2 * (kPanelHeight + gap),
+                       kPanelWidth, kPanelHeight)));
   const Box& b = *scene.box;
-  put_text(sheet, concat("--box \"", number(b.min.x), " ", number(b.min.y), " ", number(b.min.z),
-                         " ", number(b.max.x), " ", number(b.max.y), " ", number(b.max.z), "\""),
+  put_text(sheet,
+           concat("--box \"", number(b.min.x), " ", number(b.min.y), " ", number(b.min.z), " ",
+                  number(b.max.x), " ", number(b.max.y), " ", number(b.max.z), "\""),
            {8, 16}, 0.65);
-  put_text(sheet, "from " + scene.box_source, {8, 44}, 0.5, kDim);
+  put_text(sheet, scene.box_source, {8, 44}, 0.5, kDim);
   int x = out.width - 330;
   for (int axis = 0; axis < 3; ++axis, x += 110)
     put_text(sheet, concat("xyz"[axis], " edges"), {x, 16}, 0.6, kAxis[axis]);

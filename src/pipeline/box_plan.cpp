@@ -9,10 +9,10 @@
 namespace photohull::pipeline::picture {
 namespace {
 
-constexpr int kBorder = 55;      // pixels around the drawing: numbers stand there
-constexpr double kShown = 4;     // half diagonals of the box: cameras farther off are not shown
-constexpr double kCamera = 16;   // pixels
-constexpr int kMostNamed = 24;   // cameras with their numbers
+constexpr int kBorder = 55;     // pixels around the drawing: numbers stand there
+constexpr double kShown = 4;    // half diagonals of the box: cameras farther off are not shown
+constexpr double kCamera = 22;  // pixels
+constexpr int kMostNamed = 24;  // cameras with their numbers
 
 /// The plan's axes in the world: right, up the paper, and towards the eye.
 struct Directions {
@@ -144,14 +144,16 @@ cv::Mat draw_plan(const Scene& scene, std::span<const ScenePoint> points) {
   const cv::Point2d middle = paper.at(box.center());
   const cv::Point2d edge = paper.at({box.center()[d.right], box.min[d.up]});
   put_text(plan, sides(d.right), {int(edge.x) - 50, int(edge.y) + 14}, 0.45, kAxis[d.right]);
-  put_text(plan, sides(d.up), {int(std::max(paper.at(box.min).x, paper.at(box.max).x)) + 6,
-                               int(middle.y)}, 0.45, kAxis[d.up]);
+  put_text(plan, sides(d.up),
+           {int(std::max(paper.at(box.min).x, paper.at(box.max).x)) + 6, int(middle.y)}, 0.45,
+           kAxis[d.up]);
   plan(cv::Rect(0, 0, kPanelWidth, kTitle)).setTo(kPaper);
-  put_text(plan, concat("from above (against ", d.from_below ? "-" : "+", names[d.eye], "): ",
-                        shown.size(), " cameras",
-                        far_off ? concat(", ", far_off, " too far off to show") : std::string(),
-                        "; the box has ", sides(d.eye)),
-           {8, kTitle / 2}, 0.5);
+  put_text(
+      plan,
+      concat("from above (against ", d.from_below ? "-" : "+", names[d.eye], "): ", shown.size(),
+             " cameras", far_off ? concat(", ", far_off, " too far off to show") : std::string(),
+             "; the box has ", sides(d.eye)),
+      {8, kTitle / 2}, 0.5);
   return plan;
 }
 

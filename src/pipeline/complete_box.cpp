@@ -18,9 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kLongestSide = 800;         // pixels of reduced photographs
-constexpr std::size_t kMostViews = 60;    // that are looked at: a few seconds' work
-constexpr double kLargestResidual = 4;    // pixels of the photographs, of the scene file's tracks
+constexpr int kLongestSide = 800;       // pixels of reduced photographs
+constexpr std::size_t kMostViews = 60;  // that are looked at: a few seconds' work
+constexpr double kLargestResidual = 4;  // pixels of the photographs, of the scene file's tracks
 constexpr const char* kSparsePoints = "sparse points";  // io/load_scene.cpp's name for its guess
 
 /// Width and height of the reduced photograph.
@@ -47,9 +47,9 @@ std::vector<std::size_t> spread_views(const std::vector<SourceView>& views) {
     taken.push_back(next);
     const Camera& camera = views[next].camera;
     for (std::size_t i = 0; i < views.size(); ++i)
-      farness[i] = std::min(
-          farness[i], glm::distance(views[i].camera.center(), camera.center()) / scale +
-                          glm::distance(views[i].camera.forward(), camera.forward()));
+      farness[i] =
+          std::min(farness[i], glm::distance(views[i].camera.center(), camera.center()) / scale +
+                                   glm::distance(views[i].camera.forward(), camera.forward()));
     next = std::size_t(std::max_element(farness.begin(), farness.end()) - farness.begin());
   }
   std::sort(taken.begin(), taken.end());

@@ -18,15 +18,15 @@ namespace {
 
 // Constants without a reason of their own are the middle of what holds on all scenes of
 // docs/box.md: half or twice the value changes no verdict there.
-constexpr std::size_t kEnough = 100;    // points that tell alone
-constexpr std::size_t kFewest = 20;     // points that tell anything
-constexpr double kAllAround = 120;      // degrees between two axes: what is behind the object for
-                                        // one camera is behind the other one itself
+constexpr std::size_t kEnough = 100;  // points that tell alone
+constexpr std::size_t kFewest = 20;   // points that tell anything
+constexpr double kAllAround = 120;    // degrees between two axes: what is behind the object for
+                                      // one camera is behind the other one itself
 constexpr double kShareAround = 1 / 2.0, kShareAhead = 1 / 3.0;  // of the best-seen point's cameras
-constexpr double kLink = 0.07;       // of the distance from the cameras: gaps within a surface
-constexpr double kPart = 0.1;        // of the heaviest part's weight: a part of the object, too
-constexpr double kTrim = 0.005;      // of the weight on each side: false matches
-constexpr double kMargin = 0.1;      // of a side: features end before the surface does
+constexpr double kLink = 0.07;         // of the distance from the cameras: gaps within a surface
+constexpr double kPart = 0.1;          // of the heaviest part's weight: a part of the object, too
+constexpr double kTrim = 0.005;        // of the weight on each side: false matches
+constexpr double kMargin = 0.1;        // of a side: features end before the surface does
 constexpr double kLeastMargin = 0.03;  // of the diagonal, for flat things
 constexpr double kClearance = 0.01;    // of the diagonal, from a camera
 constexpr double kCutWarning = 0.05;   // of the weight, cut off
@@ -59,7 +59,7 @@ std::vector<Camera> cameras_of(std::span<const View> views) {
 // ---- silhouettes
 
 struct Foreground {
-  glm::dvec2 middle{0.0};  ///< pixels
+  glm::dvec2 middle{0.0};   ///< pixels
   bool ends_within = true;  ///< it touches the frame nowhere, or hardly
 };
 
@@ -101,8 +101,8 @@ std::optional<FoundBox> box_of_silhouettes(std::span<const View> views) {
   const Box cube{*middle - reach, *middle + reach};
   const Box box = carving::object_box(cube, views);
   if (box.min == cube.min && box.max == cube.max) return std::nullopt;  // nothing was left of it
-  return FoundBox{box, concat("found: the space that the silhouettes of ", masked, " views leave"),
-                  {}, {}};
+  return FoundBox{
+      box, concat("found: the space that the silhouettes of ", masked, " views leave"), {}, {}};
 }
 
 // ---- points
@@ -172,8 +172,7 @@ void keep_connected(std::span<const Camera> cameras, std::vector<Weighed>& point
     ++parts;
   }
   std::vector<double> weights(std::size_t(parts), 0.0);
-  for (const Weighed& p : points)
-    weights[std::size_t(part[cell_of(p.point.position)])] += p.weight;
+  for (const Weighed& p : points) weights[std::size_t(part[cell_of(p.point.position)])] += p.weight;
   const double least = kPart * *std::max_element(weights.begin(), weights.end());
   std::erase_if(points, [&](const Weighed& p) {
     return weights[std::size_t(part[cell_of(p.point.position)])] < least;
@@ -258,13 +257,13 @@ std::optional<FoundBox> box_of_points(std::span<const Camera> cameras,
   const Box around = box_around(points);
   FoundBox found{without_cameras(around, cameras, points), {}, {}, {}};
   if (const glm::dvec3 s = found.box.size(); !(std::min({s.x, s.y, s.z}) > 0)) return std::nullopt;
-  const double lost = 1 - weight_within(found.box, points) /
-                              std::max(weight_within(around, points), 1e-300);
+  const double lost =
+      1 - weight_within(found.box, points) / std::max(weight_within(around, points), 1e-300);
   if (lost > kCutWarning)
-    found.warnings.push_back(
-        concat("cameras stand among what they show: the box found leaves out ",
-               std::lround(100 * lost), " % of it; look at it (photohull info --picture) and give "
-               "--box where another part is wanted"));
+    found.warnings.push_back(concat("cameras stand among what they show: the box found leaves out ",
+                                    std::lround(100 * lost),
+                                    " % of it; look at it (photohull info --picture) and give "
+                                    "--box where another part is wanted"));
   for (const Weighed& p : points)
     if (found.box.contains(p.point.position)) found.points.push_back(p.point);
   found.source = concat("found: ", given.size(), " ", what, ", ", found.points.size(),
@@ -277,11 +276,12 @@ std::optional<FoundBox> box_of_points(std::span<const Camera> cameras,
                                         bool masks) {
   const AxesMeeting axes = meeting_of_axes(cameras);
   if (2 * axes.in_front < cameras.size())
-    throw Error(concat("no box can be found: the cameras look away from each other (the point "
-                       "nearest to their optical axes is behind ",
-                       cameras.size() - axes.in_front, " of ", cameras.size(),
-                       " cameras); check whether the poses are world-to-camera (photohull info "
-                       "--cameras), or give --box \"x0 y0 z0 x1 y1 z1\""));
+    throw Error(
+        concat("no box can be found: the cameras look away from each other (the point "
+               "nearest to their optical axes is behind ",
+               cameras.size() - axes.in_front, " of ", cameras.size(),
+               " cameras); check whether the poses are world-to-camera (photohull info "
+               "--cameras), or give --box \"x0 y0 z0 x1 y1 z1\""));
   throw Error(concat("no box can be found: ", points,
                      " features match between the photographs under these cameras (at least ",
                      kFewest, " are needed), and ",
@@ -290,7 +290,9 @@ std::optional<FoundBox> box_of_points(std::span<const Camera> cameras,
                      "(photohull info --cameras)"));
 }
 
-Box around_both(const Box& a, const Box& b) { return {glm::min(a.min, b.min), glm::max(a.max, b.max)}; }
+Box around_both(const Box& a, const Box& b) {
+  return {glm::min(a.min, b.min), glm::max(a.max, b.max)};
+}
 
 }  // namespace
 
@@ -303,8 +305,7 @@ AxesMeeting meeting_of_axes(std::span<const Camera> cameras) {
   }
   for (const glm::dvec3& a : along)
     for (const glm::dvec3& b : along)
-      out.turn =
-          std::max(out.turn, kDegrees * std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0)));
+      out.turn = std::max(out.turn, kDegrees * std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0)));
   const auto point = nearest_to_lines(through, along);
   if (!point) {
     out.in_front = cameras.size();  // parallel: they meet far away
@@ -338,8 +339,8 @@ FoundBox find_box(const BoxEvidence& evidence, Progress& progress) {
   const bool listed = evidence.points.size() >= kEnough;
   const std::vector<ScenePoint> points =
       listed ? evidence.points : find_scene_points(evidence.views, progress);
-  auto found = box_of_points(cameras, points,
-                             listed ? "points of the scene file" : "features triangulated");
+  auto found =
+      box_of_points(cameras, points, listed ? "points of the scene file" : "features triangulated");
   if (masks && !evidence.given_masks && points.size() < kEnough)
     if (auto hull = box_of_silhouettes(evidence.views)) {
       if (found) hull->box = around_both(hull->box, found->box);

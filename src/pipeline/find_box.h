@@ -27,7 +27,8 @@ struct BoxEvidence {
 };
 
 /// An axis-aligned box around what the photographs are of. In this order:
-///  1. Silhouettes, where masks were given whose foreground ends within most photographs: the box of
+///  1. Silhouettes, where masks were given whose foreground ends within most photographs: the box
+///  of
 ///     the visual hull (carving/object_box.h), carved from a cube around the point nearest to the
 ///     rays through the foregrounds' middles.
 ///  2. Points: the scene file's where there are at least 100, else features of the photographs
@@ -45,10 +46,10 @@ FoundBox find_box(const BoxEvidence& evidence, Progress& progress);
 
 /// Where the optical axes meet.
 struct AxesMeeting {
-  glm::dvec3 point{0.0};    ///< nearest to all axes (least squares), world
-  double distance = 0;      ///< of the cameras from it, the median
-  std::size_t in_front = 0; ///< cameras that have it before them
-  double turn = 0;          ///< degrees: the largest angle between two axes
+  glm::dvec3 point{0.0};       ///< nearest to all axes (least squares), world
+  double distance = 0;         ///< of the cameras from it, the median
+  std::size_t in_front = 0;    ///< cameras that have it before them
+  double turn = 0;             ///< degrees: the largest angle between two axes
   bool looks_inwards = false;  ///< do nearly all axes pass it by less than a fifth of the distance?
 };
 
