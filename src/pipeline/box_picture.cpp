@@ -225,7 +225,7 @@ void draw_inset(cv::Mat& panel, const View& view, const Box& box, double voxel_s
 /// that the box fits, too.
 cv::Rect place_on_panel(const Camera& camera, const Box& box) {
   const Intrinsics& k = camera.intrinsics;
-  const glm::dvec2 room(kPanelWidth - 2 * kFrame, kPanelHeight - kTitle - 2 * kFrame);
+  const glm::dvec2 room(kPanelWidth - kInset - 3 * kFrame, kPanelHeight - kTitle - 2 * kFrame);
   const glm::dvec2 size(k.width, k.height);
   glm::dvec2 low(0.0), high = size;
   for (int i = 0; i < 8; ++i)
@@ -263,7 +263,7 @@ cv::Mat draw_photograph(const SourceView& source, std::size_t index, const Box& 
   if (depth > 0)
     title += concat("; a voxel of ", number(voxel_size), " is ",
                     number(voxel_size * view.camera.intrinsics.fx / depth),
-                    " pixels in the box's middle (grid at the lower right)");
+                    " pixels in the box's middle: the grid");
   put_text(panel, title, {8, kTitle / 2}, 0.5);
   return panel;
 }
