@@ -259,8 +259,9 @@ void print_json(const pipeline::Inspection& info, const CameraDiagnosis* diagnos
 
 /// Why there is none, or nothing; the rest that is known of the scene is told all the same.
 std::string find_box(const Arguments& a, Scene& scene, std::vector<ScenePoint>& points) {
+  const bool looks = pipeline::looks_for_box(a.scene.box_options(), scene);
   TerminalProgress progress(1);
-  progress.stage("box", 1);
+  if (looks) progress.stage("box", 1);
   try {
     points = pipeline::complete_box(
         a.scene.box_options(), pipeline::mask_policy(a.scene.options().masks), scene, progress);
@@ -272,7 +273,7 @@ std::string find_box(const Arguments& a, Scene& scene, std::vector<ScenePoint>& 
     progress.finish();
     return failure.what();
   }
-  progress.finish();
+  if (looks) progress.finish();
   return {};
 }
 

@@ -130,12 +130,16 @@ void BoxOptions::validate() const {
                             kMostScale));
 }
 
+bool looks_for_box(const BoxOptions& options, const Scene& scene) {
+  return options.find || !scene.box || scene.box_source == kSparsePoints;
+}
+
 std::vector<ScenePoint> complete_box(const BoxOptions& options, MaskPolicy masks, Scene& scene,
                                      Progress& progress) {
   options.validate();
   std::vector<ScenePoint> points;
-  const bool guessed = scene.box && scene.box_source == kSparsePoints;
-  if (options.find || !scene.box || guessed) {
+  if (looks_for_box(options, scene)) {
+    const bool guessed = scene.box && scene.box_source == kSparsePoints;
     try {
       FoundBox found = find_in_photographs(masks, scene, progress);
       scene.box = found.box;

@@ -19,6 +19,9 @@ struct BoxOptions {
   void validate() const;
 };
 
+/// Will complete_box look into the photographs?
+bool looks_for_box(const BoxOptions& options, const Scene& scene);
+
 /// Gives the scene a box: its own, else the one that find_box finds in at most 60 of its
 /// photographs, spread over all and reduced to 800 pixels at most, with their masks by `masks`. A
 /// box that load_scene made of sparse points stands only where none is found, which adds a warning
