@@ -99,8 +99,9 @@ TEST(CompleteBox, RefusesAbsurdScales) {
 
 TEST(CompleteBox, NamesTheSceneWherePlainPicturesTellNothing) {
   ScratchFolder folder;
-  render(R"("light": {"ambient": [0, 0, 0], "directional": []}, "cameras": {"rings": [{"count": 4, "elevation": 12}]})",
-         folder / "dark");
+  render(
+      R"("light": {"ambient": [0, 0, 0], "directional": []}, "cameras": {"rings": [{"count": 4, "elevation": 12}]})",
+      folder / "dark");
   EXPECT_THAT([&] { complete(folder / "dark", MaskPolicy::kNone, {.find = true}); },
               ThrowsMessage<Error>(AllOf(HasSubstr("transforms.json"), HasSubstr("give --box"))));
 }
