@@ -7,7 +7,9 @@
 #include "calib/diagnose.h"
 #include "calib/prepare_views.h"
 #include "commands.h"
+#include "core/error.h"
 #include "io/image_file.h"
+#include "pipeline/box_picture.h"
 #include "pipeline/inspect.h"
 #include "pipeline/mask_policy.h"
 #include "scene_arguments.h"
@@ -19,6 +21,7 @@ namespace {
 struct Arguments {
   SceneArguments scene;
   bool json = false, cameras = false, masks = false;
+  std::optional<std::string> picture;
 };
 
 struct Range {
@@ -56,8 +59,10 @@ void print_text(const pipeline::Inspection& info) {
   if (info.scene.box) {
     const Box& b = *info.scene.box;
     const glm::ivec3 n = info.grid.voxels();
-    std::printf("box            (%g %g %g) to (%g %g %g), from %s\n", b.min.x, b.min.y, b.min.z,
-                b.max.x, b.max.y, b.max.z, info.scene.box_source.c_str());
+    std::printf("box            (%g %g %g) to (%g %g %g), %s%s\n", b.min.x, b.min.y, b.min.z,
+                b.max.x, b.max.y, b.max.z,
+                info.scene.box_source.starts_with("found") ? "" : "from ",
+                info.scene.box_source.c_str());
     std::printf("view angles    %.1f degrees to the nearest (median), %.1f at most\n",
                 info.nearest_angle, info.farthest_angle);
     std::printf("pixel          %g world units at the box's centre\n", info.voxel_size);
@@ -260,10 +265,45 @@ void print_json(const pipeline::Inspection& info, const CameraDiagnosis* diagnos
               j.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
 }
 
+/// Why there is none, or nothing; the rest that is known of the scene is told all the same.
+std::string find_box(const Arguments& a, Scene& scene, std::vector<ScenePoint>& points) {
+  const bool looks = pipeline::looks_for_box(a.scene.box_options(), scene);
+  TerminalProgress progress(1);
+  if (looks) progress.stage("box", 1);
+  try {
+    points = pipeline::complete_box(
+        a.scene.box_options(), pipeline::mask_policy(a.scene.options().masks), scene, progress);
+  } catch (const UsageError&) {
+    throw;
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error& failure) {
+    progress.finish();
+    return failure.what();
+  }
+  if (looks) progress.finish();
+  return {};
+}
+
+void write_picture(const std::string& path, const pipeline::Inspection& info,
+                   std::span<const ScenePoint> points) {
+  if (!info.scene.box) throw Error("--picture: there is no box to draw; give --box");
+  std::vector<ScenePoint> listed;
+  if (points.empty())
+    for (const glm::dvec3& p : info.scene.points) listed.push_back({p, {}});
+  const pipeline::BoxPicture picture =
+      pipeline::draw_box(info.scene, info.grid.voxel_size,
+                         points.empty() ? std::span<const ScenePoint>(listed) : points);
+  io::write_png(path, picture.width, picture.height, 3, picture.rgb);
+}
+
 void run(const Arguments& a) {
+  if (a.picture && a.picture->empty()) throw UsageError("--picture is empty: give a PNG file");
   io::LoadSceneOptions load = a.scene.options();
   load.most_views = io::kEnoughViews;  // as reconstruct has it
   Scene scene = io::load_scene(a.scene.scene, load);
+  std::vector<ScenePoint> points;
+  std::string no_box = find_box(a, scene, points);
   std::optional<CameraDiagnosis> diagnosis;
   std::optional<PreparedViews> prepared;
   if (a.cameras || a.masks) {
@@ -287,6 +327,8 @@ void run(const Arguments& a) {
     info.scene = scene;
     info.scene.box.reset();
   }
+  if (!no_box.empty()) info.warnings.push_back(std::move(no_box));
+  if (a.picture) write_picture(*a.picture, info, points);
   if (a.json) {
     print_json(info, diagnosis ? &*diagnosis : nullptr, a.masks ? &*prepared : nullptr);
   } else {
@@ -310,7 +352,12 @@ void add_info(CLI::App& app) {
               "a view");
   c->add_flag("--check-masks", a->masks,
               "find the masks, too, and tell how sure they are ('photohull masks' tells of each)");
+  c->add_option("--picture", a->picture,
+                "PNG file: the box drawn into photographs, with its corners' coordinates and the "
+                "voxels' size, and the cameras from above");
   c->footer(
+      "A box that neither the scene nor --box gives is found in the photographs, which takes some "
+      "seconds.\n\n"
       "With --cameras, features are matched without the poses and tell how these must be read "
       "(inverse, axes flipped), which views disagree with the rest, whether the principal points "
       "are half a pixel off, and whether the box is where the cameras look. Faults are named and "
@@ -318,6 +365,7 @@ void add_info(CLI::App& app) {
       "Examples:\n"
       "  photohull info datasets/templeSparseRing\n"
       "  photohull info datasets/templeSparseRing --cameras\n"
+      "  photohull info datasets/templeSparseRing --box auto --picture box.png\n"
       "  photohull info colmap/sparse/0 --box \"-1 -1 0 1 1 2\" --json");
   c->callback([a] { run(*a); });
 }

@@ -5,9 +5,12 @@
 
 #include "core/error.h"
 #include "io/write_scene.h"
+#include "pipeline/mask_policy.h"
 
 namespace photohull::cli {
 namespace {
+
+constexpr const char* kFindBox = "auto";
 
 Box parse_box(const std::string& text) {
   std::string spaced = text;
@@ -16,7 +19,8 @@ Box parse_box(const std::string& text) {
   double v[6];
   for (double& x : v)
     if (!(in >> x))
-      throw UsageError("--box: expected six numbers \"x0 y0 z0 x1 y1 z1\", found '" + text + "'");
+      throw UsageError("--box: expected auto or six numbers \"x0 y0 z0 x1 y1 z1\", found '" + text +
+                       "'");
   std::string rest;
   if (in >> rest) throw UsageError("--box: '" + rest + "' follows the six numbers");
   const glm::dvec3 a(v[0], v[1], v[2]), b(v[3], v[4], v[5]);
@@ -61,7 +65,11 @@ std::vector<CLI::Option*> SceneArguments::add_reading_options(CLI::App& command)
 
 void SceneArguments::add_to(CLI::App& command) {
   command.add_option("SCENE", scene, "folder or file of the scene")->required();
-  command.add_option("--box", box, "region of interest \"x0 y0 z0 x1 y1 z1\" in world units");
+  command.add_option("--box", box,
+                     "region of interest \"x0 y0 z0 x1 y1 z1\" in world units, or auto: found in "
+                     "the photographs (default: the scene's own, else auto)");
+  command.add_option("--box-scale", box_scale, "scales the box, whatever it is, about its middle")
+      ->capture_default_str();
   command.add_option(
       "--views", views,
       "views to use, e.g. \"0-10,15,img_*.png\"; spread:N (N that show the object from all "
@@ -79,7 +87,7 @@ io::LoadSceneOptions SceneArguments::options() const {
   if (format) out.format = parse_format("--format", *format);
   out.pixel_center = pixel_center;
   out.strict = strict;
-  if (box) out.box = parse_box(*box);
+  if (box && *box != kFindBox) out.box = parse_box(*box);
   if (views && views->empty()) throw UsageError("--views is empty: write e.g. 0-10,15");
   out.views = views.value_or("");
   if (hold_out && hold_out->empty()) throw UsageError("--hold-out is empty: write e.g. 0,8,16");
@@ -97,6 +105,19 @@ io::LoadSceneOptions SceneArguments::options() const {
   out.background = background.value_or("");
   out.validate();
   return out;
+}
+
+pipeline::BoxOptions SceneArguments::box_options() const {
+  pipeline::BoxOptions out{box == kFindBox, box_scale};
+  out.validate();
+  return out;
+}
+
+void SceneArguments::complete_box(Scene& loaded) const {
+  const pipeline::BoxOptions asked = box_options();
+  if (!asked.find && asked.scale == 1) return;
+  Progress silent;
+  pipeline::complete_box(asked, pipeline::mask_policy(options().masks), loaded, silent);
 }
 
 }  // namespace photohull::cli

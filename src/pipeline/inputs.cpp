@@ -21,6 +21,7 @@
 #include "core/error.h"
 #include "io/image_file.h"
 #include "pipeline/checks.h"
+#include "pipeline/complete_box.h"
 #include "pipeline/mask_policy.h"
 #include "pipeline/self_check.h"
 #include "pipeline/tuning.h"
@@ -133,11 +134,8 @@ void Inputs::load() {
   report_.photographs_listed = int(scene.listed.size());
   report_.photographs_scaled = scene.scaled;
   report_.photographs_passed_over = scene.passed_over;
+  complete_box(options_.box, mask_policy(options_.load.masks), scene, progress_);
   for (const std::string& text : scene.warnings) warn(text);
-  if (!scene.box)
-    throw Error(concat(scene.path.string(),
-                       ": nothing tells where the object is: give --box "
-                       "\"x0 y0 z0 x1 y1 z1\" or a bbox.txt beside the scene"));
   report_.box = *scene.box;
   report_.box_source = scene.box_source;
   for (const std::string& text : check_box(*scene.box, scene.box_source, scene.views)) warn(text);

@@ -112,7 +112,6 @@ TEST_F(BadScene, Box) {
   write_bytes(path("bbox.txt"), "0 0 0 1 nan 1\n");
   refuse_scene({"bbox.txt"});
   fs::remove(path("bbox.txt"));
-  refuse({scene(), "--box"});
   // The first two cameras look down.
   refuse({"no camera has the box from --box"}, {"--views", "0-1", "--box", "0 0 100 1 1 101"});
   refuse({"a pixel is 0.027", "check the box's units"},
