@@ -15,7 +15,7 @@ namespace {
 
 struct Arguments {
   SceneArguments scene;
-  std::string out, quality = "normal", device = "auto", mesh_error = "0", unseen = "closed",
+  std::string out, quality = "normal", device = "auto", mesh_error = "0", unseen = "auto",
                    mask_offset = "auto", mask_holes = "mend", views_may_miss = "auto",
                    photometric = "off";
   std::optional<std::string> method, refine_cameras, sampler, consistency, visibility;
@@ -51,8 +51,9 @@ pipeline::ReconstructOptions to_options(const Arguments& a) {
   o.resolution = a.resolution;
   o.voxel_size = a.voxel_size;
   o.mesh_error = pipeline::parse_mesh_error(a.mesh_error);
-  o.unseen = parse_name("--unseen", a.unseen,
-                        std::array{pipeline::Unseen::kOpen, pipeline::Unseen::kClosed});
+  o.unseen = parse_name(
+      "--unseen", a.unseen,
+      std::array{pipeline::Unseen::kAuto, pipeline::Unseen::kOpen, pipeline::Unseen::kClosed});
   using pipeline::RefineCameras;
   if (a.refine_cameras)
     o.refine_cameras =
@@ -150,7 +151,10 @@ void add_reconstruct(CLI::App& app) {
        "fewer triangles: how far mesh.ply may be from the uniform mesh, in voxels, or with "
        "a u in world units (0: uniform)")
       ->capture_default_str();
-  c->add_option("--unseen", a->unseen, "surface that no camera sees: closed, or open (left out)")
+  c->add_option(
+       "--unseen", a->unseen,
+       "surface that no camera sees: closed, open (left out; without masks what is doubtful, "
+       "too), or auto: closed where there are masks")
       ->capture_default_str();
   c->add_option("--refine-cameras", a->refine_cameras,
                 "off, auto (where it pays), poses or poses+intrinsics: cameras made to agree with "

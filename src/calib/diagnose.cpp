@@ -80,10 +80,13 @@ std::vector<ViewFit> fit_silhouettes(std::span<const Camera> cameras, std::span<
 std::vector<double> outlines_off(std::span<const Camera> cameras, std::span<const View> views) {
   constexpr double kUnusual = 4;  // times what is usual: as where views disagree (find_disagreeing)
   std::vector<double> off;
-  for (const ViewFit& fit : fit_silhouettes(cameras, views))
-    off.push_back(fit.residual > std::max(kSuspiciousTangents, kUnusual * fit.others)
-                      ? std::numbers::sqrt2 * fit.residual
-                      : 0);
+  std::size_t known = 0, found = 0;
+  for (const ViewFit& fit : fit_silhouettes(cameras, views)) {
+    const bool is_off = fit.residual > std::max(kSuspiciousTangents, kUnusual * fit.others);
+    off.push_back(is_off ? std::numbers::sqrt2 * fit.residual : 0);
+    known += fit.count > 0, found += is_off;
+  }
+  if (4 * found > known) std::fill(off.begin(), off.end(), 0.0);
   return off;
 }
 

@@ -98,7 +98,8 @@ std::vector<ViewFit> fit_silhouettes(std::span<const Camera> cameras, std::span<
 inline constexpr double kSuspiciousTangents = 0.25;
 
 /// Pixels by which the outline of each view is off what the others say (fit_silhouettes), for views
-/// that are off by more than kSuspiciousTangents and clearly more than is usual; else 0. A shift d
+/// that are off by more than kSuspiciousTangents and clearly more than is usual; else 0. Where more
+/// than a quarter are, nobody can say who is right, and all are 0. A shift d
 /// moves a tangent by d |cos a|, where a is the angle between the shift and the tangent's normal;
 /// the median over all directions is d / sqrt(2).
 std::vector<double> outlines_off(std::span<const Camera> cameras, std::span<const View> views);

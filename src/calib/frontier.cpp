@@ -6,6 +6,8 @@
 #include <cmath>
 #include <optional>
 
+#include "calib/mask_lines.h"
+
 namespace photohull {
 namespace {
 
@@ -94,6 +96,12 @@ Outline outline_of(const Mask& mask) {
         points.emplace_back(x + share * dx, y + share * dy);
       }
     }
+  // Half the coverage leaves out lines: their edges follow from their widths.
+  for (const LinePoint& line : find_lines(mask)) {
+    const glm::dvec2 middle(line.x, line.y), normal(line.normal_x, line.normal_y);
+    points.push_back(middle + 0.5 * double(line.width) * normal);
+    points.push_back(middle - 0.5 * double(line.width) * normal);
+  }
   return {convex_hull(std::move(points)), mask.width, mask.height};
 }
 

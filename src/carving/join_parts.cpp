@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <unordered_map>
 
@@ -20,7 +21,10 @@ constexpr int kLongest = 8;  // voxels of a path
 class Graph {
  public:
   Graph(const SparseVolume& volume, std::span<const Joint> joints)
-      : size_(volume.grid.voxels()), joints_(joints.size()), taken_(joints.size(), false) {
+      : volume_(volume),
+        size_(volume.grid.voxels()),
+        joints_(joints.size()),
+        taken_(joints.size(), false) {
     for (const Joint& joint : joints) add(joint.voxel);
     for (const Joint& joint : joints)
       for_each_neighbour(joint.voxel, [&](const ivec3& voxel) {
@@ -40,8 +44,19 @@ class Graph {
       if (holds_volume(set)) parts.insert(set);
     std::vector<std::uint32_t> joined;
     if (parts.size() > 1) {
-      joined.push_back(joint);
-      for (const std::uint32_t part : parts) add_path(joint, part, joined);
+      std::vector<ivec3> ends;  // one of each part that does not hang together with others nearby
+      for (const std::uint32_t part : parts) {
+        std::vector<std::uint32_t> path;
+        const auto end = find_path(joint, part, path);
+        if (!end || hang_together(*end, ends, voxels_[joint])) continue;
+        ends.push_back(*end);
+        joined.insert(joined.end(), path.begin(), path.end());
+      }
+      if (ends.size() > 1)
+        joined.push_back(joint);
+      else
+        joined.clear();
+      for (const std::uint32_t on_path : joined) on_paths_.insert(key(voxels_[on_path]));
     }
     taken_[joint] = true;
     for (const std::uint32_t set : sets) {
@@ -87,8 +102,10 @@ class Graph {
     return set >= joints_ || with_volume_.contains(set);
   }
 
-  /// The joints on the shortest path from one to a voxel of the volume in a part.
-  void add_path(std::uint32_t from, std::uint32_t part, std::vector<std::uint32_t>& out) {
+  /// Collects the joints on the shortest path from one to a voxel of the volume in a part; returns
+  /// that voxel, or nothing where the path would be too long.
+  std::optional<ivec3> find_path(std::uint32_t from, std::uint32_t part,
+                                 std::vector<std::uint32_t>& out) {
     std::unordered_map<std::uint32_t, std::uint32_t> came_from{{from, from}};
     std::vector<std::uint32_t> front{from}, next;
     for (int step = 0; step < kLongest && !front.empty(); ++step, front.swap(next)) {
@@ -102,11 +119,33 @@ class Graph {
           }
           for (std::uint32_t back = node; back != from; back = came_from.at(back))
             out.push_back(back);
-          return;
+          return voxels_[other];
         }
     }
+    return std::nullopt;
   }
 
+  /// Does a voxel hang together with one of the others by the volume around a place, or by paths
+  /// that were taken there? A way around that is longer does not count: a wire of a cage that is
+  /// torn hangs together with itself by all the others.
+  bool hang_together(const ivec3& voxel, std::span<const ivec3> others, const ivec3& place) const {
+    std::set<std::int64_t> reached{key(voxel)};
+    std::vector<ivec3> front{voxel};
+    while (!front.empty()) {
+      const ivec3 at = front.back();
+      front.pop_back();
+      if (std::find(others.begin(), others.end(), at) != others.end()) return true;
+      for_each_neighbour(at, [&](const ivec3& next) {
+        const ivec3 off = glm::abs(next - place);
+        if (std::max({off.x, off.y, off.z}) > kLongest) return;
+        if (!(volume_.at(next) < 0) && !on_paths_.contains(key(next))) return;
+        if (reached.insert(key(next)).second) front.push_back(next);
+      });
+    }
+    return false;
+  }
+
+  const SparseVolume& volume_;
   ivec3 size_;
   std::size_t joints_;  ///< the first nodes
   std::vector<bool> taken_;
@@ -114,6 +153,7 @@ class Graph {
   std::unordered_map<std::int64_t, std::uint32_t> node_at_;
   std::vector<std::uint32_t> parent_;
   std::set<std::uint32_t> with_volume_;  ///< roots that are joints
+  std::set<std::int64_t> on_paths_;      ///< voxels of joints that join
 };
 
 }  // namespace

@@ -58,7 +58,8 @@ constexpr int kPhotometricVoxels = 160;   // along the box, of the hull that gai
 constexpr double kDetail = 1.5;           // pixels: what refinement resolves, by its patches
 constexpr std::size_t kFewestThinVoxels = 32;  // a hull of fewer, all of them thin, is none
 constexpr const char* kMissingPicture = "missing.png";
-constexpr double kBoxSlack = 0.5;  // voxels that the surface may stand out of the box
+constexpr double kMoreLikelyRight = 0.5;  // confidence is the chance to be right
+constexpr double kBoxSlack = 0.5;         // voxels that the surface may stand out of the box
 
 class Job {
  public:
@@ -126,7 +127,7 @@ class Job {
     images_.reset();
     context_->release_deleted();
     clock_.run("verdict", Weights::kVerdict, [&] { judge(mesh, files); });
-    if (options_.unseen == Unseen::kOpen) open_unseen(mesh);
+    if (is_open()) open_unseen(mesh);
     report_.uniform_triangles = std::int64_t(mesh.triangles.size());
     if (options_.mesh_error.value > 0)
       clock_.run("simplify", Weights::kSimplify, [&] { simplify(mesh); });
@@ -396,13 +397,20 @@ class Job {
     io::write_png(files.open(kMissingPicture), picture.width, picture.height, 3, picture.rgb);
   }
 
+  /// Without silhouettes knowledge ends where the photographs do.
+  bool is_open() const {
+    return options_.unseen == Unseen::kOpen ||
+           (options_.unseen == Unseen::kAuto && !in_.any_mask() &&
+            options_.effective_method() == Method::kRefine);
+  }
+
   /// After colouring, which tells what is seen, and before simplification, which keeps the border.
   void open_unseen(TriMesh& mesh) {
-    mesh = remove_unseen(mesh);
+    mesh = remove_unseen(mesh, in_.any_mask() ? 0 : kMoreLikelyRight);
     if (mesh.triangles.empty())
       throw Error(
-          "--unseen open leaves nothing: no camera sees any of the surface; check the cameras "
-          "(photohull info) or use --unseen closed");
+          "no surface is left that a camera sees and that is more likely right than wrong; check "
+          "the cameras (photohull info), or look at all of it with --unseen closed");
   }
 
   void simplify(TriMesh& mesh) {

@@ -22,8 +22,10 @@ namespace photohull::pipeline {
 enum class Quality { kDraft, kNormal, kHigh };
 enum class Method { kHull, kVoxelColoring, kSpaceCarving, kRefine };
 
-/// Surface that no camera sees: closed as the hull has it, or left out of mesh.ply.
-enum class Unseen { kOpen, kClosed };
+/// Surface that no camera sees: closed as the hull has it, or left out of mesh.ply. Without
+/// silhouettes what is open also leaves out surface that is more likely wrong than right. Auto is
+/// closed where there are silhouettes.
+enum class Unseen { kAuto, kOpen, kClosed };
 
 const char* to_string(Quality quality);
 const char* to_string(Method method);
@@ -68,7 +70,7 @@ struct ReconstructOptions {
   std::optional<double> noise;
   bool keep_views = false;  ///< use views that disagree with the others too
   MeshError mesh_error;
-  Unseen unseen = Unseen::kClosed;
+  Unseen unseen = Unseen::kAuto;
   /// How the sweep resamples photographs and what decides there; voxel coloring and space carving
   /// only.
   std::optional<projtex::Sampler> sampler;

@@ -103,7 +103,17 @@ const char* to_string(Method method) {
   return "?";
 }
 
-const char* to_string(Unseen unseen) { return unseen == Unseen::kOpen ? "open" : "closed"; }
+const char* to_string(Unseen unseen) {
+  switch (unseen) {
+    case Unseen::kAuto:
+      return "auto";
+    case Unseen::kOpen:
+      return "open";
+    case Unseen::kClosed:
+      return "closed";
+  }
+  return "?";
+}
 
 MeshError parse_mesh_error(const std::string& text) {
   MeshError error;

@@ -155,6 +155,10 @@ class Refiner {
   }
 
   SparseVolume first_guess(const SparseVolume& hull) {
+    if (!any_silhouette(silhouettes_) && options_.voting && options_.label.iterations > 0)
+      return bounded(label_by_votes(context_, hull, images_, cameras_, options_.noise_sigma,
+                                    options_.vote, options_.label),
+                     hull);
     return bounded(options_.voting ? vote_free_space(context_, hull, images_, cameras_,
                                                      options_.noise_sigma, options_.vote)
                                    : hull,

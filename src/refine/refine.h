@@ -32,7 +32,7 @@ struct RefineOptions {
   /// grid to kCoarsestVoxels along its longest side, or to fewer where no silhouette brings the
   /// first guess near the surface.
   int levels = 0;
-  static constexpr int kCoarsestVoxels = 80, kCoarsestWithoutMasks = 40;
+  static constexpr int kCoarsestVoxels = 80, kCoarsestWithoutMasks = 80;
   int coarse_iterations = 3;  ///< of matching and moving, at the first level
   int middle_iterations = 2;
   int fine_iterations = 1;  ///< at the last level
@@ -43,6 +43,7 @@ struct RefineOptions {
   double noise_sigma = 0.003;  ///< of the images, square-root encoding
   bool voting = true;          ///< start from coarse depth maps' free space instead of the hull
   VoteOptions vote;
+  LabelOptions label;  ///< where there are no silhouettes
   bool closing = true;  ///< of surface that no camera sees
   CloseOptions close;
   RestoreOptions restore;

@@ -16,6 +16,9 @@ namespace {
 
 constexpr float kNews = 1;  // voxels: a voxel's distance that votes change by less stays as it is
 
+constexpr float kCertain = 1000;  // evidence where the hull is not
+constexpr float kBesides = 0.3f;  // voxels: distance where the rays say the opposite of the label
+
 class Voter {
  public:
   Voter(const SparseVolume& hull, std::span<const Camera> cameras, std::vector<RayMap> maps,
@@ -46,9 +49,48 @@ class Voter {
   }
 
   SparseVolume fuse() {
-    SparseVolume out;
-    out.grid = hull_.grid;
-    out.table.assign(hull_.table.size(), SparseVolume::kOutside);
+    std::vector<glm::ivec3> bricks = bricks_of_hull();
+    std::vector<float> values(bricks.size() * kBrickVoxels);
+    for_each_voxel(bricks, [&](std::size_t i, const glm::ivec3& voxel) {
+      const float hull = hull_.at(voxel);
+      values[i] = hull > 1 ? hull
+                           : std::max(hull, float(vote(glm::dvec3(voxel), options_.least_weight,
+                                                       -SparseVolume::kBand)));
+    });
+    return volume_of(std::move(bricks), std::move(values));
+  }
+
+  SparseVolume label(gpu::Context& context, const LabelOptions& options) {
+    std::vector<glm::ivec3> bricks = bricks_of_hull();
+    std::vector<float> told(bricks.size() * kBrickVoxels), evidence(told.size());
+    for_each_voxel(bricks, [&](std::size_t i, const glm::ivec3& voxel) {
+      const Say say = ask(glm::dvec3(voxel));
+      told[i] = say.total > 0 ? float(say.sum / say.total * options_.band) : 0;
+      evidence[i] =
+          hull_.at(voxel) > 0 ? kCertain : float(options.evidence * say.sum + options.unknown);
+    });
+    std::vector<float> labels = label_space(context, bricks, evidence, options.iterations);
+    for_each_voxel(bricks, [&](std::size_t i, const glm::ivec3& voxel) {
+      labels[i] = std::max(hull_.at(voxel), distance_of(labels[i] > 0.5f, told[i]));
+    });
+    return volume_of(std::move(bricks), std::move(labels));
+  }
+
+ private:
+  /// The sum of the rays' weighted says about a point, and of their weights.
+  struct Say {
+    double sum = 0, total = 0;
+  };
+
+  /// Signed distance of a labelled voxel: what the rays say, where they say the same.
+  static float distance_of(bool solid, float told) {
+    if (told == 0) return solid ? -1 : 1;
+    if (solid == (told < 0)) return told;
+    return solid ? -kBesides : kBesides;
+  }
+
+  /// Those that are not outside.
+  std::vector<glm::ivec3> bricks_of_hull() const {
     const glm::ivec3 n = hull_.grid.bricks;
     std::vector<glm::ivec3> bricks;
     for (int z = 0; z < n.z; ++z)
@@ -56,28 +98,32 @@ class Voter {
         for (int x = 0; x < n.x; ++x)
           if (hull_.table[hull_.grid.brick_index({x, y, z})] != SparseVolume::kOutside)
             bricks.emplace_back(x, y, z);
-    std::vector<float> values(bricks.size() * kBrickVoxels);
+    return bricks;
+  }
+
+  /// Calls visit(index, voxel) for all voxels of the bricks, in parallel.
+  template <typename Visit>
+  static void for_each_voxel(const std::vector<glm::ivec3>& bricks, const Visit& visit) {
     tbb::parallel_for(std::size_t(0), bricks.size(), [&](std::size_t b) {
       for (int x = 0; x < kBrickEdge; ++x)
         for (int y = 0; y < kBrickEdge; ++y)
-          for (int z = 0; z < kBrickEdge; ++z) {
-            const glm::ivec3 voxel = bricks[b] * kBrickEdge + glm::ivec3(x, y, z);
-            const float hull = hull_.at(voxel);
-            values[b * kBrickVoxels + std::size_t(voxel_offset({x, y, z}))] =
-                hull > 1 ? hull
-                         : std::max(hull, float(vote(glm::dvec3(voxel), options_.least_weight,
-                                                     -SparseVolume::kBand)));
-          }
+          for (int z = 0; z < kBrickEdge; ++z)
+            visit(b * kBrickVoxels + std::size_t(voxel_offset({x, y, z})),
+                  bricks[b] * kBrickEdge + glm::ivec3(x, y, z));
     });
-    for (std::size_t b = 0; b < bricks.size(); ++b) {
-      out.table[out.grid.brick_index(bricks[b])] = std::uint32_t(out.bricks.size());
-      out.bricks.push_back(bricks[b]);
-    }
-    out.distance = std::move(values);
+  }
+
+  SparseVolume volume_of(std::vector<glm::ivec3> bricks, std::vector<float> distance) const {
+    SparseVolume out;
+    out.grid = hull_.grid;
+    out.table.assign(hull_.table.size(), SparseVolume::kOutside);
+    for (std::size_t b = 0; b < bricks.size(); ++b)
+      out.table[out.grid.brick_index(bricks[b])] = std::uint32_t(b);
+    out.bricks = std::move(bricks);
+    out.distance = std::move(distance);
     return out;
   }
 
- private:
   /// What the rays say of voxels beside points of the maps.
   std::vector<std::pair<glm::ivec3, float>> votes(std::vector<glm::vec3> RayMap::*points,
                                                   const GridSpec& grid, double least,
@@ -96,7 +142,14 @@ class Voter {
 
   /// `silent`: where the rays say too little, their weights' sum being below `least`.
   double vote(const glm::dvec3& p, double least, double silent) const {
-    double sum = 0, total = 0;
+    const Say say = ask(p);
+    return say.total < least ? silent : say.sum / say.total * options_.band;
+  }
+
+  /// Each ray's say is 1 from `band` before its depth on, -1 at `band` behind it, and nothing
+  /// beyond.
+  Say ask(const glm::dvec3& p) const {
+    Say say;
     for (std::size_t v = 0; v < cameras_.size(); ++v) {
       const RayMap& map = maps_[v];
       const glm::dvec3 q = cameras_[v].projection * glm::dvec4(p, 1);
@@ -108,11 +161,10 @@ class Voter {
       if (!(map.weight[at] > 0)) continue;
       const double ahead = (map.depth[at] - q.z) / options_.band;
       if (ahead < -1) continue;
-      sum += map.weight[at] * std::min(ahead, 1.0);
-      total += map.weight[at];
+      say.sum += map.weight[at] * std::min(ahead, 1.0);
+      say.total += map.weight[at];
     }
-    if (total < least) return silent;
-    return sum / total * options_.band;
+    return say;
   }
 
   const SparseVolume& hull_;
@@ -129,6 +181,15 @@ SparseVolume vote_free_space(gpu::Context& context, const SparseVolume& hull,
   return Voter(hull, cameras, match_rays(context, hull, images, cameras, noise_sigma, options),
                options)
       .fuse();
+}
+
+SparseVolume label_by_votes(gpu::Context& context, const SparseVolume& hull,
+                            const projtex::ImageSet& images, std::span<const Camera> cameras,
+                            double noise_sigma, const VoteOptions& options,
+                            const LabelOptions& label) {
+  return Voter(hull, cameras, match_rays(context, hull, images, cameras, noise_sigma, options),
+               options)
+      .label(context, label);
 }
 
 Revision vote_again(gpu::Context& context, SparseVolume& volume, const SparseVolume& hull,

@@ -7,6 +7,7 @@
 #include "core/grid.h"
 #include "gpu/context.h"
 #include "projtex/image_set.h"
+#include "refine/label_space.h"
 
 namespace photohull::refine {
 
@@ -35,6 +36,15 @@ struct VoteOptions {
 SparseVolume vote_free_space(gpu::Context& context, const SparseVolume& hull,
                              const projtex::ImageSet& images, std::span<const Camera> cameras,
                              double noise_sigma, const VoteOptions& options);
+
+/// Space that no silhouette bounds: free before the depths that the views' rays find, solid in a
+/// thin shell behind them, and elsewhere as the smallest surface has it (label_space), so that what
+/// is unknown is not solid unless solid space encloses it. Distances are as vote_free_space gives
+/// them. Throws as that does.
+SparseVolume label_by_votes(gpu::Context& context, const SparseVolume& hull,
+                            const projtex::ImageSet& images, std::span<const Camera> cameras,
+                            double noise_sigma, const VoteOptions& options,
+                            const LabelOptions& label);
 
 struct Revision {
   std::size_t added = 0, freed = 0;  ///< voxels

@@ -81,14 +81,16 @@ void remove_ears(const std::vector<std::array<std::uint32_t, 3>>& across, Flags&
 
 }  // namespace
 
-TriMesh remove_unseen(const TriMesh& mesh) {
+TriMesh remove_unseen(const TriMesh& mesh, double least_confidence) {
   TriMesh result = mesh;
   if (mesh.confidence.empty()) return result;
   const auto across = neighbours(mesh);
   Flags removed(mesh.triangles.size());
   for (std::size_t t = 0; t < removed.size(); ++t) {
     const auto& [a, b, c] = mesh.triangles[t];
-    removed[t] = mesh.confidence[a] <= 0 && mesh.confidence[b] <= 0 && mesh.confidence[c] <= 0;
+    const auto [least, most] =
+        std::minmax({mesh.confidence[a], mesh.confidence[b], mesh.confidence[c]});
+    removed[t] = most <= 0 || double(least) < least_confidence;
   }
   flip_small(across, 1, removed);
   remove_ears(across, removed);

@@ -1,0 +1,24 @@
+// Contract of the kernel that labels space.
+#ifndef PHOTOHULL_SHADERS_LABEL_H
+#define PHOTOHULL_SHADERS_LABEL_H
+
+#ifdef __cplusplus
+#include <glm/glm.hpp>
+namespace photohull::shaders {
+using glm::ivec4;
+using glm::vec4;
+#elif !defined(constexpr)
+#define constexpr const
+#endif
+
+struct LabelParameters {
+  ivec4 counts;  // x: voxels
+  vec4 weights;  // x: rate of the steps
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(LabelParameters) == 32);
+}  // namespace photohull::shaders
+#endif
+
+#endif  // PHOTOHULL_SHADERS_LABEL_H
