@@ -230,6 +230,10 @@ class Job {
                                        level.settled_flat, level.mean_move, level.evidence});
       refine_samples_ += level.samples;
     }
+    if (volume.inside_voxels() == 0 && !in_.any_mask())
+      throw Error(
+          "no surface was found: without masks the photographs must show texture that several of "
+          "them agree on; give masks (--masks), more views, or check the cameras (photohull info)");
     if (volume.inside_voxels() == 0)
       throw Error(
           "refinement left nothing: the photographs disagree everywhere; check the cameras "

@@ -17,6 +17,12 @@ bool is_score(double value) { return value >= -1 && value <= 1; }
 bool is_cosine(double value) { return value >= 0 && value < 1; }
 bool is_length(double value) { return value >= 0 && value <= 1000; }
 
+void check(const LabelOptions& o) {
+  require(o.evidence > 0 && o.evidence <= 1000, "label.evidence must lie in (0, 1000]");
+  require(o.unknown >= 0 && o.unknown <= 1000, "label.unknown must lie in [0, 1000]");
+  require(o.iterations >= 0 && o.iterations <= 10000, "label.iterations must lie in [0, 10000]");
+}
+
 void check(const VoteOptions& o) {
   require(o.ray_spacing > 0 && is_length(o.ray_spacing), "vote.ray_spacing must be positive");
   require(o.again_spacing > 0 && is_length(o.again_spacing), "vote.again_spacing must be positive");
@@ -139,6 +145,7 @@ void RefineOptions::validate() const {
   check(rims);
   check(thin);
   check(unproven);
+  check(label);
   check(look);
   check(settle);
   require(restore.least_views >= 1, "restore.least_views must be at least 1");

@@ -85,5 +85,41 @@ TEST(VoteFreeSpace, EmptyHull) {
   EXPECT_EQ(vote(nothing, scene.views).inside_voxels(), 0u);
 }
 
+SparseVolume label(const SparseVolume& hull, const std::vector<View>& views) {
+  gpu::Context& context = test::gl_context();
+  return label_by_votes(context, hull, projtex::ImageSet(views), projtex::cameras_of(views), 0.01,
+                        {}, {});
+}
+
+TEST(LabelByVotes, WhatSilhouettesWouldTellIsFreeToo) {
+  const test::BowlScene& scene = test::bowl_scene();
+  const SparseVolume box = scene.hull(scene.grid(5), false);
+  SparseVolume found = label(box, scene.views);
+  fill_cavities(found);
+  int body = 0, lost = 0, empty = 0, solid = 0, solid_in_votes = 0;
+  const SparseVolume voted = vote(box, scene.views);
+  for_voxels(found.grid, [&](const ivec3& voxel, const dvec3& at) {
+    ASSERT_GE(found.at(voxel), box.at(voxel));
+    const double voxels = test::bowl(at) / found.grid.voxel_size;
+    if (voxels < -1 && voxels > -2) ++body, lost += found.at(voxel) >= 0;
+    if (voxels > 3 && box.at(voxel) < 0)
+      ++empty, solid += found.at(voxel) < 0, solid_in_votes += voted.at(voxel) < 0;
+  });
+  RecordProperty("lost", lost), RecordProperty("solid", solid);
+  ASSERT_GT(body, 1000);
+  ASSERT_GT(empty, 5000);
+  EXPECT_LT(lost, 0.3 * body);  // nobody sees its foot
+  EXPECT_LT(solid, 0.03 * empty);
+  EXPECT_LT(solid, 0.2 * solid_in_votes) << "what is unknown was solid";
+}
+
+TEST(LabelByVotes, PlainImagesClaimNothing) {
+  const test::BowlScene& scene = test::bowl_scene();
+  std::vector<View> plain = scene.views;
+  for (View& view : plain)
+    std::fill(view.image.bytes.begin(), view.image.bytes.end(), std::uint8_t(120));
+  EXPECT_EQ(label(scene.hull(scene.grid(3), false), plain).inside_voxels(), 0u);
+}
+
 }  // namespace
 }  // namespace photohull::refine

@@ -33,6 +33,19 @@ TEST(RemoveUnseen, HalfASphere) {
   EXPECT_LE(measure_distance(open, simple, 0.5).max, 0.25);
 }
 
+TEST(RemoveUnseen, WhatIsMoreDoubtfulThanTheLeastGoesToo) {
+  const TriMesh mesh = sphere_with([](const glm::dvec3& p) { return p.z > -10; });  // 0.5 there
+  TriMesh doubtful = mesh;
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+    if (mesh.world(i).z - kCenter.z > 10) doubtful.confidence[i] = 0.4f;
+  EXPECT_NEAR(double(remove_unseen(mesh, 0.45).triangles.size()),
+              double(remove_unseen(mesh).triangles.size()), 0.03 * double(mesh.triangles.size()));
+  const TriMesh open = remove_unseen(doubtful, 0.45);
+  for (std::size_t i = 0; i < open.positions.size(); ++i)
+    EXPECT_LT(std::abs(open.world(i).z - kCenter.z), 12);
+  EXPECT_NEAR(double(open.triangles.size()) / double(mesh.triangles.size()), 0.5, 0.05);
+}
+
 TEST(RemoveUnseen, GapsStayClosed) {
   const TriMesh mesh = sphere_with(
       [](const glm::dvec3& p) { return glm::length(p - 20.0 * glm::dvec3(0, 0, 1)) > 1.5; });
