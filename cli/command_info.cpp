@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -7,9 +9,13 @@
 #include "calib/diagnose.h"
 #include "calib/prepare_views.h"
 #include "commands.h"
+#include "core/parse_name.h"
 #include "io/image_file.h"
+#include "pipeline/image_scale.h"
 #include "pipeline/inspect.h"
 #include "pipeline/mask_policy.h"
+#include "pipeline/memory.h"
+#include "pipeline/plan.h"
 #include "scene_arguments.h"
 #include "terminal_progress.h"
 
@@ -18,6 +24,10 @@ namespace {
 
 struct Arguments {
   SceneArguments scene;
+  std::optional<int> resolution;
+  std::optional<double> voxel_size;
+  std::string quality = "normal", image_scale = "auto", max_memory = "auto";
+  std::optional<std::string> method;
   bool json = false, cameras = false, masks = false;
 };
 
@@ -59,8 +69,9 @@ void print_text(const pipeline::Inspection& info) {
     std::printf("view angles    %.1f degrees to the nearest (median), %.1f at most\n",
                 info.nearest_angle, info.farthest_angle);
     std::printf("pixel          %g world units at the box's centre\n", info.voxel_size);
-    std::printf("normal quality %d x %d x %d voxels of %g\n", n.x, n.y, n.z, info.grid.voxel_size);
-    std::printf("estimate       %lld MiB, %.0f CPU seconds (normal quality, software rasterizer)\n",
+    std::printf("voxels         %d x %d x %d of %g\n", n.x, n.y, n.z, info.grid.voxel_size);
+    std::printf("image scale    %s\n", pipeline::smallest_scale_text(info.scales).c_str());
+    std::printf("estimate       %lld MiB, %.0f CPU seconds (software rasterizer)\n",
                 static_cast<long long>(info.memory_bytes >> 20), info.cpu_seconds);
   }
   for (const std::string& text : info.warnings) std::printf("warning: %s\n", text.c_str());
@@ -241,7 +252,11 @@ void print_json(const pipeline::Inspection& info, const CameraDiagnosis* diagnos
     j["nearest_angle_degrees"] = info.nearest_angle;
     j["farthest_angle_degrees"] = info.farthest_angle;
     j["pixel_footprint"] = info.voxel_size;
-    j["normal_voxel_size"] = info.grid.voxel_size;
+    j["normal_voxel_size"] =
+        info.voxel_size * pipeline::footprint_factor(pipeline::Quality::kNormal);
+    j["voxel_size"] = info.grid.voxel_size;
+    j["image_scale"] = *std::min_element(info.scales.begin(), info.scales.end());
+    j["memory_limit_bytes"] = info.memory_limit;
     j["memory_bytes"] = info.memory_bytes;
     j["cpu_seconds"] = info.cpu_seconds;
   }
@@ -252,7 +267,29 @@ void print_json(const pipeline::Inspection& info, const CameraDiagnosis* diagnos
               j.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
 }
 
+/// Those that decide on voxels, and on how photographs are read.
+pipeline::ReconstructOptions job_options(const Arguments& a) {
+  using pipeline::Method;
+  using pipeline::Quality;
+  pipeline::ReconstructOptions o;
+  o.output = "none";  // nothing is written
+  o.load = a.scene.options();
+  o.resolution = a.resolution;
+  o.voxel_size = a.voxel_size;
+  o.quality = parse_name("--quality", a.quality,
+                         std::array{Quality::kDraft, Quality::kNormal, Quality::kHigh});
+  if (a.method)
+    o.method = parse_name(
+        "--method", *a.method,
+        std::array{Method::kHull, Method::kVoxelColoring, Method::kSpaceCarving, Method::kRefine});
+  o.image_scale = pipeline::parse_image_scale(a.image_scale);
+  o.max_memory = pipeline::parse_max_memory(a.max_memory);
+  o.validate();
+  return o;
+}
+
 void run(const Arguments& a) {
+  const pipeline::ReconstructOptions job = job_options(a);
   const Scene scene = io::load_scene(a.scene.scene, a.scene.options());
   std::optional<CameraDiagnosis> diagnosis;
   std::optional<PreparedViews> prepared;
@@ -265,7 +302,7 @@ void run(const Arguments& a) {
   pipeline::Inspection info;
   std::exception_ptr failure;
   try {
-    info = pipeline::inspect(scene);
+    info = pipeline::inspect(scene, job);
   } catch (...) {
     // What is wrong with the cameras may be why: it is said first.
     if (!diagnosis) throw;
@@ -290,6 +327,17 @@ void add_info(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
   CLI::App* c = app.add_subcommand("info", "tell what was understood of a scene");
   a->scene.add_to(*c);
+  c->add_option("--resolution", a->resolution, "voxels along the box's longest side, to estimate");
+  c->add_option("--voxel-size", a->voxel_size, "voxel size in world units, to estimate");
+  c->add_option("--quality", a->quality, "draft, normal or high, to estimate")
+      ->capture_default_str();
+  c->add_option("--method", a->method,
+                "hull, voxel-coloring, space-carving or refine, to estimate (default: hull for "
+                "draft, else refine)");
+  c->add_option("--image-scale", a->image_scale,
+                "at which photographs would be read, to estimate (default: as reconstruct does)");
+  c->add_option("--max-memory", a->max_memory, "that the job may take, such as 512M or 2G, or auto")
+      ->capture_default_str();
   c->add_flag("--json", a->json, "print JSON");
   c->add_flag("--cameras", a->cameras,
               "look for faults of the cameras in the photographs, too; takes about half a second "
@@ -304,6 +352,7 @@ void add_info(CLI::App& app) {
       "Examples:\n"
       "  photohull info datasets/templeSparseRing\n"
       "  photohull info datasets/templeSparseRing --cameras\n"
+      "  photohull info scan --resolution 512 --masks none\n"
       "  photohull info colmap/sparse/0 --box \"-1 -1 0 1 1 2\" --json");
   c->callback([a] { run(*a); });
 }

@@ -40,6 +40,15 @@ ColourImage read_image(const std::filesystem::path& path);
 /// Throws Error as read_image does.
 Mask read_mask(const std::filesystem::path& path);
 
+/// The same at a scale in (0, 1] (core/image_scale.h): what the file's pixels are in the mean over
+/// each of the result's, of colours in linear light. Strips of the file are held at a time, not all
+/// of it (unless its compression asks for that: interlaced PNG, progressive JPEG). JPEG files are
+/// decoded at 1/2, 1/4 or 1/8 by their DCT where that is at least as much as is asked for, which
+/// takes the mean in stored values; the rest is averaged.
+ColourImage read_image(const std::filesystem::path& path, double scale);
+/// Coverage in the mean over each of the result's pixels, so that its sum over the object is kept.
+Mask read_mask(const std::filesystem::path& path, double scale);
+
 /// Writes an 8-bit PNG; `bytes` holds width * height * channels values, row-major from the
 /// top-left; 1 to 4 channels: grey, grey + alpha, RGB, RGBA, alpha straight. The file appears whole
 /// or not at all. Throws Error when it cannot be written.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "assess/wrong_views.h"
 #include "calib/crop.h"
@@ -20,7 +21,10 @@
 #include "core/error.h"
 #include "io/image_file.h"
 #include "pipeline/checks.h"
+#include "pipeline/image_scale.h"
 #include "pipeline/mask_policy.h"
+#include "pipeline/memory.h"
+#include "pipeline/plan.h"
 #include "pipeline/self_check.h"
 #include "pipeline/view_order.h"
 #include "projtex/gpu_views.h"
@@ -49,33 +53,6 @@ std::string in_common(const CameraRefinement& found) {
 double longest_side(const Box& box) {
   const glm::dvec3 size = box.size();
   return std::max({size.x, size.y, size.z});
-}
-
-double voxel_size_of(const ReconstructOptions& options, const Box& box,
-                     std::span<const Camera> cameras) {
-  if (options.resolution) return carving::voxel_size_for(box, *options.resolution);
-  const double largest = carving::voxel_size_for(box, 2);
-  if (options.voxel_size) {
-    if (*options.voxel_size > largest)
-      throw UsageError(concat("--voxel-size ", *options.voxel_size, ": at most ", largest,
-                              ", half of the box's longest side"));
-    return *options.voxel_size;
-  }
-  const double footprint = carving::pixel_footprint(box, cameras);
-  if (!(footprint > 0)) throw Error("no camera has the box's centre in front of it");
-  const double size = footprint * footprint_factor(options.quality);
-  if (size > largest)
-    throw Error(concat("a pixel is ", footprint,
-                       " world units large at the box's centre, too much for a box whose longest "
-                       "side is ",
-                       2 * largest, "; check the box's units, or give --voxel-size"));
-  return size;
-}
-
-std::vector<Camera> cameras_of(std::span<const SourceView> views) {
-  std::vector<Camera> cameras;
-  for (const SourceView& view : views) cameras.push_back(view.camera);
-  return cameras;
 }
 
 double median_noise(std::span<const View> views) {
@@ -126,8 +103,37 @@ void Inputs::load() {
   report_.box = *scene.box;
   report_.box_source = scene.box_source;
   for (const std::string& text : check_box(*scene.box, scene.box_source, scene.views)) warn(text);
-  // Else the voxels' size follows the box, which may become smaller.
-  if (options_.resolution || options_.voxel_size) check_memory(lattice(cameras_of(scene.views)));
+  full_ = scene;
+  take_scales(choose_scales(*scene.box));
+}
+
+std::vector<double> Inputs::choose_scales(const Box& box) {
+  // With masks, the voxels that pixels give are not known before these have been seen: the box
+  // may become smaller.
+  const bool known =
+      options_.resolution || options_.voxel_size || options_.load.masks == io::MaskSource::kNone;
+  const std::int64_t limit = memory_limit();
+  Plan plan = plan_job(options_, full_, box, known, limit);
+  check_memory(plan.cost.bytes, limit);
+  if (plan.scales != plan.wanted)
+    warn(concat("the photographs are read at ", smallest_scale_text(plan.scales),
+                " of their size: at ", smallest_scale_text(plan.wanted),
+                " the job would take more than ", memory_text(limit),
+                " of memory (--max-memory; --image-scale forces a size)"));
+  return plan.scales;
+}
+
+std::int64_t Inputs::memory_limit() const {
+  return options_.max_memory ? *options_.max_memory : default_max_memory();
+}
+
+void Inputs::take_scales(std::vector<double> scales) {
+  scales_ = std::move(scales);
+  const auto [low, high] = std::minmax_element(scales_.begin(), scales_.end());
+  report_.smallest_scale = *low;
+  report_.largest_scale = *high;
+  scene = full_;
+  scale_scene(scales_, scene);
 }
 
 /// A box that is much larger than the object would waste the voxels, and far from the object few
@@ -152,19 +158,48 @@ void Inputs::fit_grid() {
   check_cameras_outside(*scene.box, scene.box_source, scene.views);
   cameras = projtex::cameras_of(views);
   grid = lattice(cameras);
-  check_memory(grid);
+  CostQuestion question{*scene.box, {}, cameras, grid, options_.effective_method(), any_mask()};
+  check_memory(estimate_cost(question).bytes, memory_limit());
   report_.grid = grid;
 }
 
-void Inputs::prepare() {
-  const ViewLoader loader{[](const fs::path& path) { return io::read_image(path); },
-                          [](const fs::path& path) { return io::read_mask(path); }};
+PreparedViews Inputs::decode() {
+  std::map<fs::path, double> scale_of;
+  for (std::size_t i = 0; i < scales_.size(); ++i)
+    for (const fs::path* path :
+         {&scene.views[i].image, &scene.views[i].mask, &scene.views[i].plate})
+      scale_of[*path] = scales_[i];
+  const auto scale = [&](const fs::path& path) {
+    const auto found = scale_of.find(path);
+    return found == scale_of.end() ? 1.0 : found->second;
+  };
+  const ViewLoader loader{[&](const fs::path& path) { return io::read_image(path, scale(path)); },
+                          [&](const fs::path& path) { return io::read_mask(path, scale(path)); }};
   PrepareOptions prepare_options;
   prepare_options.masks = mask_policy(options_.load.masks);
-  PreparedViews prepared = prepare_views(scene, loader, prepare_options, progress_);
+  return prepare_views(scene, loader, prepare_options, progress_);
+}
+
+void Inputs::prepare() {
+  PreparedViews prepared = decode();
+  // --resolution will count along the object's own box, whose voxels need finer pixels.
+  if (!options_.image_scale && options_.resolution && report_.smallest_scale < 1 &&
+      carving::box_is_oversized(*scene.box, prepared.views)) {
+    const Box box = carving::object_box(*scene.box, prepared.views);
+    if (longest_side(*scene.box) >= kOversized * longest_side(box)) {
+      std::vector<double> scales = choose_scales(box);
+      if (scales != scales_) {
+        prepared = {};
+        take_scales(std::move(scales));
+        prepared = decode();
+      }
+    }
+  }
+  full_ = {};
   views = std::move(prepared.views);
   report_.noise_sigma =
-      std::max(options_.noise ? *options_.noise / 255 : median_noise(views), kRoundingNoise);
+      std::max(options_.noise ? *options_.noise / 255 * report_.largest_scale : median_noise(views),
+               kRoundingNoise);
   for (const std::string& text : prepared.warnings) warn(text);
   report_.mask_source = prepared.mask_source;
   report_.mask_confidence = prepared.mask_confidence;
@@ -248,15 +283,17 @@ void Inputs::measure_silhouettes() {
 
 /// Masks that are all too small carve the object itself away.
 void Inputs::correct_masks() {
-  double offset = options_.mask_offset.value_or(0);
+  // The user counts in the files' pixels.
+  double offset = options_.mask_offset.value_or(0) * report_.largest_scale;
   if (!options_.mask_offset) {
     const MaskBias bias = measure_mask_bias(views, silhouettes);
     if (bias.counts()) offset = bias.pixels;
   }
-  report_.mask_offset = offset;
+  const double in_files = offset / report_.largest_scale;
+  report_.mask_offset = in_files;
   if (offset == 0) return;
   if (!options_.mask_offset)
-    warn(concat("the masks are about ", std::round(10 * std::abs(offset)) / 10, " px too ",
+    warn(concat("the masks are about ", std::round(10 * std::abs(in_files)) / 10, " px too ",
                 offset > 0 ? "small" : "large",
                 ": outlines are taken from where the photographs' edges are (--mask-offset 0 "
                 "takes the masks as they are)"));

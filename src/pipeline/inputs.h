@@ -25,6 +25,7 @@ class Inputs {
       : options_(options), report_(report), progress_(progress) {}
 
   void load();
+  /// Reads the photographs as large as the voxels need them.
   void prepare();
   /// By default only where silhouettes tell at once that the cameras disagree.
   void refine_cameras();
@@ -61,11 +62,19 @@ class Inputs {
   double cameras_moved_alike = 0;  ///< of it what all views have in common
 
  private:
+  /// Scales for `box`; as small as memory needs them.
+  std::vector<double> choose_scales(const Box& box);
+  std::int64_t memory_limit() const;
+  void take_scales(std::vector<double> scales);
+  /// Decodes the photographs at the scales taken.
+  PreparedViews decode();
   void mend_given_masks(std::span<const MaskJudgement> masks);
   GridSpec lattice(std::span<const Camera> cameras) const;
   void remember_right_cameras(const CameraRefinement& found, bool used);
   void leave_out(std::span<const int> wrong, const std::string& why);
 
+  Scene full_;                           ///< the scene in the files' pixels, until they are decoded
+  std::vector<double> scales_;           ///< of its views
   std::set<std::string> right_cameras_;  ///< names of views
   std::set<std::string> made_masks_;     ///< names of views whose masks come from the background
 

@@ -84,6 +84,7 @@ struct Report {
   int views = 0;
   Box box;
   std::string box_source;
+  double smallest_scale = 1, largest_scale = 1;  ///< at which photographs were read
   std::string mask_source;
   double mask_confidence = 0;
   /// Pixels (calib/refine_cameras.h, tangent_disagreement); NaN where it was not looked at.
