@@ -5,20 +5,21 @@
 #include <optional>
 #include <vector>
 
-#include "core/box.h"
 #include "core/camera.h"
 #include "core/grid.h"
 #include "pipeline/reconstruct.h"
 
 namespace photohull::pipeline {
 
+/// Where the silhouettes come from.
+enum class Silhouettes { kGiven, kMade, kNone };
+
 struct CostQuestion {
-  Box box;
   std::vector<Intrinsics> files;  ///< sizes of the photographs as they are
   std::vector<Camera> cameras;    ///< of the photographs as they are read, in the same order
   std::optional<GridSpec> grid;   ///< nothing: not known yet, photographs alone count
   Method method = Method::kRefine;
-  bool masks = true;  ///< there are silhouettes
+  Silhouettes masks = Silhouettes::kGiven;
 };
 
 struct Cost {

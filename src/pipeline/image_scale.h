@@ -13,7 +13,7 @@ namespace photohull::pipeline {
 
 /// Pixels, along an edge, that the smallest voxels keep at the least when photographs are reduced.
 /// docs/limits.md has the comparison that it comes from.
-inline constexpr double kPixelsPerVoxel = 1.5;
+inline constexpr double kPixelsPerVoxel = 3;
 
 /// Reads "auto" (nothing), "1/4" or "0.25". Throws UsageError for what is not in (0, 1].
 std::optional<double> parse_image_scale(const std::string& text);

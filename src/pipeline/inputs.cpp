@@ -158,7 +158,11 @@ void Inputs::fit_grid() {
   check_cameras_outside(*scene.box, scene.box_source, scene.views);
   cameras = projtex::cameras_of(views);
   grid = lattice(cameras);
-  CostQuestion question{*scene.box, {}, cameras, grid, options_.effective_method(), any_mask()};
+  const CostQuestion question{{},
+                              cameras,
+                              grid,
+                              options_.effective_method(),
+                              any_mask() ? Silhouettes::kGiven : Silhouettes::kNone};
   check_memory(estimate_cost(question).bytes, memory_limit());
   report_.grid = grid;
 }

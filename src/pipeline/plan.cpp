@@ -11,10 +11,18 @@
 namespace photohull::pipeline {
 namespace {
 
+/// Alpha channels are not known before decoding: they count as masks that must be made.
+Silhouettes silhouettes_of(const ReconstructOptions& options, const Scene& scene) {
+  if (options.load.masks == io::MaskSource::kNone) return Silhouettes::kNone;
+  const bool given = options.load.masks != io::MaskSource::kBackground &&
+                     std::any_of(scene.views.begin(), scene.views.end(),
+                                 [](const SourceView& view) { return !view.mask.empty(); });
+  return given ? Silhouettes::kGiven : Silhouettes::kMade;
+}
+
 void count_cost(const ReconstructOptions& options, const Scene& scene, const Box& box,
                 bool with_grid, Plan& plan) {
   CostQuestion question;
-  question.box = box;
   for (std::size_t i = 0; i < plan.scales.size(); ++i) {
     question.files.push_back(scene.views[i].camera.intrinsics);
     question.cameras.push_back(scene.views[i].camera);
@@ -25,7 +33,7 @@ void count_cost(const ReconstructOptions& options, const Scene& scene, const Box
     plan.grid =
         *(question.grid = carving::fit_grid(box, voxel_size_of(options, box, question.cameras)));
   question.method = options.effective_method();
-  question.masks = options.load.masks != io::MaskSource::kNone;
+  question.masks = silhouettes_of(options, scene);
   plan.cost = estimate_cost(question);
 }
 

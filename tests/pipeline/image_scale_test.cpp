@@ -144,11 +144,11 @@ TEST_F(PlanJob, DefaultVoxelsReadPhotographsAsTheyAre) {
 }
 
 TEST_F(PlanJob, CoarseVoxelsReadThemSmaller) {
-  options_.resolution = 64;  // a voxel is 4 pixels
+  options_.resolution = 40;  // a voxel is 6.5 pixels
   const Plan found = plan(kNoLimit);
   EXPECT_EQ(found.scales, std::vector<double>(12, 0.5));
   EXPECT_EQ(found.wanted, found.scales);
-  EXPECT_EQ(found.grid.voxel_size, 2 / 64.0);
+  EXPECT_EQ(found.grid.voxel_size, 2 / 40.0);
   options_.image_scale = 0.3;
   EXPECT_EQ(plan(kNoLimit).scales, std::vector<double>(12, 0.3));
 }
@@ -173,8 +173,11 @@ TEST(MaxMemory, RefusesBeforeDecoding) {
   par << "3\n";
   for (int i = 0; i < 3; ++i) {
     const std::string name = "i" + std::to_string(i) + ".png";
-    io::write_png(folder / name, 64, 48, 1, std::vector<std::uint8_t>(64 * 48, 9));
-    std::filesystem::resize_file(folder / name, 50);  // the header is whole
+    std::vector<std::uint8_t> noise(640 * 480);
+    for (std::size_t k = 0; k < noise.size(); ++k) noise[k] = std::uint8_t(k * k * 40503 >> 16);
+    io::write_png(folder / name, 640, 480, 1, noise);
+    std::filesystem::resize_file(folder / name, std::filesystem::file_size(folder / name) / 2);
+    EXPECT_THROW(io::read_image(folder / name), Error);
     par << name << " 900 0 320 0 900 240 0 0 1  1 0 0 0 1 0 0 0 1  0 0 10\n";
   }
   par.close();
