@@ -37,6 +37,7 @@ void run(const Arguments& a) {
   const SceneFormat format = parse_format("--to", a.to);
   if (a.out.empty()) throw UsageError("--out is empty: give the folder for the converted scene");
   Scene scene = io::load_scene(a.scene.scene, options_of(a));
+  a.scene.complete_box(scene);
   const std::string from = a.images ? a.scene.scene : to_string(scene.format);
   for (const std::string& text : scene.warnings)
     std::fprintf(stderr, "photohull: warning: %s\n", text.c_str());

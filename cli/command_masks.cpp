@@ -46,9 +46,11 @@ std::vector<Overlap> compare(const Arguments& a, const PreparedViews& prepared) 
   reading.masks = *a.compare;
   const Scene truth = io::load_scene(reading.scene, reading.options());
   std::vector<Overlap> out;
-  for (std::size_t i = 0; i < truth.views.size(); ++i) {
-    const Mask mask = io::read_mask(truth.views[i].mask);
-    const View& view = prepared.views[i];
+  for (const View& view : prepared.views) {
+    const auto same = std::find_if(truth.views.begin(), truth.views.end(),
+                                   [&](const SourceView& v) { return v.name == view.name; });
+    PHOTOHULL_CHECK(same != truth.views.end());
+    const Mask mask = io::read_mask(same->mask);
     if (mask.width != view.image.width || mask.height != view.image.height)
       throw Error(concat("--compare: ", view.name,
                          " was undistorted to another size than its mask; compare views without "
@@ -108,15 +110,17 @@ void run(const Arguments& a) {
   if (a.compare && a.compare->empty())
     throw UsageError("--compare is empty: give a folder of masks that are known");
   const io::LoadSceneOptions load = a.scene.options();
-  const Scene scene = io::load_scene(a.scene.scene, load);
+  Scene scene = io::load_scene(a.scene.scene, load);
   const ViewLoader loader{[](const fs::path& path) { return io::read_image(path); },
                           [](const fs::path& path) { return io::read_mask(path); }};
   PrepareOptions options;
   options.masks = pipeline::mask_policy(load.masks);
   options.cut_masks = a.cut;
+  options.strict = load.strict;
   TerminalProgress progress(1);
   progress.stage("masks", 1);
-  const PreparedViews prepared = prepare_views(scene, loader, options, progress);
+  PreparedViews prepared = prepare_views(scene, loader, options, progress);
+  prepared.warnings.insert(prepared.warnings.begin(), scene.warnings.begin(), scene.warnings.end());
   progress.finish();
   std::vector<Overlap> known;
   if (a.compare) known = compare(a, prepared);

@@ -35,6 +35,8 @@ pipeline::ReconstructOptions to_options(const Arguments& a) {
   o.scene = a.scene.scene;
   o.output = a.out;
   o.load = a.scene.options();
+  o.load.most_views = io::kEnoughViews;
+  o.box = a.scene.box_options();
   o.quality = parse_name("--quality", a.quality,
                          std::array{Quality::kDraft, Quality::kNormal, Quality::kHigh});
   if (a.method)

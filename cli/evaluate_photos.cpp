@@ -22,17 +22,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::string> names_of(const Scene& scene) {
-  std::vector<std::string> names;
-  for (const SourceView& view : scene.views) names.push_back(view.name);
-  return names;
+/// Indices of the scene's views, by those of all views that its file lists; views without a usable
+/// photograph, which the scene's warnings name, drop out.
+std::vector<std::size_t> usable(const std::vector<std::size_t>& listed, const Scene& scene) {
+  std::vector<std::size_t> out;
+  for (const std::size_t i : listed) {
+    const auto found =
+        std::find_if(scene.views.begin(), scene.views.end(),
+                     [&](const SourceView& view) { return view.name == scene.listed[i]; });
+    if (found != scene.views.end()) out.push_back(std::size_t(found - scene.views.begin()));
+  }
+  return out;
 }
 
 struct Lists {
   std::vector<std::size_t> held_out, lenders;
 };
 
-Lists lists_of(const PhotoArguments& a, const std::vector<std::string>& names) {
+Lists lists_of(const PhotoArguments& a, const Scene& scene) {
+  const std::vector<std::string>& names = scene.listed;
   Lists lists;
   lists.held_out = io::select_views(*a.views, names);
   const std::vector<std::size_t> all = io::select_views(a.lenders.value_or(""), names, "--lenders");
@@ -47,7 +55,18 @@ Lists lists_of(const PhotoArguments& a, const std::vector<std::string>& names) {
   if (lists.lenders.empty())
     throw UsageError(concat("--views: all ", names.size(),
                             " views are held out, none is left to lend colour; hold out fewer"));
-  return lists;
+  const auto refuse = [&](const char* which, std::size_t first) {
+    const auto why =
+        std::find_if(scene.left_out.begin(), scene.left_out.end(),
+                     [&](const LeftOutView& view) { return view.name == names[first]; });
+    throw Error(concat(scene.path.string(), ": no photograph of ", which, " can be used (",
+                       names[first], why == scene.left_out.end() ? "" : ": " + why->detail,
+                       "); choose others"));
+  };
+  const Lists found = {usable(lists.held_out, scene), usable(lists.lenders, scene)};
+  if (found.held_out.empty()) refuse("--views", lists.held_out.front());
+  if (found.lenders.empty()) refuse("the views that lend colour", lists.lenders.front());
+  return found;
 }
 
 pipeline::Photometric parse_photometric(const std::string& text) {
@@ -140,13 +159,15 @@ eval::PhotoAgreement judge_photos(const PhotoArguments& a, const TriMesh& mesh,
   SceneArguments reading = a.scene;
   reading.scene = *a.photos;
   const io::LoadSceneOptions load = reading.options();
-  const Scene scene = io::load_scene(reading.scene, load);
-  const Lists lists = lists_of(a, names_of(scene));
+  Scene scene = io::load_scene(reading.scene, load);
   const ViewLoader loader{[](const fs::path& path) { return io::read_image(path); },
                           [](const fs::path& path) { return io::read_mask(path); }};
   PrepareOptions prepare;
   prepare.masks = pipeline::mask_policy(load.masks);
+  prepare.strict = load.strict;
+  lists_of(a, scene);  // what is wrong with them is said before the photographs are decoded
   PreparedViews prepared = prepare_views(scene, loader, prepare, progress);
+  const Lists lists = lists_of(a, scene);
 
   const pipeline::Photometric photometric = parse_photometric(a.photometric);
   std::string correction;

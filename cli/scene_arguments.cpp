@@ -16,7 +16,8 @@ Box parse_box(const std::string& text) {
   double v[6];
   for (double& x : v)
     if (!(in >> x))
-      throw UsageError("--box: expected six numbers \"x0 y0 z0 x1 y1 z1\", found '" + text + "'");
+      throw UsageError("--box: expected auto or six numbers \"x0 y0 z0 x1 y1 z1\", found '" + text +
+                       "'");
   std::string rest;
   if (in >> rest) throw UsageError("--box: '" + rest + "' follows the six numbers");
   const glm::dvec3 a(v[0], v[1], v[2]), b(v[3], v[4], v[5]);
@@ -53,13 +54,24 @@ std::vector<CLI::Option*> SceneArguments::add_reading_options(CLI::App& command)
                          "stands still, or a folder with one for every view"),
       command.add_option("--pixel-center", pixel_center,
                          "coordinate of the top-left pixel's centre in the scene file, 0, 0.5 or 1 "
-                         "(default: the format's)")};
+                         "(default: the format's)"),
+      command.add_flag("--strict", strict,
+                       "refuse scenes whose photographs are not all there, readable and of their "
+                       "cameras' shape (default: such are left out while two of three remain)")};
 }
 
 void SceneArguments::add_to(CLI::App& command) {
   command.add_option("SCENE", scene, "folder or file of the scene")->required();
-  command.add_option("--box", box, "region of interest \"x0 y0 z0 x1 y1 z1\" in world units");
-  command.add_option("--views", views, "views to use, e.g. \"0-10,15,img_*.png\" (default: all)");
+  command.add_option("--box", box,
+                     "region of interest \"x0 y0 z0 x1 y1 z1\" in world units, or auto: found in "
+                     "the photographs (default: the scene's own, else auto)");
+  command.add_option("--box-scale", box_scale, "scales the box, whatever it is, about its middle")
+      ->capture_default_str();
+  command.add_option(
+      "--views", views,
+      "views to use, e.g. \"0-10,15,img_*.png\"; spread:N (N that show the object from all "
+      "sides) or all (default: all; to reconstruct, spread:" +
+          std::to_string(io::kEnoughViews) + " where there are more)");
   command.add_option("--hold-out", hold_out,
                      "views to leave out of these, a list of the same kind; 'photohull evaluate "
                      "--photos' judges by them");
@@ -71,7 +83,8 @@ io::LoadSceneOptions SceneArguments::options() const {
   if (scene.empty()) throw UsageError("SCENE is empty: give the folder or file of the scene");
   if (format) out.format = parse_format("--format", *format);
   out.pixel_center = pixel_center;
-  if (box) out.box = parse_box(*box);
+  out.strict = strict;
+  if (box && *box != kFindBox) out.box = parse_box(*box);
   if (views && views->empty()) throw UsageError("--views is empty: write e.g. 0-10,15");
   out.views = views.value_or("");
   if (hold_out && hold_out->empty()) throw UsageError("--hold-out is empty: write e.g. 0,8,16");

@@ -37,7 +37,7 @@ class Checker {
         const glm::dvec3 ray = camera_.ray({x, y});
         if (!clip_ray(box_, origin_, ray)) continue;
         const bool hit = rays_.occluded(origin_, ray);
-        const double sure = s.mask ? std::max(s.mask->coverage[i] / 127.5 - 1, 0.0) : 1;
+        const double sure = sureness(s, i);
         fit.covered += hit, areas.covered += hit ? area : 0;
         fit.foreground += inside, areas.foreground += inside ? sure * area : 0;
         areas.missed += inside && !hit ? sure * area : 0;
@@ -45,13 +45,18 @@ class Checker {
       }
   }
 
-  void look_at_lines(const std::vector<LinePoint>& lines, SilhouetteFit& fit, Areas& areas) const {
+  void look_at_lines(const CheckedSilhouette& s, SilhouetteFit& fit, Areas& areas) const {
+    const std::vector<LinePoint>& lines = *s.lines;
+    const int width = s.given->width, height = s.given->height;
     const std::size_t stride = lines.size() / std::size_t(kRays) + 1;
     for (std::size_t i = 0; i < lines.size(); i += stride) {
       const LinePoint& p = lines[i];
       if (!clip_ray(box_, origin_, camera_.ray({p.x, p.y}))) continue;
       const bool hit = covers_line(rays_, camera_, p, tolerance_);
-      const double area = double(stride) * p.width;
+      const int x = std::clamp(int(std::lround(p.x)), 0, width - 1);
+      const int y = std::clamp(int(std::lround(p.y)), 0, height - 1);
+      const double area =
+          sureness(s, std::size_t(y) * std::size_t(width) + x) * double(stride) * p.width;
       ++fit.foreground;
       areas.foreground += area;
       areas.missed += hit ? 0 : area;
@@ -59,6 +64,11 @@ class Checker {
   }
 
  private:
+  /// How sure the mask is of its foreground at a pixel, [0, 1].
+  static double sureness(const CheckedSilhouette& s, std::size_t i) {
+    return s.mask ? std::max(s.mask->coverage[i] / 127.5 - 1, 0.0) : 1;
+  }
+
   const RayScene& rays_;
   const Box& box_;
   const Camera& camera_;
@@ -72,7 +82,7 @@ SilhouetteFit check(const RayScene& rays, const Box& box, const Camera& camera,
   Areas areas;
   const Checker checker(rays, box, camera, tolerance);
   checker.look_at_lattice(silhouette, fit, areas);
-  if (silhouette.lines) checker.look_at_lines(*silhouette.lines, fit, areas);
+  if (silhouette.lines) checker.look_at_lines(silhouette, fit, areas);
   if (areas.foreground > 0) fit.missed = areas.missed / areas.foreground;
   if (areas.covered > 0) fit.excess = areas.excess / areas.covered;
   return fit;

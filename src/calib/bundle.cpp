@@ -203,6 +203,8 @@ std::vector<Camera> adjust_bundle(const BundleInput& input, std::span<const Came
     ordering->AddElementToGroup(pose.data(), 1);
     if (input.hold_poses) problem.SetParameterBlockConstant(pose.data());
   }
+  for (const int view : input.held)
+    problem.SetParameterBlockConstant(poses[std::size_t(view)].data());
   if (problem.HasParameterBlock(shared.data())) {
     ordering->AddElementToGroup(shared.data(), 1);
     if (input.intrinsics == SharedIntrinsics::kNone)
@@ -227,7 +229,8 @@ std::vector<Camera> adjust_bundle(const BundleInput& input, std::span<const Came
   }
   const double focal = Shared::focal(shared.data());
   for (std::size_t i = 0; i < result.size(); ++i) {
-    result[i] = motions[i].moved(poses[i].data());
+    if (std::find(input.held.begin(), input.held.end(), int(i)) == input.held.end())
+      result[i] = motions[i].moved(poses[i].data());
     Intrinsics& k = result[i].intrinsics;
     k.fx *= focal, k.fy *= focal, k.skew *= focal;
     k.cx += shared[1], k.cy += shared[2];

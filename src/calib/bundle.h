@@ -20,6 +20,7 @@ struct BundleInput {
   double prior_sigma = 10;         ///< pixels: how wrong the given cameras may well be
   SharedIntrinsics intrinsics = SharedIntrinsics::kNone;
   bool hold_poses = false;
+  std::vector<int> held;   ///< views whose poses stay, beside that
   glm::dvec3 middle{0.0};  ///< of the object; cameras turn about it
 };
 

@@ -1,6 +1,7 @@
 #include "calib/diagnose.h"
 
 #include <algorithm>
+#include <numbers>
 
 #include "calib/diagnose_parts.h"
 #include "core/error.h"
@@ -66,14 +67,24 @@ CameraDiagnosis diagnose_cameras(std::span<const View> views, const std::optiona
   return d;
 }
 
-std::vector<ViewFit> fit_silhouettes(std::span<const View> views) {
+std::vector<ViewFit> fit_silhouettes(std::span<const Camera> cameras, std::span<const View> views) {
   using namespace diagnosis;
-  Cameras cameras;
-  for (const View& view : views) cameras.push_back(view.camera);
+  PHOTOHULL_CHECK_OP(cameras.size(), ==, views.size());
   std::vector<ViewFit> fits(views.size());
-  find_disagreeing(evidence_of(cameras, frontier_pairs(cameras, outlines_of(views))),
+  find_disagreeing(evidence_of(Cameras(cameras.begin(), cameras.end()),
+                               frontier_pairs(cameras, outlines_of(views))),
                    ViewFit::By::kSilhouettes, fits);
   return fits;
+}
+
+std::vector<double> outlines_off(std::span<const Camera> cameras, std::span<const View> views) {
+  constexpr double kUnusual = 4;  // times what is usual: as where views disagree (find_disagreeing)
+  std::vector<double> off;
+  for (const ViewFit& fit : fit_silhouettes(cameras, views))
+    off.push_back(fit.residual > std::max(kSuspiciousTangents, kUnusual * fit.others)
+                      ? std::numbers::sqrt2 * fit.residual
+                      : 0);
+  return off;
 }
 
 }  // namespace photohull

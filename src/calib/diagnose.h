@@ -91,6 +91,16 @@ CameraDiagnosis diagnose_cameras(std::span<const View> views, const std::optiona
 
 /// Each view's silhouette against the others', by the tangents that planes through two cameras
 /// have in common (frontier_pairs). Needs no texture, and a tenth of a second.
-std::vector<ViewFit> fit_silhouettes(std::span<const View> views);
+/// `cameras`: one for each view, in place of the view's own.
+std::vector<ViewFit> fit_silhouettes(std::span<const Camera> cameras, std::span<const View> views);
+
+/// Pixels between tangents of outlines from which on cameras or masks look wrong.
+inline constexpr double kSuspiciousTangents = 0.25;
+
+/// Pixels by which the outline of each view is off what the others say (fit_silhouettes), for views
+/// that are off by more than kSuspiciousTangents and clearly more than is usual; else 0. A shift d
+/// moves a tangent by d |cos a|, where a is the angle between the shift and the tangent's normal;
+/// the median over all directions is d / sqrt(2).
+std::vector<double> outlines_off(std::span<const Camera> cameras, std::span<const View> views);
 
 }  // namespace photohull

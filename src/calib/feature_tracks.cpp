@@ -144,7 +144,8 @@ std::optional<PatchPlace> place_in(const Camera& a, const glm::dvec2& pixel, con
 /// Features of neighbouring views that are each other's best matches.
 std::vector<Match> match_all(std::span<const View> views, const std::vector<Features>& features,
                              const TrackOptions& options, Progress& progress) {
-  const std::vector<std::pair<int, int>> pairs = neighbour_pairs(views, options);
+  const std::vector<std::pair<int, int>> pairs =
+      options.pairs.empty() ? neighbour_pairs(views, options) : options.pairs;
   std::vector<std::vector<Match>> found(pairs.size());
   tbb::parallel_for(std::size_t(0), pairs.size(), [&](std::size_t p) {
     if (cancellation_requested()) return;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/image.h"
@@ -28,6 +29,8 @@ struct TrackOptions {
   double ratio = 0.8;         ///< of the best to the second-best descriptor's distance [Lowe04]
   int patch_radius = 7;       ///< pixels
   double least_agreement = 0.8;  ///< normalised cross-correlation of patches once they are aligned
+  /// Views that are matched, each pair once and ascending; empty: each one with its `neighbours`.
+  std::vector<std::pair<int, int>> pairs;
 };
 
 /// SIFT features [Lowe04] on the object (where views have masks), matched between neighbouring

@@ -5,9 +5,11 @@
 #include <cstring>
 #include <glm/gtc/packing.hpp>
 #include <map>
+#include <opencv2/imgproc.hpp>
 
 #include "calib/mask_lines.h"
 #include "core/error.h"
+#include "core/scaled_size.h"
 
 namespace photohull {
 namespace {
@@ -58,6 +60,17 @@ bool looks_inverted(const Mask& mask) {
          mean_coverage(mask, w / 3, h / 3, w - w / 3, h - h / 3) < 0.5;
 }
 
+/// A mask of another size over the same picture: coverage is averaged over the pixels' areas where
+/// the mask is larger, and interpolated where it is smaller.
+Mask resized(Mask& mask, int width, int height) {
+  Mask out{width, height, std::vector<std::uint8_t>(std::size_t(width) * height)};
+  const cv::Mat from(mask.height, mask.width, CV_8U, mask.coverage.data());
+  cv::Mat to(height, width, CV_8U, out.coverage.data());
+  cv::resize(from, to, to.size(), 0, 0,
+             mask.width > width ? cv::INTER_AREA : cv::INTER_LINEAR_EXACT);
+  return out;
+}
+
 const char* to_string(MaskOrigin origin) {
   switch (origin) {
     case MaskOrigin::kFile:
@@ -91,6 +104,8 @@ MaskOrigin take_given_mask(const SourceView& source, const ViewLoader& loader, V
   MaskOrigin origin = MaskOrigin::kNone;
   if (!source.mask.empty()) {
     view.mask = loader.mask(source.mask);
+    if (is_scaled_copy(view.mask.width, view.mask.height, view.image.width, view.image.height))
+      view.mask = resized(view.mask, view.image.width, view.image.height);
     if (view.mask.width != view.image.width || view.mask.height != view.image.height)
       throw Error(concat(source.mask.string(), ": the mask has ", view.mask.width, "x",
                          view.mask.height, " pixels but its picture has ", view.image.width, "x",

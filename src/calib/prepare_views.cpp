@@ -8,20 +8,58 @@
 #include "calib/masks.h"
 #include "calib/undistort.h"
 #include "core/error.h"
+#include "core/left_out.h"
 
 namespace photohull {
 namespace {
 
 constexpr double kDecodeShare = 0.6;  ///< of the stage's progress; masks and undistortion follow
 
-ColourImage load_image(const SourceView& source, const ViewLoader& loader) {
-  ColourImage image = loader.image(source.image);
+/// False with the decoder's words where the picture cannot be decoded.
+bool load_image(const SourceView& source, const ViewLoader& loader, ColourImage& image,
+                std::string& failure) {
+  try {
+    image = loader.image(source.image);
+  } catch (const MemoryError&) {
+    throw;
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error& error) {
+    failure = error.what();
+    const std::string path = source.image.string() + ": ";
+    if (failure.starts_with(path)) failure.erase(0, path.size());
+    return false;
+  }
   const Intrinsics& k = source.camera.intrinsics;
   if (image.width != k.width || image.height != k.height)
     throw Error(concat(source.image.string(), ": the picture has ", image.width, "x", image.height,
                        " pixels but its camera is for ", k.width, "x", k.height,
                        "; use the pictures that were calibrated"));
-  return image;
+  return true;
+}
+
+void leave_out_unreadable(const std::vector<std::string>& failures, bool strict, Scene& scene,
+                          std::vector<MaskOrigin>& origins, PreparedViews& prepared) {
+  std::vector<LeftOutView> unreadable;
+  std::vector<bool> keep;
+  std::vector<View> views;
+  std::vector<MaskOrigin> kept_origins;
+  for (std::size_t i = 0; i < failures.size(); ++i) {
+    const SourceView& source = scene.views[i];
+    keep.push_back(failures[i].empty());
+    if (!keep.back()) {
+      unreadable.push_back(
+          {source.name, source.image.string(), LeftOutView::Reason::kUnreadable, failures[i]});
+      continue;
+    }
+    views.push_back(std::move(prepared.views[i]));
+    kept_origins.push_back(origins[i]);
+  }
+  prepared.views = std::move(views);
+  origins = std::move(kept_origins);
+  keep_views(scene, keep);
+  const auto warnings = note_left_out(scene, unreadable, strict);
+  prepared.warnings.insert(prepared.warnings.end(), warnings.begin(), warnings.end());
 }
 
 /// Calls work(i) for every view in parallel, reports progress from `begin` to `end` and stops when
@@ -46,26 +84,29 @@ void PrepareOptions::validate() const {
     throw UsageError(concat("max_frame_growth must lie in [1, 8], not ", max_frame_growth));
 }
 
-PreparedViews prepare_views(const Scene& scene, const ViewLoader& loader,
-                            const PrepareOptions& options, Progress& progress) {
+PreparedViews prepare_views(Scene& scene, const ViewLoader& loader, const PrepareOptions& options,
+                            Progress& progress) {
   options.validate();
-  const std::size_t count = scene.views.size();
+  std::size_t count = scene.views.size();
   if (count == 0) throw Error(concat(scene.path.string(), ": lists no pictures"));
   const bool use_masks = options.masks != MaskPolicy::kNone;
   PreparedViews result;
   result.views.resize(count);
   std::vector<MaskOrigin> origins(count, MaskOrigin::kNone);
+  std::vector<std::string> failures(count);  // the decoder's words; empty: none
   for_each_view(count, 0.0, kDecodeShare, progress, [&](std::size_t i) {
     const SourceView& source = scene.views[i];
     View& view = result.views[i];
     view.name = source.name;
     view.camera = source.camera;
-    view.image = load_image(source, loader);
+    if (!load_image(source, loader, view.image, failures[i])) return;
     if (options.masks == MaskPolicy::kAuto && source.plate.empty())
       origins[i] = take_given_mask(source, loader, view);
     make_opaque(view.image);
   });
 
+  leave_out_unreadable(failures, options.strict, scene, origins, result);
+  count = scene.views.size();
   check_masks(result);
   result.masks.resize(count);
   if (use_masks) find_masks(scene, loader, options.cut_masks, origins, result);

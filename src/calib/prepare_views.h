@@ -30,6 +30,8 @@ struct PrepareOptions {
   /// Let OpenCV's GrabCut place the contour of masks made from the background where these leave
   /// doubt.
   bool cut_masks = false;
+  /// A picture that cannot be decoded is an error; else it is left out while enough remain.
+  bool strict = false;
   /// Undistorted pictures may reach at most this many times as far from the principal point as
   /// the photograph does: wide-angle corners would otherwise stretch without end. In [1, 8].
   double max_frame_growth = 2.0;
@@ -66,9 +68,10 @@ struct PreparedViews {
 /// Decodes in parallel (within the caller's task arena), checks sizes, finds masks and removes
 /// lens distortion. Undistorted pictures keep the focal length in pixels at the principal point
 /// and are resampled in linear light; views without distortion keep their bytes as decoded.
-/// Throws Error for a picture or mask whose size is wrong, for masks that are all empty or look
-/// inverted, and what the loader throws; Cancelled when asked to stop.
-PreparedViews prepare_views(const Scene& scene, const ViewLoader& loader,
-                            const PrepareOptions& options, Progress& progress);
+/// Views whose pictures cannot be decoded leave the scene, with a warning, as core/left_out.h has
+/// it. Throws Error when too many do, for a picture or mask whose size is wrong, for masks that are
+/// all empty or look inverted, and what the loader throws for masks; Cancelled when asked to stop.
+PreparedViews prepare_views(Scene& scene, const ViewLoader& loader, const PrepareOptions& options,
+                            Progress& progress);
 
 }  // namespace photohull

@@ -138,7 +138,7 @@ class Refiner {
       if (with_intrinsics || last) break;
       with_intrinsics = true;
     }
-    if (result.changed) cameras = fix_gauge(cameras);
+    if (result.changed && options_.held.empty()) cameras = fix_gauge(cameras);
     result.tracks = int(adjusting_.size() + judging_.size());
     report(cameras, result);
     result.cameras = std::move(cameras);
@@ -235,6 +235,7 @@ class Refiner {
     input.tangents = pairs;
     input.intrinsics = intrinsics;
     input.hold_poses = hold_poses;
+    input.held = options_.held;
     input.middle = middle_;
     input.prior_sigma = prior_sigma_;  // what neither tracks nor tangents determine stays as given
     return adjust_bundle(input, cameras, given_, shared);

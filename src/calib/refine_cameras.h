@@ -31,6 +31,9 @@ const char* to_string(TrackSource source);
 struct RefineCamerasOptions {
   SharedIntrinsics intrinsics = SharedIntrinsics::kNone;
   TrackSource source = TrackSource::kBoth;
+  /// Views whose cameras agree with one another: these stay as they are, and hold the others. Then
+  /// there is no gauge to fix. Not together with `intrinsics`.
+  std::vector<int> held;
   std::vector<Track> given;  ///< by another program (undistorted_tracks), in the views' pixels
   /// Where the object is. With it, and masks, patches of the hull's surface (patch_tracks) join
   /// where a view has few features.

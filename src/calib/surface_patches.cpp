@@ -43,6 +43,7 @@ class Hull {
   }
 
  private:
+  /// The outline at one half: lines do not count, for patches need surface several pixels wide.
   static bool is_filled(std::span<const Camera> cameras, std::span<const View> views,
                         const glm::dvec3& p) {
     constexpr int kEnough = 2;

@@ -16,9 +16,7 @@ using glm::dvec3;
 constexpr double kNear = 1.5;         // pixels from a vertex to a line that it belongs to, and
 constexpr double kNearVoxels = 1.25;  // voxels
 constexpr int kIterations = 4;
-constexpr double kRobust = 0.75;    // pixels: residuals beyond lose their weight
-constexpr double kShare = 1.0 / 3;  // of the views that see a place must show a line there
-constexpr int kFewest = 3;
+constexpr double kRobust = 0.75;        // pixels: residuals beyond lose their weight
 constexpr double kSheet = 0.04;         // of the largest eigenvalue: a direction that is not known
 constexpr double kStraight = 0.3;       // of the second one: lines that do not belong together
 constexpr double kDamping = 0.01;       // of the largest eigenvalue
@@ -147,7 +145,8 @@ struct Stem {
 
 class Fitter {
  public:
-  Fitter(std::span<const StemView> views, double voxel_size) : voxel_size_(voxel_size) {
+  Fitter(std::span<const StemView> views, double voxel_size, const StemOptions& options)
+      : voxel_size_(voxel_size), options_(options) {
     for (const StemView& view : views)
       if (view.mask && view.lines) views_.emplace_back(view);
     // So that a vertex beside no line costs a look at the views that have any.
@@ -164,7 +163,7 @@ class Fitter {
       Eigen::Vector3d right = Eigen::Vector3d::Zero();
       int seen = 0, shown = 0;
       for (const LineIndex& view : views_) {
-        if (view.view().lines->empty() && shown < kFewest) return stem;
+        if (view.view().lines->empty() && shown < options_.least_views) return stem;
         dvec2 pixel;
         double depth;
         if (!view.project(centre, pixel, depth)) continue;
@@ -183,7 +182,7 @@ class Fitter {
         normal += weight * row * row.transpose();
         right += weight * off * row;
       }
-      if (shown < kFewest || shown < kShare * seen) return stem;
+      if (shown < options_.least_views || shown < options_.least_share * seen) return stem;
       solver.computeDirect(normal);
       const auto values = solver.eigenvalues();
       const int known = values[1] < kSheet * values[2] ? 1 : 2;
@@ -229,11 +228,12 @@ class Fitter {
       if (!width) continue;
       sum += *width * scale, pixel_size += scale, ++count;
     }
-    if (count < kFewest) return 0;
+    if (count < options_.least_views) return 0;
     return std::max(0.5 * sum / count, kLeastRadius * pixel_size / count);
   }
 
   double voxel_size_;
+  StemOptions options_;
   std::vector<LineIndex> views_;
 };
 
@@ -284,11 +284,12 @@ dvec3 placed(const Stem& stem, const dvec3& vertex, const dvec3& normal) {
 
 }  // namespace
 
-std::size_t fit_stems(std::span<const StemView> views, double voxel_size, TriMesh& mesh) {
+std::size_t fit_stems(std::span<const StemView> views, double voxel_size, TriMesh& mesh,
+                      const StemOptions& options) {
   if (std::none_of(views.begin(), views.end(),
                    [](const StemView& v) { return v.lines && !v.lines->empty(); }))
     return 0;
-  const Fitter fitter(views, voxel_size);
+  const Fitter fitter(views, voxel_size, options);
   std::vector<Stem> stems(mesh.positions.size());
   tbb::parallel_for(std::size_t(0), stems.size(),
                     [&](std::size_t i) { stems[i] = fitter.fit(mesh.world(i)); });

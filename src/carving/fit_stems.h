@@ -19,13 +19,21 @@ struct StemView {
   const std::vector<LinePoint>* lines = nullptr;
 };
 
-/// Moves the vertices of parts that show as lines in a third of the views that see them, and in
-/// three at least, to where these lines say: the middle of a stem is the point nearest to the
-/// planes through the cameras and the lines, in pixels; its radius follows from the integral of the
-/// coverage across it, a mean over all views in which nothing else stands beside it. Sheets that
-/// show on edge in so many views move along their one known direction. `voxel_size` (world units)
-/// is how far off vertices may be. Faces, and with them what is connected, stay. Returns the number
-/// of vertices that moved; normals are not touched.
-std::size_t fit_stems(std::span<const StemView> views, double voxel_size, TriMesh& mesh);
+struct StemOptions {
+  /// Share of the views that see a place in which it must fall beside a line, and how many these
+  /// must be; above 1: nothing is a stem.
+  double least_share = 1.0 / 3;
+  int least_views = 3;
+};
+
+/// Moves the vertices of parts that show as lines in so many views to where these lines say: the
+/// middle of a stem is the point nearest to the planes through the cameras and the lines, in
+/// pixels; its radius follows from the integral of the coverage across it, a mean over all views in
+/// which nothing else stands beside it. Sheets that show on edge in so many views move along their
+/// one known direction. `voxel_size` (world units) is how far off vertices may be. Faces, and with
+/// them what is connected, stay. Returns the number of vertices that moved; normals are not
+/// touched.
+std::size_t fit_stems(std::span<const StemView> views, double voxel_size, TriMesh& mesh,
+                      const StemOptions& options = {});
 
 }  // namespace photohull::carving

@@ -6,6 +6,8 @@
 #include <set>
 #include <unordered_map>
 
+#include "core/error.h"
+
 namespace photohull::carving {
 namespace {
 
@@ -128,6 +130,13 @@ std::vector<std::size_t> find_joining(const SparseVolume& volume, std::span<cons
   for (const std::uint32_t joint : order)
     for (const std::uint32_t on_path : graph.take(joint)) joining.insert(on_path);
   return {joining.begin(), joining.end()};
+}
+
+void put(const Joint& joint, SparseVolume& volume) {
+  const std::uint32_t slot = volume.table[volume.grid.brick_index(joint.voxel / kBrickEdge)];
+  PHOTOHULL_CHECK_OP(slot, <, volume.bricks.size());
+  volume.distance[std::size_t(slot) * kBrickVoxels +
+                  std::size_t(voxel_offset(joint.voxel % kBrickEdge))] = joint.distance;
 }
 
 }  // namespace photohull::carving

@@ -1,4 +1,4 @@
-// Parts of a volume joined by the fewest voxels. Private to module carving.
+// Parts of a volume joined by the fewest voxels.
 #pragma once
 
 #include <span>
@@ -18,5 +18,8 @@ struct Joint {
 /// them: their indices, rising. Paths are those of the deepest joints, as in Kruskal's spanning
 /// tree, and at most some voxels long.
 std::vector<std::size_t> find_joining(const SparseVolume& volume, std::span<const Joint> joints);
+
+/// Puts a joint into the volume. Its brick must be there.
+void put(const Joint& joint, SparseVolume& volume);
 
 }  // namespace photohull::carving

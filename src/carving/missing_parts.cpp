@@ -27,6 +27,7 @@ constexpr int kLatticePlaces = 400;       // a view, about
 constexpr std::size_t kMostLines = 6000;  // a view
 constexpr int kNeighbourhood = 2;         // pixels around unexplained foreground that count as such
 constexpr double kSafety = 0.8;           // of the distance to an outline that a ray may skip
+constexpr double kFarthestSkip = 4;       // pixels: likelihoods change from place to place
 constexpr double kDeep = 0.1;             // pixels within an outline: there is nothing to mend
 constexpr double kRoom = 0.75;   // pixels around a part in the silhouettes that it is put into
 constexpr double kBorne = 0.35;  // pixels beside an outline that are no disagreement
@@ -132,9 +133,11 @@ class Searcher {
     if (!part) return std::nullopt;
     std::optional<MissingPart> best;
     double best_score = 0;
-    for (double t = part->first; t < part->second; t += seed.step * t * ray.footprint) {
+    for (double t = part->first, skip = 0; t < part->second;
+         t += std::max(skip, seed.step * t * ray.footprint)) {
       const dvec3 p = ray.at(t);
-      const double score = judge(p);
+      const double score = judge(p, skip);
+      skip = std::min(skip, kFarthestSkip * t * ray.footprint);
       if (!(score > best_score)) continue;
       best_score = score;
       best = MissingPart{p, seed.radius * t * ray.footprint};
@@ -220,19 +223,31 @@ class Searcher {
   }
 
   /// How many views show unexplained foreground at the point, less twice those that leave it out;
-  /// 0 where it must not be taken.
-  double judge(const dvec3& p) const {
+  /// 0 where it must not be taken. `skip`: the world distance within which the views that leave it
+  /// out go on doing so; 0: unknown.
+  double judge(const dvec3& p, double& skip) const {
     int seen = 0, support = 0;
-    double missing = 0;
+    double missing = 0, lasting = 0, lasts = INFINITY;  // lasting: by views that go on doing so
+    skip = 0;
     const double most = options_.most_missing * double(cameras_.size());
     for (std::size_t v = 0; v < cameras_.size(); ++v) {
       double depth = 0;
       const auto d = outline(v, p, depth);
       if (!d) continue;
       ++seen;
-      missing +=
-          background(v, p) * std::clamp((*d - kBorne) / (options_.full_miss - kBorne), 0.0, 1.0);
-      if (missing > most) return 0;
+      if (*d > kBorne) {
+        const double miss =
+            background(v, p) * std::min((*d - kBorne) / (options_.full_miss - kBorne), 1.0);
+        missing += miss;
+        if (const double far = *d - options_.full_miss; far > kBorne) {
+          lasting += miss;
+          lasts = std::min(lasts, kSafety * far * depth / cameras_[v].intrinsics.fx);
+        }
+        if (missing > most) {
+          if (lasting > most) skip = lasts;
+          return 0;
+        }
+      }
       support += is_marked(v, p);
     }
     if (seen < kFewestViews || missing > options_.most_missing * seen ||

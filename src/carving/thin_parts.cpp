@@ -137,8 +137,8 @@ double deepest(const Field& field, const ivec3& voxel, double start, dvec3& wher
   return best;
 }
 
-/// Voxels that hold a part of the hull which the volume does not have: those in valleys, or else
-/// the others on stems.
+/// Voxels that hold a part of the hull: those in valleys whose part the volume does not have, or
+/// else those on stems.
 std::vector<Joint> search(const Field& field, bool valleys, const SparseVolume& volume) {
   std::vector<std::vector<Joint>> found(volume.bricks.size());
   tbb::parallel_for(std::size_t(0), volume.bricks.size(), [&](std::size_t slot) {
@@ -146,22 +146,17 @@ std::vector<Joint> search(const Field& field, bool valleys, const SparseVolume& 
       const float value = volume.distance[slot * kBrickVoxels + std::size_t(i)];
       if (value <= 0 || value >= kReach) continue;
       const ivec3 voxel = volume.bricks[slot] * kBrickEdge + ivec3(i >> 6, (i >> 3) & 7, i & 7);
-      if (in_valley(volume, voxel, value) != valleys) continue;
-      if (!valleys && !field.on_stem(dvec3(voxel))) continue;
+      if (valleys ? !in_valley(volume, voxel, value) : !field.on_stem(dvec3(voxel))) continue;
       dvec3 where;
       const double depth = deepest(field, voxel, value, where);
-      if (depth < 0 && volume.interpolated(where) > 0) found[slot].push_back({voxel, float(depth)});
+      // Voxels that touch at an edge alone have a surface each, whatever is between their centres.
+      if (depth < 0 && (!valleys || volume.interpolated(where) > 0))
+        found[slot].push_back({voxel, float(depth)});
     }
   });
   std::vector<Joint> all;
   for (const std::vector<Joint>& list : found) all.insert(all.end(), list.begin(), list.end());
   return all;
-}
-
-void put(const Joint& joint, SparseVolume& volume) {
-  const std::uint32_t slot = volume.table[volume.grid.brick_index(joint.voxel / kBrickEdge)];
-  volume.distance[std::size_t(slot) * kBrickVoxels +
-                  std::size_t(voxel_offset(joint.voxel % kBrickEdge))] = joint.distance;
 }
 
 }  // namespace

@@ -33,6 +33,12 @@ class UsageError : public Error {
   explicit UsageError(const std::string& message) : Error(message, ExitCode::kUsage) {}
 };
 
+/// What would have been done does not fit into memory: no fault of the input (exit code 1).
+class MemoryError : public Error {
+ public:
+  explicit MemoryError(const std::string& message) : Error(message) {}
+};
+
 /// Thrown at the next safe point after the user asked to stop (exit code 130).
 class Cancelled : public Error {
  public:

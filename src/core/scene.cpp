@@ -42,4 +42,16 @@ const char* to_string(SceneFormat format) {
   return "unknown";
 }
 
+const char* to_string(LeftOutView::Reason reason) {
+  switch (reason) {
+    case LeftOutView::Reason::kMissing:
+      return "missing";
+    case LeftOutView::Reason::kUnreadable:
+      return "unreadable";
+    case LeftOutView::Reason::kSize:
+      return "shape";
+  }
+  return "unknown";
+}
+
 }  // namespace photohull

@@ -54,7 +54,23 @@ struct SceneTrack {
   std::vector<Observation> observations;  ///< two or more, by ascending view
 };
 
-/// Immutable result of io::load_scene.
+/// A photograph that a scene lists and that cannot be used (core/left_out.h).
+struct LeftOutView {
+  enum class Reason {
+    kMissing,     ///< there is no such file
+    kUnreadable,  ///< it is no image, or damaged
+    kSize         ///< it is no scaled copy of the photograph that its camera is for
+  };
+  std::string name;   ///< as SourceView's
+  std::string where;  ///< opens error messages: the scene's file and line, or the image's path
+  Reason reason = Reason::kMissing;
+  std::string detail;  ///< where was looked for it, what the decoder said, or the sizes
+};
+
+/// "missing", "unreadable" or "shape".
+const char* to_string(LeftOutView::Reason reason);
+
+/// Result of io::load_scene; only what leaves views out changes it (core/left_out.h).
 struct Scene {
   std::filesystem::path path;
   SceneFormat format = SceneFormat::kMiddlebury;
@@ -63,6 +79,12 @@ struct Scene {
   std::vector<SceneTrack> tracks;  ///< features that the file lists, as another program found them
   std::optional<Box> box;          ///< region of interest, world
   std::string box_source;          ///< e.g. "bbox.txt", "README.txt", "--box", "sparse points"
+  /// Names of all views that the file lists, in its order, used or not: what indices count in.
+  std::vector<std::string> listed;
+  std::vector<LeftOutView> left_out;  ///< chosen and not usable
+  double usable_share = 1;            ///< of the photographs that were chosen; (0, 1]
+  int scaled = 0;       ///< views whose cameras were scaled to photographs of another size
+  int passed_over = 0;  ///< usable views that were not taken, for others show the same
   std::vector<std::string> warnings;
 };
 

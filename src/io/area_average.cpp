@@ -17,19 +17,20 @@ int count(double extent, double ratio) {
 
 }  // namespace
 
-AreaAverage::AreaAverage(double width, double height, double ratio, int channels, Emit emit)
+AreaAverage::AreaAverage(double width, double height, const glm::dvec2& ratio, int channels,
+                         Emit emit)
     : source_height_(height),
-      ratio_(ratio),
+      ratio_(ratio.y),
       channels_(channels),
-      width_(count(width, ratio)),
-      height_(count(height, ratio)),
+      width_(count(width, ratio.x)),
+      height_(count(height, ratio.y)),
       emit_(std::move(emit)),
       spans_(std::size_t(width_)),
       narrow_(std::size_t(width_) * std::size_t(channels)),
       sum_(narrow_.size(), 0.0f) {
-  PHOTOHULL_CHECK(width > 0 && height > 0 && ratio >= 1 && channels > 0);
+  PHOTOHULL_CHECK(width > 0 && height > 0 && ratio.x > 0 && ratio.y > 0 && channels > 0);
   for (int i = 0; i < width_; ++i) {
-    const double left = i * ratio, right = std::min((i + 1) * ratio, width);
+    const double left = i * ratio.x, right = std::min((i + 1) * ratio.x, width);
     Span& span = spans_[std::size_t(i)];
     span.first = int(left + kRounding);
     for (double x = span.first; x < right - kRounding; x += 1)

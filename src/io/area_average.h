@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <glm/glm.hpp>
 #include <vector>
 
 namespace photohull::io {
@@ -15,8 +16,8 @@ class AreaAverage {
   using Emit = std::function<void(const float* row)>;
 
   /// `width` x `height` is the extent of the rows to come in their own pixels; their last one may
-  /// stand out of it. `ratio` >= 1: side of a smaller pixel in them.
-  AreaAverage(double width, double height, double ratio, int channels, Emit emit);
+  /// stand out of it. `ratio`: sides of a smaller pixel in them, x and y, above 0.
+  AreaAverage(double width, double height, const glm::dvec2& ratio, int channels, Emit emit);
 
   int width() const { return width_; }
   int height() const { return height_; }
@@ -30,7 +31,7 @@ class AreaAverage {
     std::vector<float> weights;
   };
 
-  double source_height_, ratio_;
+  double source_height_, ratio_;  // of rows
   int channels_, width_, height_;
   Emit emit_;
   std::vector<Span> spans_;

@@ -22,16 +22,6 @@ fs::path existing(const fs::path& path) {
   return is_file(tidy) ? tidy : is_file(path) ? path : fs::path();
 }
 
-fs::path find_listed(const std::string& listed, const std::vector<fs::path>& folders) {
-  for (const fs::path& folder : folders)
-    for (const char* extension :
-         {"", ".png", ".jpg", ".jpeg", ".PNG", ".JPG", ".tif", ".tiff", ".exr"}) {
-      const fs::path found = existing(folder / (listed + extension));
-      if (!found.empty()) return found;
-    }
-  return {};
-}
-
 std::string lower(std::string text) {
   for (char& c : text) c = char(std::tolower(static_cast<unsigned char>(c)));
   return text;
@@ -77,12 +67,22 @@ std::vector<fs::path> images_in(const fs::path& folder) {
   return found;
 }
 
+fs::path find_listed_image(const std::string& listed, const std::vector<fs::path>& folders) {
+  for (const fs::path& folder : folders)
+    for (const char* extension :
+         {"", ".png", ".jpg", ".jpeg", ".PNG", ".JPG", ".tif", ".tiff", ".exr"}) {
+      const fs::path found = existing(folder / (listed + extension));
+      if (!found.empty()) return found;
+    }
+  return {};
+}
+
 fs::path find_image(const std::string& listed, const std::vector<fs::path>& folders) {
-  const fs::path found = find_listed(listed, folders);
+  const fs::path found = find_listed_image(listed, folders);
   if (!found.empty()) return found;
   // Paths of Windows' programs come with backslashes.
   const std::string name = listed.substr(listed.find_last_of("/\\") + 1);
-  return name == listed || name.empty() ? fs::path() : find_listed(name, folders);
+  return name == listed || name.empty() ? fs::path() : find_listed_image(name, folders);
 }
 
 std::string file_head(const fs::path& file, std::size_t bytes) {

@@ -22,7 +22,11 @@ std::filesystem::path only_file_ending(const std::filesystem::path& folder,
 std::vector<std::filesystem::path> images_in(const std::filesystem::path& folder);
 
 /// The file that a listed name means, with or without an extension, relative to one of the
-/// folders; else, since files name paths of other machines, a file of the same name alone in one
+/// folders. Empty when there is none.
+std::filesystem::path find_listed_image(const std::string& listed,
+                                        const std::vector<std::filesystem::path>& folders);
+
+/// The same; else, since files name paths of other machines, a file of the same name alone in one
 /// of them. Empty when it is nowhere.
 std::filesystem::path find_image(const std::string& listed,
                                  const std::vector<std::filesystem::path>& folders);

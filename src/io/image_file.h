@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <glm/glm.hpp>
 #include <span>
 
 #include "core/atomic_file.h"
@@ -32,7 +33,8 @@ ImageSize read_image_size(const std::filesystem::path& path);
 ///
 /// Alpha is straight: where a file stores colours multiplied by alpha they are divided by it.
 /// Throws Error naming the file when it is missing, damaged, of another pixel type, cropped
-/// (OpenEXR data window unlike the display window) or larger than kMaxImagePixels.
+/// (OpenEXR data window unlike the display window) or larger than kMaxImagePixels; MemoryError
+/// where there is no memory for its pixels.
 ColourImage read_image(const std::filesystem::path& path);
 
 /// Decodes a mask from an image of any channel count: its alpha where that varies over the image,
@@ -48,6 +50,8 @@ Mask read_mask(const std::filesystem::path& path);
 ColourImage read_image(const std::filesystem::path& path, double scale);
 /// Coverage in the mean over each of the result's pixels, so that its sum over the object is kept.
 Mask read_mask(const std::filesystem::path& path, double scale);
+/// Of scales for x and y, above 0: masks that are scaled copies of their photographs' size.
+Mask read_mask(const std::filesystem::path& path, const glm::dvec2& scale);
 
 /// Writes an 8-bit PNG; `bytes` holds width * height * channels values, row-major from the
 /// top-left; 1 to 4 channels: grey, grey + alpha, RGB, RGBA, alpha straight. The file appears whole

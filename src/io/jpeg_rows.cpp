@@ -3,6 +3,7 @@
 #include <csetjmp>
 #include <cstdio>
 
+#include <jerror.h>
 #include <jpeglib.h>
 
 #include "core/error.h"
@@ -82,6 +83,7 @@ JpegRows::~JpegRows() = default;
 
 int JpegRows::width() const { return state_->opened ? int(state_->jpeg.output_width) : 0; }
 int JpegRows::height() const { return state_->opened ? int(state_->jpeg.output_height) : 0; }
+bool JpegRows::out_of_memory() const { return state_->manager.msg_code == JERR_OUT_OF_MEMORY; }
 const std::string& JpegRows::error() const { return state_->error; }
 
 bool JpegRows::read_row(std::uint8_t* rgba) {

@@ -25,6 +25,8 @@ class JpegRows {
   /// After the last row: was the file whole?
   bool finish();
   const std::string& error() const;
+  /// Was it for want of memory, not for damage?
+  bool out_of_memory() const;
 
  private:
   struct State;

@@ -1,90 +1,27 @@
 #include "io/load_scene.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
-#include <map>
 
 #include "core/error.h"
-#include "io/camera_checks.h"
-#include "io/find_files.h"
+#include "core/left_out.h"
 #include "io/find_scene.h"
 #include "io/formats.h"
-#include "io/image_file.h"
 #include "io/raw_scene.h"
 #include "io/scene_box.h"
 #include "io/scene_masks.h"
 #include "io/scene_readers.h"
 #include "io/select_views.h"
+#include "io/spread_views.h"
 #include "io/text_file.h"
+#include "io/usable_views.h"
 
 namespace photohull::io {
 namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kFewestViews = 2;
-
-/// Throws Error when two views share an image.
-void reject_duplicates(const RawScene& raw, const std::vector<fs::path>& images) {
-  std::map<fs::path, std::size_t> seen;
-  for (std::size_t i = 0; i < raw.views.size(); ++i) {
-    const fs::path& key =
-        images[i].empty() ? fs::path(raw.views[i].listed).lexically_normal() : images[i];
-    const auto [earlier, fresh] = seen.emplace(key, i);
-    if (!fresh)
-      throw Error(concat(raw.views[i].where, ": the image ", raw.views[i].listed,
-                         " is listed twice (first in ", raw.views[earlier->second].where,
-                         "); remove one"));
-  }
-}
-
-/// File names where they tell the views apart, else the paths as listed.
-std::vector<std::string> view_names(const RawScene& raw, const std::vector<fs::path>& images) {
-  std::vector<std::string> names, paths;
-  for (std::size_t i = 0; i < raw.views.size(); ++i) {
-    const fs::path listed = fs::path(raw.views[i].listed).lexically_normal();
-    const fs::path& named = images[i].empty() ? listed : images[i];
-    names.push_back(named.filename().string());
-    paths.push_back((listed.parent_path() / named.filename()).generic_string());
-  }
-  std::vector<std::string> sorted = names;
-  std::sort(sorted.begin(), sorted.end());
-  return std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end() ? names : paths;
-}
-
-[[noreturn]] void report_missing_image(const RawScene& raw, const RawView& view) {
-  std::string folders;
-  for (const fs::path& folder : raw.image_folders)
-    folders += (folders.empty() ? "" : ", ") + (folder / "").lexically_normal().string();
-  throw Error(concat(view.where, ": the image ", view.listed, " was not found (looked in ", folders,
-                     "); put it there or leave the view out with --views"));
-}
-
-/// Focal lengths from fields of view, where the file states those; needs the image's size.
-void complete_focal_lengths(const RawView& raw, Intrinsics& k) {
-  if (k.fx == 0 && raw.angle_x > 0) k.fx = 0.5 * k.width / std::tan(0.5 * raw.angle_x);
-  if (k.fy == 0 && raw.angle_y > 0) k.fy = 0.5 * k.height / std::tan(0.5 * raw.angle_y);
-  if (k.fx == 0) k.fx = k.fy;
-  if (k.fy == 0) k.fy = k.fx;
-}
-
-Camera complete_camera(const RawView& raw, const fs::path& image, double pixel_center) {
-  Camera camera = raw.camera;
-  Intrinsics& k = camera.intrinsics;
-  const ImageSize size = read_image_size(image);
-  if ((k.width != 0 && k.width != size.width) || (k.height != 0 && k.height != size.height))
-    throw Error(concat(raw.where, ": the image size is stated as ", k.width, " x ", k.height,
-                       ", but ", image.string(), " is ", size.width, " x ", size.height,
-                       "; use the images that the cameras were calibrated with"));
-  k.width = size.width;
-  k.height = size.height;
-  complete_focal_lengths(raw, k);
-  // An unstated principal point is the image's centre, whatever the file's pixel convention.
-  k.cx = std::isnan(k.cx) ? 0.5 * (k.width - 1) : k.cx - pixel_center;
-  k.cy = std::isnan(k.cy) ? 0.5 * (k.height - 1) : k.cy - pixel_center;
-  check_camera(camera, raw.distortion, raw.where);
-  return camera;
-}
+constexpr const char* kAllViews = "all";
 
 void choose_box(const LoadSceneOptions& options, const fs::path& given, const RawScene& raw,
                 Scene& scene) {
@@ -107,15 +44,27 @@ void choose_box(const LoadSceneOptions& options, const fs::path& given, const Ra
   }
 }
 
-/// Indices of the views to keep.
-std::vector<std::size_t> kept_views(const LoadSceneOptions& options,
-                                    const std::vector<std::string>& names) {
-  std::vector<std::size_t> kept = select_views(options.views, names), left_out, rest;
+/// Indices of the views that were chosen, hold-outs and all that --views leaves out gone.
+std::vector<std::size_t> chosen_views(const LoadSceneOptions& options,
+                                      const std::vector<std::string>& names) {
+  const bool named_all = std::find(names.begin(), names.end(), kAllViews) != names.end();
+  const bool all = (options.views == kAllViews && !named_all) || parse_spread(options.views);
+  std::vector<std::size_t> kept = select_views(all ? "" : options.views, names), left_out, rest;
   if (options.hold_out.empty()) return kept;
   left_out = select_views(options.hold_out, names, "--hold-out");
   std::set_difference(kept.begin(), kept.end(), left_out.begin(), left_out.end(),
                       std::back_inserter(rest));
   return rest;
+}
+
+/// Where a feature is in the photograph, which may be a scaled copy of the one that the file means.
+glm::dvec2 track_pixel(const RawScene& raw, const RawView& stated, const SourceView& view,
+                       double pixel_center, const glm::dvec2& pixel) {
+  const Intrinsics &from = stated.camera.intrinsics, &k = view.camera.intrinsics;
+  const glm::dvec2 factor(from.width > 0 ? double(k.width) / from.width : 1,
+                          from.height > 0 ? double(k.height) / from.height : 1);
+  return raw.track_origin == TrackOrigin::kPrincipal ? factor * pixel + glm::dvec2(k.cx, k.cy)
+                                                     : factor * (pixel - pixel_center + 0.5) - 0.5;
 }
 
 /// Tracks of the views that are kept: kept[i] is the raw index of the scene's view i.
@@ -128,11 +77,9 @@ void fill_tracks(const RawScene& raw, const std::vector<std::size_t>& kept, doub
     for (const RawTrack::Observation& o : track.observations) {
       const int view = index[o.view];
       if (view < 0) continue;
-      const Intrinsics& k = scene.views[std::size_t(view)].camera.intrinsics;
-      const glm::dvec2 origin = raw.track_origin == TrackOrigin::kPrincipal
-                                    ? glm::dvec2(k.cx, k.cy)
-                                    : glm::dvec2(-pixel_center);
-      found.observations.push_back({view, o.pixel + origin});
+      found.observations.push_back(
+          {view, track_pixel(raw, raw.views[o.view], scene.views[std::size_t(view)], pixel_center,
+                             o.pixel)});
     }
     auto& o = found.observations;
     std::stable_sort(o.begin(), o.end(),
@@ -144,35 +91,80 @@ void fill_tracks(const RawScene& raw, const std::vector<std::size_t>& kept, doub
   }
 }
 
-/// Views selected by the options, their images found and their cameras completed.
-std::vector<RawView> fill_views(const LoadSceneOptions& options, const RawScene& raw,
-                                Scene& scene) {
-  std::vector<fs::path> images;
-  for (const RawView& view : raw.views)
-    images.push_back(find_image(view.listed, raw.image_folders));
-  reject_duplicates(raw, images);
-  const std::vector<std::string> names = view_names(raw, images);
-  std::vector<RawView> selected;
-  const std::vector<std::size_t> kept = kept_views(options, names);
-  const double center = options.pixel_center.value_or(raw.pixel_center);
-  for (const std::size_t i : kept) {
-    const RawView& view = raw.views[i];
-    if (images[i].empty()) report_missing_image(raw, view);
-    scene.views.push_back({names[i],
-                           images[i],
-                           {},
-                           complete_camera(view, images[i], center),
-                           view.distortion,
-                           view.silhouette});
-    selected.push_back(view);
-  }
-  if (scene.views.size() < kFewestViews)
-    throw Error(concat(raw.file.string(), ": ", scene.views.size(),
+void note_scaled(const RawView& stated, const SourceView& view, Scene& scene) {
+  const Intrinsics &from = stated.camera.intrinsics, &k = view.camera.intrinsics;
+  scene.warnings.push_back(
+      concat(scene.scaled, " of ", scene.views.size(),
+             " photographs are scaled copies of those that the cameras are for (", view.name,
+             " is ", k.width, " x ", k.height, ", its camera is for ", from.width, " x ",
+             from.height, "): the cameras were scaled with them"));
+}
+
+/// Fills the scene with those of the chosen views whose photographs can be used; raw indices.
+std::vector<std::size_t> fill_usable(const LoadSceneOptions& options, const RawScene& raw,
+                                     double pixel_center, Scene& scene) {
+  const Photographs photographs = find_photographs(raw);
+  scene.listed = photographs.names;
+  const std::vector<std::size_t> chosen = chosen_views(options, photographs.names);
+  if (chosen.size() < kFewestViews)
+    throw Error(concat(raw.file.string(), ": ", chosen.size(),
                        !options.hold_out.empty() ? " views are left by --hold-out"
                        : options.views.empty()   ? " views are listed"
                                                  : " views are selected",
                        ", but at least ", kFewestViews, " are needed"));
-  fill_tracks(raw, kept, center, scene);
+  std::vector<std::size_t> usable;
+  std::vector<LeftOutView> left_out;
+  std::optional<std::size_t> first_scaled;
+  for (const std::size_t i : chosen) {
+    CheckedView checked = check_view(raw, i, photographs, pixel_center);
+    if (!checked.view) {
+      left_out.push_back(std::move(checked.left_out));
+      continue;
+    }
+    if (checked.scaled && scene.scaled++ == 0) first_scaled = usable.size();
+    scene.views.push_back(std::move(*checked.view));
+    usable.push_back(i);
+  }
+  const auto warnings = note_left_out(scene, left_out, options.strict);
+  scene.warnings.insert(scene.warnings.end(), warnings.begin(), warnings.end());
+  if (first_scaled)
+    note_scaled(raw.views[usable[*first_scaled]], scene.views[*first_scaled], scene);
+  return usable;
+}
+
+/// Keeps as many of the views as were asked for; where nothing was said, not more than are worth
+/// their time.
+void thin_out(const LoadSceneOptions& options, std::vector<std::size_t>& usable, Scene& scene) {
+  const std::size_t all = usable.size();
+  const bool unasked = options.views.empty() && options.most_views > 0 && all > options.most_views;
+  const std::size_t count =
+      unasked ? options.most_views : parse_spread(options.views).value_or(all);
+  if (count >= all) return;
+  std::vector<SourceView> views;
+  std::vector<std::size_t> kept;
+  for (const std::size_t i : spread_views(scene.views, scene.box, count)) {
+    views.push_back(std::move(scene.views[i]));
+    kept.push_back(usable[i]);
+  }
+  scene.passed_over = int(all - count);
+  scene.views = std::move(views);
+  usable = std::move(kept);
+  if (unasked)
+    scene.warnings.push_back(concat(count, " of ", all,
+                                    " photographs are used, spread over all directions: more "
+                                    "would add little but time (--views all takes all, --views "
+                                    "spread:N another number)"));
+}
+
+/// Views chosen by the options, with their photographs, cameras and tracks.
+std::vector<RawView> fill_views(const LoadSceneOptions& options, const RawScene& raw,
+                                Scene& scene) {
+  const double center = options.pixel_center.value_or(raw.pixel_center);
+  std::vector<std::size_t> usable = fill_usable(options, raw, center, scene);
+  thin_out(options, usable, scene);
+  fill_tracks(raw, usable, center, scene);
+  std::vector<RawView> selected;
+  for (const std::size_t i : usable) selected.push_back(raw.views[i]);
   return selected;
 }
 
@@ -186,6 +178,7 @@ RawScene read_calibrated(const fs::path& path, const CalibratedImages& images) {
 }  // namespace
 
 void LoadSceneOptions::validate() const {
+  parse_spread(views);
   if (pixel_center && *pixel_center != 0.0 && *pixel_center != 0.5 && *pixel_center != 1.0)
     throw UsageError(concat("--pixel-center ", *pixel_center, ": expected 0, 0.5 or 1"));
   if (masks == MaskSource::kDirectory && mask_directory.empty())
@@ -214,10 +207,10 @@ Scene load_scene(const fs::path& path, const LoadSceneOptions& options) {
   scene.format = raw.format;
   scene.warnings = location.warnings;
   scene.warnings.insert(scene.warnings.end(), raw.warnings.begin(), raw.warnings.end());
+  choose_box(options, path, raw, scene);
   const std::vector<RawView> selected = fill_views(options, raw, scene);
   attach_masks(options, raw.file.parent_path(), selected, scene);
   attach_plates(options, selected, scene);
-  choose_box(options, path, raw, scene);
   scene.points = std::move(raw.points);
   return scene;
 }

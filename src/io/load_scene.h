@@ -51,14 +51,25 @@ struct LoadSceneOptions {
   /// the background; excludes kNone and kDirectory.
   std::filesystem::path background;
   /// Views to keep, e.g. "0-10,15,templeR0003.png,left_*": indices in file order from 0, inclusive
-  /// ranges, names, shell patterns. Empty: all.
+  /// ranges, names, shell patterns; "spread:N": N of the usable ones (spread_views.h); "all".
+  /// Empty: all, or `most_views`.
   std::string views;
   /// Views to leave out of these, a list of the same kind over all views of the scene. Empty: none.
   std::string hold_out;
+  /// Where `views` is empty and more photographs can be used, so many of them are taken
+  /// (spread_views.h), with a warning. 0: all.
+  std::size_t most_views = 0;
+  /// No photograph may be missing, unreadable or of another shape: else they are left out, with a
+  /// warning, while enough remain (core/left_out.h).
+  bool strict = false;
 
   /// Throws UsageError naming the field and its legal values.
   void validate() const;
 };
+
+/// What `most_views` is for commands that reconstruct: more cost time and add nothing, as measured
+/// in docs/benchmarks.md, "How many views".
+inline constexpr std::size_t kEnoughViews = 120;
 
 /// Reads a scene from a folder or from the file that lists its views, in any SceneFormat
 /// (docs/formats.md).
@@ -66,7 +77,9 @@ struct LoadSceneOptions {
 /// rotations are exactly orthonormal. Image and mask sizes are read from the files' headers, no
 /// pixel is decoded. The box is, in this order: options.box, bbox.txt in the scene's folder, the
 /// scene file's own (aabb), README.txt of a Middlebury scene, or for COLMAP the extent of the
-/// sparse points (scene_box.h). Throws Error naming file, line or field for whatever is missing,
+/// sparse points (scene_box.h). Cameras are scaled to photographs that are scaled copies of those
+/// that they are for, and photographs that cannot be used are left out (usable_views.h,
+/// core/left_out.h). Throws Error naming file, line or field for whatever else is missing,
 /// inconsistent or not finite.
 Scene load_scene(const std::filesystem::path& path, const LoadSceneOptions& options = {});
 

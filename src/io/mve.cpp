@@ -8,11 +8,11 @@
 #include "core/error.h"
 #include "io/camera_checks.h"
 #include "io/find_files.h"
-#include "io/image_file.h"
 #include "io/natural_less.h"
 #include "io/pose_parts.h"
 #include "io/scene_readers.h"
 #include "io/text_file.h"
+#include "io/usable_views.h"
 #include "io/write_scene_parts.h"
 
 namespace photohull::io {
@@ -104,10 +104,10 @@ std::optional<RawView> read_view(const fs::path& folder) {
   if (!(focal > 0) || !(aspect > 0))
     throw Error(view.where + ": focal_length and pixel_aspect must be positive");
   const fs::path image = find_photograph(folder);
-  if (image.empty())
-    throw Error(concat(folder.string(), ": there is no image undistorted.* or original.*"));
-  view.listed = (folder.filename() / image.filename()).string();
-  const ImageSize size = read_image_size(image);
+  // Where there is none, load_scene says so.
+  const std::string name = image.empty() ? "undistorted" : image.filename().string();
+  view.listed = (folder.filename() / name).string();
+  const ImageSize size = image_size_or_none(image);
   const glm::dvec2 unit = focal_unit(size.width, size.height, aspect);
   view.camera.intrinsics = {size.width,
                             size.height,

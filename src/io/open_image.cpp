@@ -107,8 +107,8 @@ std::uint8_t luminance(std::uint8_t r, std::uint8_t g, std::uint8_t b) {
 }
 
 void out_of_memory(const OpenImage& file) {
-  throw Error(concat(file.path.string(), ": there is not enough memory for ", file.spec.width,
-                     " x ", file.spec.height, " pixels; scale the image down"));
+  throw MemoryError(concat(file.path.string(), ": there is not enough memory for ", file.spec.width,
+                           " x ", file.spec.height, " pixels; scale the image down"));
 }
 
 }  // namespace photohull::io

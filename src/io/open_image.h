@@ -43,7 +43,7 @@ OpenImage open_image(const std::filesystem::path& path);
 /// Throws Error: pixels of a type that is not read.
 [[noreturn]] void unsupported(const OpenImage& file);
 
-/// Throws Error: there is no memory for the file's pixels.
+/// Throws MemoryError: there is no memory for the file's pixels.
 [[noreturn]] void out_of_memory(const OpenImage& file);
 
 /// Does the file say that its values are linear light?

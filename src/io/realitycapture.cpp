@@ -11,10 +11,10 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "io/find_files.h"
-#include "io/image_file.h"
 #include "io/pose_parts.h"
 #include "io/scene_readers.h"
 #include "io/text_file.h"
+#include "io/usable_views.h"
 #include "io/write_scene_parts.h"
 
 namespace photohull::io {
@@ -112,7 +112,8 @@ class Reader {
     // view cannot be used anyway, which load_scene says.
     const fs::path image = find_image(view.listed, scene_.image_folders);
     if (image.empty()) return view;
-    const ImageSize size = read_image_size(image);
+    const ImageSize size = image_size_or_none(image);
+    if (size.width == 0) return view;
     const double unit = std::max(size.width, size.height) / kFrame;
     k.fx *= unit;
     k.fy = k.fx;

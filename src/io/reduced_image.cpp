@@ -131,7 +131,7 @@ template <typename T, typename ToLinear>
 void average_rows(OpenImage& file, OIIO::TypeDesc type, const ToLinear& to_linear, double scale,
                   ColourImage& image) {
   const int width = file.spec.width, channels = file.layout.channels;
-  AreaAverage average(width, file.spec.height, 1 / scale, 4, Writer(image));
+  AreaAverage average(width, file.spec.height, glm::dvec2(1 / scale), 4, Writer(image));
   std::vector<float> linear(4 * std::size_t(width));
   for_each_row<T>(file, type, [&](int, const T* in) {
     for (int x = 0; x < width; ++x, in += channels) to_linear(in, &linear[4 * std::size_t(x)]);
@@ -146,29 +146,34 @@ int jpeg_reduction(double scale) {
   return reduction;
 }
 
+[[noreturn]] void refuse(const OpenImage& file, const JpegRows& rows) {
+  if (rows.out_of_memory()) out_of_memory(file);
+  damaged(file, rows.error());
+}
+
 void decode_jpeg(const OpenImage& file, double scale, ColourImage& image) {
   const int reduction = jpeg_reduction(scale);
   JpegRows rows(file.path, reduction);
-  if (!rows.width()) damaged(file, rows.error());
+  if (!rows.width()) refuse(file, rows);
   PHOTOHULL_CHECK_OP(rows.width(), ==, scaled_length(file.spec.width, 1.0 / reduction));
   std::vector<std::uint8_t> row(4 * std::size_t(rows.width()));
   if (reduction * scale == 1) {  // as libjpeg has them, without a detour through linear light
     image.bytes.resize(row.size() * std::size_t(image.height));
     for (int y = 0; y < image.height; ++y)
-      if (!rows.read_row(&image.bytes[row.size() * std::size_t(y)])) damaged(file, rows.error());
+      if (!rows.read_row(&image.bytes[row.size() * std::size_t(y)])) refuse(file, rows);
   } else {
     const std::vector<float>& curve = linear_light<256>();
     std::vector<float> linear(row.size(), 1.0f);
     AreaAverage average(double(file.spec.width) / reduction, double(file.spec.height) / reduction,
-                        1 / (scale * reduction), 4, Writer(image));
+                        glm::dvec2(1 / (scale * reduction)), 4, Writer(image));
     for (int y = 0; y < rows.height(); ++y) {
-      if (!rows.read_row(row.data())) damaged(file, rows.error());
+      if (!rows.read_row(row.data())) refuse(file, rows);
       for (std::size_t i = 0; i < row.size(); i += 4)
         for (std::size_t c = 0; c < 3; ++c) linear[i + c] = curve[row[i + c]];
       average.add(linear.data());
     }
   }
-  if (!rows.finish()) damaged(file, rows.error());
+  if (!rows.finish()) refuse(file, rows);
 }
 
 bool is_plain_jpeg(const OpenImage& file) {
@@ -209,12 +214,12 @@ float quantised(float value) {
 
 /// Alpha and luminance side by side: which of them is the mask is known at the end.
 template <typename T>
-Mask average_mask(OpenImage& file, OIIO::TypeDesc type, double scale) {
+Mask average_mask(OpenImage& file, OIIO::TypeDesc type, const glm::dvec2& scale) {
   const Layout& layout = file.layout;
   const int width = file.spec.width;
   std::vector<std::uint8_t> alpha, colour;
-  AreaAverage average(width, file.spec.height, 1 / scale, 2, [&](const float* row) {
-    for (int x = 0; x < scaled_length(width, scale); ++x) {
+  AreaAverage average(width, file.spec.height, 1.0 / scale, 2, [&](const float* row) {
+    for (int x = 0; x < average.width(); ++x) {
       alpha.push_back(std::uint8_t(row[2 * x] + 0.5f));
       colour.push_back(std::uint8_t(row[2 * x + 1] + 0.5f));
     }
@@ -252,8 +257,10 @@ ColourImage read_image(const fs::path& path, double scale) {
   return image;
 }
 
-Mask read_mask(const fs::path& path, double scale) {
-  if (scale == 1) return read_mask(path);
+Mask read_mask(const fs::path& path, double scale) { return read_mask(path, glm::dvec2(scale)); }
+
+Mask read_mask(const fs::path& path, const glm::dvec2& scale) {
+  if (scale == glm::dvec2(1)) return read_mask(path);
   OpenImage file = open_image(path);
   try {
     return file.spec.format == OIIO::TypeDesc::UINT8

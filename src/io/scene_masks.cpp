@@ -45,9 +45,12 @@ fs::path masks_folder(const fs::path& scene_folder, const fs::path& image) {
   return found == candidates.end() ? fs::path() : *found;
 }
 
-void check_mask_size(const SourceView& view) {
+/// A mask may also have the size that its image's camera is for, where the image is a copy of
+/// another size: it is scaled when it is read.
+void check_mask_size(const RawView& raw, const SourceView& view) {
   const ImageSize size = read_image_size(view.mask);
-  const Intrinsics& k = view.camera.intrinsics;
+  const Intrinsics &k = view.camera.intrinsics, &stated = raw.camera.intrinsics;
+  if (size.width == stated.width && size.height == stated.height) return;
   if (size.width != k.width || size.height != k.height)
     throw Error(concat(view.mask.string(), ": the mask is ", size.width, " x ", size.height,
                        " but its image ", view.image.string(), " is ", k.width, " x ", k.height,
@@ -112,8 +115,8 @@ void attach_masks(const LoadSceneOptions& options, const fs::path& scene_folder,
       attach_automatically(scene_folder, raw, scene);
       break;
   }
-  for (const SourceView& view : scene.views)
-    if (!view.mask.empty()) check_mask_size(view);
+  for (std::size_t i = 0; i < scene.views.size(); ++i)
+    if (!scene.views[i].mask.empty()) check_mask_size(raw[i], scene.views[i]);
 }
 
 void attach_plates(const LoadSceneOptions& options, const std::vector<RawView>& raw, Scene& scene) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "calib/silhouette.h"
 #include "core/error.h"
 #include "pipeline/memory.h"
 
@@ -30,12 +31,10 @@ bool sees(const Camera& camera, const Box& box) {
   return seen;
 }
 
-bool removes(const View& view, const glm::dvec3& p) {
-  const auto pixel = view.camera.project(p);
-  if (view.mask.empty() || !pixel || !view.camera.on_image(*pixel)) return false;
-  const int x = std::clamp(int(std::lround(pixel->x)), 0, view.mask.width - 1);
-  const int y = std::clamp(int(std::lround(pixel->y)), 0, view.mask.height - 1);
-  return view.mask.coverage[std::size_t(y) * view.mask.width + x] < 128;
+bool removes(const carving::Silhouette& silhouette, const Camera& camera, const glm::dvec3& p) {
+  const auto pixel = camera.project(p);
+  return silhouette.distance && pixel && camera.on_image(*pixel) &&
+         interpolated(*silhouette.distance, *pixel) > 0;
 }
 
 }  // namespace
@@ -74,13 +73,15 @@ void check_memory(std::int64_t bytes, std::int64_t limit) {
                      " (--max-memory); lower --resolution or --image-scale, or use fewer --views"));
 }
 
-std::string explain_empty_hull(const Box& box, std::span<const View> views, double voxel_size) {
+std::string explain_empty_hull(const Box& box, std::span<const View> views,
+                               std::span<const carving::Silhouette> silhouettes,
+                               double voxel_size) {
   std::vector<int> removed(views.size());
   int left = 0;
   for_each_probe(box, [&](const glm::dvec3& p) {
     bool stays = true;
     for (std::size_t i = 0; i < views.size(); ++i)
-      if (removes(views[i], p)) {
+      if (removes(silhouettes[i], views[i].camera, p)) {
         ++removed[i];
         stays = false;
       }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <map>
 #include <utility>
 
@@ -13,6 +14,8 @@
 
 namespace photohull::pipeline {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr double kFewestPixels = 640.0 * 480.0;
 constexpr double kRounding = 1 + 1e-9;  // a voxel of exactly so many pixels has them
@@ -114,6 +117,30 @@ void scale_scene(std::span<const double> scales, Scene& scene) {
     for (SceneTrack::Observation& o : track.observations)
       if (const double scale = scales[std::size_t(o.view)]; scale != 1)
         o.pixel = scaled_pixel(o.pixel, scale);
+}
+
+ViewLoader reduced_loader(const Scene& scene, std::span<const double> scales) {
+  PHOTOHULL_CHECK_OP(scales.size(), ==, scene.views.size());
+  struct Reading {
+    double scale;
+    glm::dvec2 size;  // pixels of the photograph's file
+  };
+  std::map<fs::path, Reading> readings;
+  for (std::size_t i = 0; i < scales.size(); ++i) {
+    const SourceView& view = scene.views[i];
+    const Intrinsics& k = view.camera.intrinsics;
+    for (const fs::path* path : {&view.image, &view.mask, &view.plate})
+      readings[*path] = {scales[i], {k.width, k.height}};
+  }
+  return {
+      [readings](const fs::path& path) { return io::read_image(path, readings.at(path).scale); },
+      [readings](const fs::path& path) {
+        const Reading& reading = readings.at(path);
+        if (reading.scale == 1) return io::read_mask(path);
+        const io::ImageSize size = io::read_image_size(path);
+        return io::read_mask(path,
+                             reading.scale * (reading.size / glm::dvec2(size.width, size.height)));
+      }};
 }
 
 }  // namespace photohull::pipeline

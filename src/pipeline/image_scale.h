@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/prepare_views.h"
 #include "core/box.h"
 #include "core/scene.h"
 
@@ -40,5 +41,10 @@ void keep_unexpected_sizes(std::span<const SourceView> views, std::vector<double
 
 /// The scene as its photographs are at these scales: intrinsics and places of tracks.
 void scale_scene(std::span<const double> scales, Scene& scene);
+
+/// Reads the photographs, masks and backgrounds of the views at their scales, one each. `scene` is
+/// in its files' pixels. Masks that are of another size than their photographs, as they are where
+/// these are scaled copies, come in the size that the photographs are read in.
+ViewLoader reduced_loader(const Scene& scene, std::span<const double> scales);
 
 }  // namespace photohull::pipeline

@@ -1,6 +1,7 @@
 // What a job works on: photographs, cameras, silhouettes and the lattice, read, checked and mended.
 #pragma once
 
+#include <cmath>
 #include <set>
 #include <span>
 #include <string>
@@ -16,6 +17,9 @@
 #include "pipeline/reconstruct.h"
 
 namespace photohull::pipeline {
+
+/// For messages.
+inline double hundredths(double pixels) { return std::round(100 * pixels) / 100; }
 
 /// The stages before the hull, in the order of their declaration; each fills the members that it is
 /// named for, and the report. They throw Error, UsageError or Cancelled.
@@ -35,6 +39,8 @@ class Inputs {
   void measure_silhouettes();
   void correct_masks();
   void leave_out_wrong_views();
+  /// Gives silhouettes that are a little off as much room as they are off.
+  void bear_disagreement();
   /// Gives stems and wires the room that voxels need; their width is known from `lines`.
   void widen_lines();
   /// Puts what masks show and not all views bear into the silhouettes that leave it out.
@@ -70,11 +76,14 @@ class Inputs {
   PreparedViews decode();
   void mend_given_masks(std::span<const MaskJudgement> masks);
   GridSpec lattice(std::span<const Camera> cameras) const;
+  void refine_cameras_of(const std::vector<double>& off);
+  void use_cameras(const CameraRefinement& found);
   void remember_right_cameras(const CameraRefinement& found, bool used);
   void leave_out(std::span<const int> wrong, const std::string& why);
 
   Scene full_;                           ///< the scene in the files' pixels, until they are decoded
   std::vector<double> scales_;           ///< of its views
+  std::vector<double> room_;             ///< pixels around each view's outline, for what it is off
   std::set<std::string> right_cameras_;  ///< names of views
   std::set<std::string> made_masks_;     ///< names of views whose masks come from the background
 

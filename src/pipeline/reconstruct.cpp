@@ -91,6 +91,7 @@ class Job {
       in_.measure_silhouettes();
       in_.correct_masks();
       in_.leave_out_wrong_views();
+      in_.bear_disagreement();
       in_.widen_lines();
       in_.explain_foreground();
       return refining ? SparseVolume() : carve_hull();
@@ -189,7 +190,7 @@ class Job {
     const bool specks = grid.voxel_size == in_.grid.voxel_size && inside == thin &&
                         thin < kFewestThinVoxels;  // coarse grids may hold no more of it
     if (inside == 0 || specks)
-      throw Error(explain_empty_hull(*in_.scene.box, in_.views, grid.voxel_size));
+      throw Error(explain_empty_hull(*in_.scene.box, in_.views, silhouettes, grid.voxel_size));
     report_.nodes_tested += counts.nodes_tested;
     report_.bricks_evaluated += counts.bricks_evaluated;
     hull_samples_ += counts.samples;
@@ -321,11 +322,14 @@ class Job {
 
   /// Stems that are thinner than voxels get their width from the masks.
   void fit_stems(TriMesh& mesh) {
+    carving::StemOptions stems;
+    tune(options_.tune, stems);
     std::vector<carving::StemView> views;
     for (std::size_t i = 0; i < in_.views.size(); ++i)
       if (!in_.views[i].mask.empty())
         views.push_back({in_.cameras[i], &in_.views[i].mask, &in_.lines[i]});
-    report_.thin.stem_vertices = std::int64_t(carving::fit_stems(views, in_.grid.voxel_size, mesh));
+    report_.thin.stem_vertices =
+        std::int64_t(carving::fit_stems(views, in_.grid.voxel_size, mesh, stems));
   }
 
   void colour(TriMesh& mesh, ResultFiles& files) {

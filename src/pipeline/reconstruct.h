@@ -11,6 +11,7 @@
 #include "carving/statistic.h"
 #include "core/progress.h"
 #include "io/load_scene.h"
+#include "pipeline/complete_box.h"
 #include "pipeline/photometric.h"
 #include "pipeline/refine_cameras.h"
 #include "pipeline/report.h"
@@ -48,6 +49,7 @@ struct ReconstructOptions {
   std::filesystem::path scene;   ///< folder or file
   std::filesystem::path output;  ///< folder; made when it does not exist
   io::LoadSceneOptions load;
+  BoxOptions box;
   std::optional<int> resolution;     ///< voxels along the box's longest side, >= 2
   std::optional<double> voxel_size;  ///< world units, > 0; excludes `resolution`
   Quality quality = Quality::kNormal;

@@ -155,6 +155,7 @@ double footprint_factor(Quality quality) {
 
 void ReconstructOptions::validate() const {
   load.validate();
+  box.validate();
   if (output.empty()) throw UsageError("--out is empty: give a folder for the results");
   const bool index = !device.empty() && device.find_first_not_of("0123456789") == std::string::npos;
   if (device != "auto" && device != "software" && !index)
@@ -192,6 +193,8 @@ NamedValues named_options(const ReconstructOptions& options) {
   if (options.voxel_size) list.emplace_back("voxel_size", number(*options.voxel_size));
   if (!options.load.views.empty()) list.emplace_back("views", options.load.views);
   if (!options.load.hold_out.empty()) list.emplace_back("hold_out", options.load.hold_out);
+  if (options.box.find) list.emplace_back("box", "auto");
+  if (options.box.scale != 1) list.emplace_back("box_scale", number(options.box.scale));
   if (options.refine_cameras)
     list.emplace_back("refine_cameras", to_string(*options.refine_cameras));
   if (options.photometric != Photometric::kOff)

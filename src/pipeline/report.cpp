@@ -20,6 +20,13 @@ std::string Report::to_json() const {
   ordered_json j;
   j["photohull"] = version;
   j["scene"] = {{"path", scene}, {"format", format}, {"views", views}};
+  j["photographs"] = {{"listed", photographs_listed},
+                      {"scaled", photographs_scaled},
+                      {"passed_over", photographs_passed_over},
+                      {"left_out", ordered_json::array()}};
+  for (const LeftOutView& v : photographs_left_out)
+    j["photographs"]["left_out"].push_back(
+        {{"name", v.name}, {"reason", to_string(v.reason)}, {"detail", v.detail}});
   j["device"] = device;
   for (const auto& [name, value] : options) j["options"][name] = value;
   j["box"] = {
@@ -50,6 +57,7 @@ std::string Report::to_json() const {
   if (!photometric.empty()) j["photometric"] = ordered_json::parse(photometric);
   j["left_out"] = left_out;
   j["masks"]["left_out"] = masks_left_out;
+  for (const OutlineRoom& r : outline_room) j["masks"]["outline_room_pixels"][r.view] = r.pixels;
   if (!verdict_json.empty()) j["verdict"] = ordered_json::parse(verdict_json);
   j["stages"] = ordered_json::array();
   for (const StageReport& s : stages)

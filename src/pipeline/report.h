@@ -11,6 +11,7 @@
 #include "assess/verdict.h"
 #include "core/box.h"
 #include "core/grid.h"
+#include "core/scene.h"
 
 namespace photohull::pipeline {
 
@@ -71,6 +72,12 @@ struct ThinReport {
   std::string worst_view;          ///< with the largest share left unexplained; empty: none
 };
 
+/// A view whose outline is off what the other views' say.
+struct OutlineRoom {
+  std::string view;
+  double pixels = 0;  ///< by which its outline was widened
+};
+
 /// Where a view's mask came from, and how sure it is (calib's MaskJudgement).
 struct MaskReport {
   std::string view, source;
@@ -82,6 +89,10 @@ struct Report {
   std::string scene, format, device;
   std::vector<std::pair<std::string, std::string>> options;
   int views = 0;
+  int photographs_listed = 0;                     ///< by the scene's file
+  int photographs_scaled = 0;                     ///< as Scene::scaled
+  int photographs_passed_over = 0;                ///< as Scene::passed_over
+  std::vector<LeftOutView> photographs_left_out;  ///< for they cannot be used
   Box box;
   std::string box_source;
   double smallest_scale = 1, largest_scale = 1;  ///< at which photographs were read
@@ -90,6 +101,7 @@ struct Report {
   /// Pixels (calib/refine_cameras.h, tangent_disagreement); NaN where it was not looked at.
   double mask_disagreement = NAN;
   int masks_mended = 0;           ///< by calib/torn_masks.h
+  std::vector<OutlineRoom> outline_room;  ///< of views whose outlines are off
   double mask_offset = 0;         ///< pixels by which the masks' outlines were moved outward
   std::vector<MaskReport> masks;  ///< of each view
   ThinReport thin;

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "carving/fit_stems.h"
+#include "carving/missing_parts.h"
 #include "carving/photo.h"
 #include "refine/refine.h"
 #include "volume/sharpen_edges.h"
@@ -16,5 +18,10 @@ namespace photohull::pipeline {
 void tune(const std::vector<std::string>& assignments, carving::PhotoOptions& options);
 void tune(const std::vector<std::string>& assignments, refine::RefineOptions& options,
           SharpenOptions& sharpen);
+
+/// What all methods have: assignments whose names begin with "missing." or "stems.", which the
+/// others leave alone.
+void tune(const std::vector<std::string>& assignments, carving::MissingOptions& options);
+void tune(const std::vector<std::string>& assignments, carving::StemOptions& options);
 
 }  // namespace photohull::pipeline

@@ -128,6 +128,8 @@ class Refiner {
         counts.restored += std::int64_t(fill_unproven(hull, proof_.positions, proof_.normals,
                                                       proof_.weights, options_.unproven, volume));
       if (last) keep_thin(volume, hull, counts);
+      if (last && any_silhouette(silhouettes_))
+        counts.restored += std::int64_t(rejoin_thin_hull(hull, options_.thin, volume));
       settled_ = next_settled_;
       counts.split = settled_.count(Settled::kSplit);
       counts.settled_pixels = settled_.count(Settled::kPixels);

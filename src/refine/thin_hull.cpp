@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "carving/join_parts.h"
+
 namespace photohull::refine {
 namespace {
 
@@ -70,6 +72,27 @@ std::size_t keep_thin_hull(const SparseVolume& hull, const ThinHullOptions& opti
   std::size_t count = 0;
   for (const std::size_t n : back) count += n;
   return count;
+}
+
+std::size_t rejoin_thin_hull(const SparseVolume& hull, const ThinHullOptions& options,
+                             SparseVolume& volume) {
+  if (options.depth == 0) return 0;
+  std::vector<std::vector<carving::Joint>> found(volume.bricks.size());
+  tbb::parallel_for(std::size_t(0), volume.bricks.size(), [&](std::size_t slot) {
+    const std::uint32_t of_hull = hull.table[hull.grid.brick_index(volume.bricks[slot])];
+    if (of_hull >= hull.bricks.size()) return;
+    for (int i = 0; i < kBrickVoxels; ++i) {
+      const float bound = hull.distance[std::size_t(of_hull) * kBrickVoxels + std::size_t(i)];
+      if (bound >= 0 || volume.distance[slot * kBrickVoxels + std::size_t(i)] < 0) continue;
+      const ivec3 voxel = volume.bricks[slot] * kBrickEdge + ivec3(i >> 6, (i >> 3) & 7, i & 7);
+      if (is_thin(hull, voxel, float(options.depth))) found[slot].push_back({voxel, bound});
+    }
+  });
+  std::vector<carving::Joint> joints;
+  for (const auto& list : found) joints.insert(joints.end(), list.begin(), list.end());
+  const std::vector<std::size_t> joining = carving::find_joining(volume, joints);
+  for (const std::size_t i : joining) carving::put(joints[i], volume);
+  return joining.size();
 }
 
 }  // namespace photohull::refine

@@ -21,4 +21,10 @@ struct ThinHullOptions {
 std::size_t keep_thin_hull(const SparseVolume& hull, const ThinHullOptions& options,
                            SparseVolume& volume);
 
+/// Joins parts of the volume that the hull joins by sheets and stems: where these are thin, by the
+/// fewest of their voxels (carving/join_parts.h). Both on one grid. Returns the number of voxels
+/// that came back.
+std::size_t rejoin_thin_hull(const SparseVolume& hull, const ThinHullOptions& options,
+                             SparseVolume& volume);
+
 }  // namespace photohull::refine

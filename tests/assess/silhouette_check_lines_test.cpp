@@ -121,6 +121,29 @@ TEST(SilhouetteCheckLines, MissedIsJudgedByWhatWasGiven) {
   EXPECT_EQ(check_silhouettes(rays, kBox, std::span(kCameras).first(1), one, 1)[0].missed, 0);
 }
 
+TEST(SilhouetteCheckLines, LinesInDoubtCountLittle) {
+  // Of two lines as long as each other the surface lacks the one of which the mask is hardly sure.
+  const Camera& camera = kCameras[0];
+  Mask mask{120, 90, std::vector<std::uint8_t>(120 * 90, 0)};
+  std::vector<LinePoint> lines;
+  for (int y = 20; y < 70; ++y) {
+    mask.coverage[std::size_t(y * 120 + 40)] = 255, mask.coverage[std::size_t(y * 120 + 80)] = 140;
+    lines.push_back({40, float(y), 1, 0, 1}), lines.push_back({80, float(y), 1, 0, 1});
+  }
+  const SilhouetteDistance distance = silhouette_distance(mask);
+  TriMesh plate;
+  for (const glm::dvec2& p : {glm::dvec2(35, 15), {45, 15}, {45, 75}, {35, 75}})
+    plate.positions.emplace_back(camera.center() + 5.0 * camera.ray(p));
+  plate.triangles = {{0, 1, 2}, {0, 2, 3}};
+  const RayScene rays(plate);
+  const auto missed = [&](const Mask* sure) {
+    const std::vector<CheckedSilhouette> one{{&distance, &distance, &lines, sure}};
+    return check_silhouettes(rays, kBox, std::span(kCameras).first(1), one, kTolerance)[0].missed;
+  };
+  EXPECT_NEAR(missed(nullptr), 0.5, 0.1);
+  EXPECT_NEAR(missed(&mask), 0.09, 0.03);  // 140 / 127.5 - 1 against 1
+}
+
 TEST(SilhouetteCheckLines, ForegroundInDoubtCountsLittle) {
   // The surface lacks the right half of what the mask shows, of which it is hardly sure.
   const Camera& camera = kCameras[0];

@@ -34,7 +34,7 @@ class Diagnose : public testing::Test {
     ScratchFolder folder;
     Progress progress;
     synth::synthesize(spec, folder / "scene", progress);
-    const Scene scene = io::load_scene(folder / "scene/transforms.json");
+    Scene scene = io::load_scene(folder / "scene/transforms.json");
     const ViewLoader loader{[](const fs::path& file) { return io::read_image(file); },
                             [](const fs::path& file) { return io::read_mask(file); }};
     healthy_ = new std::vector<View>(prepare_views(scene, loader, {}, progress).views);
@@ -200,7 +200,9 @@ TEST_F(Diagnose, SilhouettesServeWhereThereAreNoMatches) {
 TEST_F(Diagnose, SilhouettesAloneNameTheViewThatIsTurned) {
   turn(views_[3].camera, 20);
   views_[5].mask = {};
-  const std::vector<ViewFit> fits = fit_silhouettes(views_);
+  std::vector<Camera> cameras;
+  for (const View& view : views_) cameras.push_back(view.camera);
+  const std::vector<ViewFit> fits = fit_silhouettes(cameras, views_);
   ASSERT_EQ(fits.size(), views_.size());
   for (std::size_t i = 0; i < fits.size(); ++i) {
     EXPECT_EQ(fits[i].disagrees, i == 3) << i;

@@ -209,7 +209,7 @@ TEST(Photometric, RecoversTheGainsOfARenderedScene) {
   spec.material.octaves = 2;
   Progress silent;
   const auto made = synth::synthesize(spec, folder / "scene", silent);
-  const Scene scene = io::load_scene(folder / "scene");
+  Scene scene = io::load_scene(folder / "scene");
   const ViewLoader loader{[](const auto& path) { return io::read_image(path); },
                           [](const auto& path) { return io::read_mask(path); }};
   const PreparedViews prepared = prepare_views(scene, loader, {}, silent);

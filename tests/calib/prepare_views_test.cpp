@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <map>
+#include <set>
 
 #include "calib/silhouette.h"
 #include "core/error.h"
@@ -244,17 +245,95 @@ TEST_F(PrepareViews, NamesFilesOfWrongSize) {
   EXPECT_THAT(error_of_prepare(),
               testing::AllOf(HasSubstr("images/a.png"), HasSubstr("64x48"), HasSubstr("65x48")));
   scene_.views[0].camera.intrinsics.width = kWidth;
-  add_mask(paint_mask(32, 24, disc));
+  add_mask(paint_mask(32, 30, disc));
   EXPECT_THAT(error_of_prepare(),
-              testing::AllOf(HasSubstr("masks/a.png"), HasSubstr("32x24"), HasSubstr("64x48")));
+              testing::AllOf(HasSubstr("masks/a.png"), HasSubstr("32x30"), HasSubstr("64x48")));
 }
 
-TEST_F(PrepareViews, PassesOnErrorsOfTheLoader) {
+/// Decodes all but those of the given names.
+class TornPictures : public PrepareViews {
+ protected:
+  TornPictures() {
+    for (int i = 0; i < 6; ++i) {
+      add_view(concat(i, ".png"), clay_disc());
+      scene_.views.back().camera.cam_from_world.translation.x = i;
+    }
+    scene_.tracks = {{{{0, {}}, {1, {}}, {5, {}}}}};
+    loader_.image = [this](const std::filesystem::path& p) {
+      if (torn_.contains(p.stem().string())) throw Error(p.string() + ": cut short");
+      return images_.at(p.string());
+    };
+    loader_.mask = [this](const std::filesystem::path& p) { return masks_.at(p.string()); };
+  }
+
+  std::set<std::string> torn_;
+  ViewLoader loader_;
+};
+
+TEST_F(TornPictures, AreLeftOutOfTheSceneToo) {
+  torn_ = {"1", "4"};
+  const PreparedViews prepared = prepare_views(scene_, loader_, {}, progress_);
+  ASSERT_EQ(prepared.views.size(), 4u);
+  ASSERT_EQ(scene_.views.size(), 4u);
+  ASSERT_EQ(prepared.masks.size(), 4u);
+  const double left[] = {0, 2, 3, 5};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(scene_.views[i].camera.cam_from_world.translation.x, left[i]);
+    EXPECT_EQ(prepared.views[i].camera.cam_from_world.translation.x, left[i]);
+    EXPECT_FALSE(prepared.views[i].mask.empty());
+  }
+  EXPECT_EQ(scene_.tracks.at(0).observations.at(1).view, 3);
+  EXPECT_THAT(prepared.warnings.at(0),
+              HasSubstr("2 of 6 photographs cannot be read and are left out (1.png: cut short, "
+                        "4.png: cut short)"));
+  EXPECT_EQ(scene_.left_out.size(), 2u);
+}
+
+TEST_F(TornPictures, AreAnErrorWhereTooFewRemainOrAllAreAskedFor) {
+  Scene before = scene_;
+  torn_ = {"1"};
+  EXPECT_THROW(prepare_views(scene_, loader_, {.strict = true}, progress_), Error);
+  scene_ = before;
+  torn_ = {"1", "2", "3"};
+  EXPECT_THROW(prepare_views(scene_, loader_, {}, progress_), Error);
+  scene_ = before;
+  scene_.usable_share = 0.8;  // others were left out before
+  torn_ = {"1", "2"};
+  EXPECT_THROW(prepare_views(scene_, loader_, {}, progress_), Error);
+}
+
+TEST_F(TornPictures, LackOfMemoryIsNoFaultOfThePicture) {
+  loader_.image = [this](const std::filesystem::path& p) {
+    if (p.stem() == "3") throw MemoryError("no memory");
+    return images_.at(p.string());
+  };
+  EXPECT_THROW(prepare_views(scene_, loader_, {}, progress_), MemoryError);
+}
+
+TEST_F(PrepareViews, ScalesMasksOfScaledCopies) {
   add_view("a.png", clay_disc());
-  const ViewLoader loader{
-      [](const std::filesystem::path& p) -> ColourImage { throw Error(p.string() + ": torn"); },
-      {}};
-  EXPECT_THROW(prepare_views(scene_, loader, {}, progress_), Error);
+  // Twice as large, over the same picture: the pixel at (x, y) has the middle (2 x + 0.5, ...).
+  add_mask(paint_mask(2 * kWidth, 2 * kHeight, [](double x, double y) {
+    return std::clamp((28 - std::hypot(x - 60.5, y - 48.5)) / 2 + 0.5, 0.0, 1.0);
+  }));
+  const Mask large = prepare().views[0].mask;
+  ASSERT_EQ(large.width, kWidth);
+  masks_["masks/a.png"] = paint_mask(kWidth / 2, kHeight / 2, [](double x, double y) {
+    return std::clamp(7 - std::hypot(x - 14.75, y - 11.75) + 0.5, 0.0, 1.0);
+  });
+  const Mask small = prepare().views[0].mask;
+  ASSERT_EQ(small.height, kHeight);
+  // The same place and size: a mask that is half a pixel off would be told.
+  for (const Mask& mask : {large, small}) {
+    double area = 0, x = 0, y = 0, right = 0;
+    for (std::size_t i = 0; i < kDisc.coverage.size(); ++i) {
+      area += mask.coverage[i], right += kDisc.coverage[i];
+      x += mask.coverage[i] * double(i % kWidth), y += mask.coverage[i] * double(i / kWidth);
+    }
+    EXPECT_NEAR(x / area, 30, 0.02);
+    EXPECT_NEAR(y / area, 24, 0.02);
+    EXPECT_NEAR(area / right, 1, 0.01);
+  }
 }
 
 TEST_F(PrepareViews, RejectsEmptyScenesAndBadOptions) {

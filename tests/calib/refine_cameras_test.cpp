@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "calib/align_patch.h"
+#include "calib/diagnose.h"
 #include "calib/frontier.h"
 #include "calib/prepare_views.h"
 #include "calib/triangulate.h"
@@ -198,6 +199,46 @@ TEST_F(RefineCameras, PosesThatAreTwoPixelsOffBecomeConsistent) {
   for (std::size_t i = 0; i < truth_.size(); ++i)
     shift += glm::distance(*found.cameras[i].project(point), *truth_[i].project(point));
   EXPECT_LT(shift / double(truth_.size()), 1.5);
+}
+
+TEST_F(RefineCameras, OutlinesTellHowFarAViewIsOff) {
+  synthesize(kTextured, R"({"view_shift": 2, "view_shift_views": 0.12})");
+  const std::vector<double> off = outlines_off(cameras_of(scene_), views_);
+  ASSERT_EQ(off.size(), views_.size());
+  for (std::size_t i = 0; i < off.size(); ++i) {
+    const Intrinsics given = views_[i].camera.intrinsics, right = truth_[i].intrinsics;
+    const double shift = std::hypot(given.cx - right.cx, given.cy - right.cy);
+    if (shift < 0.1)
+      EXPECT_EQ(off[i], 0) << i;
+    else
+      EXPECT_NEAR(off[i], shift, 0.6) << i;
+  }
+  EXPECT_THAT(outlines_off(truth_, views_), testing::Each(0));
+}
+
+TEST_F(RefineCameras, ViewsThatAreHeldHoldTheOthers) {
+  synthesize(kTextured, R"({"view_shift": 2, "view_shift_views": 0.12})");
+  const std::vector<double> off = outlines_off(cameras_of(scene_), views_);
+  RefineCamerasOptions options;
+  for (std::size_t i = 0; i < off.size(); ++i)
+    if (off[i] == 0) options.held.push_back(int(i));
+  const CameraRefinement found = refine_cameras(views_, options, progress_);
+  const glm::dvec3 point(0.1, 0.2, 0.3);
+  int moved = 0;
+  for (std::size_t i = 0; i < off.size(); ++i) {
+    if (off[i] == 0) {
+      EXPECT_EQ(found.cameras[i].cam_from_world.translation,
+                views_[i].camera.cam_from_world.translation);
+      EXPECT_EQ(found.cameras[i].cam_from_world.rotation, views_[i].camera.cam_from_world.rotation);
+      continue;
+    }
+    ++moved;
+    const glm::dvec2 right = *truth_[i].project(point);
+    EXPECT_GT(glm::distance(*views_[i].camera.project(point), right), 1.5);
+    EXPECT_LT(glm::distance(*found.cameras[i].project(point), right), 0.3);
+  }
+  EXPECT_EQ(moved, 2);
+  EXPECT_THAT(outlines_off(found.cameras, views_), testing::Each(0));
 }
 
 TEST_F(RefineCameras, ExactCamerasStayAlmostAsTheyAre) {

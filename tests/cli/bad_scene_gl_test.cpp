@@ -17,9 +17,11 @@ class BadScene : public SphereScene {
   void refuse(const std::vector<std::string>& parts, const Arguments& more = {}) const {
     fail(1, reconstruct(more), parts);
   }
-  void refuse_scene(const std::vector<std::string>& parts) const {
-    refuse(parts);
-    fail(1, {"info", scene()}, parts);
+  void refuse_scene(const std::vector<std::string>& parts, const Arguments& more = {}) const {
+    refuse(parts, more);
+    Arguments info = {"info", scene()};
+    info.insert(info.end(), more.begin(), more.end());
+    fail(1, info, parts);
   }
   std::string par() const { return path("scene_par.txt"); }
   /// The number at a position of the line of a view, replaced.
@@ -47,27 +49,30 @@ TEST_F(BadScene, Missing) {
 }
 
 TEST_F(BadScene, Images) {
+  const Arguments strict = {"--strict"};
   const std::string whole = read_bytes(image(3));
   fs::remove(image(3));
-  refuse_scene({"scene_par.txt", "view3.png", "not found"});
+  refuse_scene({"scene_par.txt", "view3.png", "not found"}, strict);
   write_bytes(image(3), "not a picture at all\n");
-  refuse_scene({image(3), "cannot be read as an image"});
+  refuse_scene({"scene_par.txt", "view3.png", "cannot be read as an image"}, strict);
   write_bytes(image(3), "");
-  refuse_scene({image(3), "cannot be read as an image"});
+  refuse_scene({"scene_par.txt", "view3.png", "cannot be read as an image"}, strict);
   for (const std::size_t length : {std::size_t(20), whole.size() / 2, whole.size() - 20}) {
     write_bytes(image(3), whole.substr(0, length));
-    refuse({image(3)});
+    refuse({"view3.png"}, strict);
   }
   fs::remove(image(3));
   fs::create_directories(image(3));
-  refuse_scene({"view3.png", "not found"});
+  refuse_scene({"view3.png", "not found"}, strict);
 }
 
 TEST_F(BadScene, ImageOfAnotherSize) {
   io::write_colmap_text(scene_, folder_ / "t");
   const std::vector<std::uint8_t> grey(48 * 36 * 3, 100);
+  io::write_png(image(3), 36, 48, 3, grey);
+  fail(1, {"reconstruct", path("t"), "--out", out(), "--strict"},
+       {"view3.png", "36 x 48", "96 x 72", "EXIF"});
   io::write_png(image(3), 48, 36, 3, grey);
-  fail(1, {"reconstruct", path("t"), "--out", out()}, {image(3), "48 x 36", "96 x 72"});
   // A par file states no sizes, but the mask does.
   refuse({mask_file(3), "96 x 72", "48 x 36"});
 }
@@ -107,7 +112,6 @@ TEST_F(BadScene, Box) {
   write_bytes(path("bbox.txt"), "0 0 0 1 nan 1\n");
   refuse_scene({"bbox.txt"});
   fs::remove(path("bbox.txt"));
-  refuse({scene(), "--box"});
   // The first two cameras look down.
   refuse({"no camera has the box from --box"}, {"--views", "0-1", "--box", "0 0 100 1 1 101"});
   refuse({"a pixel is 0.027", "check the box's units"},

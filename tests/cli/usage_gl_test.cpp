@@ -1,6 +1,7 @@
 // The command line itself: help, info, devices, and everything that is wrong usage.
 #include <nlohmann/json.hpp>
 
+#include "io/image_file.h"
 #include "sphere_scene.h"
 
 namespace photohull::test {
@@ -66,14 +67,59 @@ TEST_F(Usage, InfoEstimatesTheJobThatIsAskedFor) {
             fine["memory_bytes"]);
   EXPECT_LT(estimate({"--resolution", "512", "--method", "hull"})["cpu_seconds"],
             fine["cpu_seconds"]);
+  // Of the views that will be used.
+  EXPECT_LT(estimate({"--resolution", "512", "--views", "spread:4"})["cpu_seconds"],
+            fine["cpu_seconds"]);
+  EXPECT_LT(estimate({"--resolution", "512", "--views", "spread:4"})["memory_bytes"],
+            fine["memory_bytes"]);
   EXPECT_THAT(succeed({"info", scene(), "--max-memory", "1M"}).out,
               HasSubstr("would take more memory than it may (1 MiB; --max-memory)"));
 }
 
-TEST_F(Usage, InfoWithoutABoxAsksForOne) {
+TEST_F(Usage, InfoFindsABoxThatTheSceneDoesNotGive) {
   std::filesystem::remove(folder_ / "bbox.txt");
-  EXPECT_THAT(succeed({"info", scene()}).out, HasSubstr("--box"));
+  EXPECT_THAT(succeed({"info", scene()}).out, HasSubstr("found: "));
+  const json box = json::parse(succeed({"info", scene(), "--json"}).out)["box"];
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_LT(box["min"][axis].get<double>(), kCentre[axis] - 0.9 * kRadius);
+    EXPECT_GT(box["max"][axis].get<double>(), kCentre[axis] + 0.9 * kRadius);
+    EXPECT_LT(box["max"][axis].get<double>() - box["min"][axis].get<double>(), 3 * kRadius);
+  }
+}
+
+TEST_F(Usage, ReconstructionFindsABoxAndSaysSo) {
+  std::filesystem::remove(folder_ / "bbox.txt");
+  succeed(reconstruct({"--quality", "draft"}));
+  const json report = json::parse(read_bytes(out() + "/report.json"));
+  EXPECT_THAT(report["box"]["source"], HasSubstr("found: the space that the silhouettes of 16"));
+}
+
+TEST_F(Usage, PlainPicturesTellNoBox) {
+  std::filesystem::remove(folder_ / "bbox.txt");
+  const std::vector<std::uint8_t> grey(std::size_t(kWidth) * kHeight * 3, 100);
+  for (int view = 0; view < kViews; ++view) io::write_png(image(view), kWidth, kHeight, 3, grey);
+  const Finished run = succeed({"info", scene()});  // the rest is told all the same
+  EXPECT_THAT(run.out, HasSubstr("views          16"));
+  EXPECT_THAT(run.out, HasSubstr("warning: " + scene() + ": no box can be found: 0 features"));
   EXPECT_FALSE(json::parse(succeed({"info", scene(), "--json"}).out).contains("box"));
+  fail(1, reconstruct({"--masks", "none"}), {"no box can be found", "give --box"});
+  fail(1, {"info", scene(), "--picture", path("box.png")}, {"--picture", "no box to draw"});
+}
+
+TEST_F(Usage, BoxesThatAreOutOfRange) {
+  for (const char* bad : {"0", "-1", "nan", "0.01", "1000"})
+    refuse({"--box-scale", bad}, {"--box-scale", "a factor from 0.05 to 20"});
+  refuse({"--box", "automatic"}, {"--box", "expected auto or six numbers"});
+  fail(1, {"info", scene(), "--box", "0 0 40 1 1 41"}, {"no camera has the box from --box"});
+}
+
+TEST_F(Usage, InfoDrawsTheBox) {
+  succeed({"info", scene(), "--box-scale", "0.9", "--picture", path("box.png")});
+  const ColourImage picture = io::read_image(path("box.png"));
+  EXPECT_GT(picture.width, 1000);
+  EXPECT_GT(picture.height, 1000);
+  fail(2, {"info", scene(), "--picture", ""}, {"--picture is empty"});
+  fail(1, {"info", scene(), "--picture", path("nowhere/box.png")}, {"nowhere"});
 }
 
 TEST_F(Usage, DevicesSaysWhatAutoTakes) {

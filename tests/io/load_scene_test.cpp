@@ -119,7 +119,7 @@ TEST_F(LoadScene, ViewsAreHeldOut) {
 TEST_F(LoadScene, UnselectedImagesMayBeMissing) {
   fs::remove(folder_ / "images" / "b.png");
   EXPECT_THAT(names("a.png,2"), ElementsAre("a.png", "c.png"));
-  EXPECT_THAT(error_with({}), HasSubstr("b.png was not found"));
+  EXPECT_THAT(error_with({}), HasSubstr("1 of 3 photographs was not found (b.png; looked in"));
 }
 
 TEST_F(LoadScene, MasksAreFoundBesideTheImagesFolder) {

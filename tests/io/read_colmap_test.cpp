@@ -110,7 +110,8 @@ TEST_F(ReadColmap, BadImagesAreNamed) {
   EXPECT_THAT(error_with_image("1 1 0 0 0 0 0 5 1 a.png\n\n2 1 0 0 0 0 0 5 1 a.png\n\n"),
               AllOf(HasSubstr("line 3"), HasSubstr("listed twice")));
   EXPECT_THAT(error_with_image("1 1 0 0 0 0 0 5 1 c.png\n\n2 1 0 0 0 0 0 5 1 a.png\n\n"),
-              AllOf(HasSubstr("c.png was not found"), HasSubstr((folder_ / "images").string())));
+              AllOf(HasSubstr("1 of 2 photographs was not found (c.png"),
+                    HasSubstr((folder_ / "images").string())));
 }
 
 // Every other image would be lost in silence.

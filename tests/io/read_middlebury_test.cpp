@@ -127,7 +127,7 @@ TEST_F(ReadMiddlebury, DuplicateAndMissingImagesAreNamed) {
   EXPECT_THAT(error_of([&] { load(std::string("2\n") + kFirst + kFirst); }),
               AllOf(HasSubstr("line 3"), HasSubstr("a.png is listed twice"), HasSubstr("line 2")));
   EXPECT_THAT(error_with("c.png 100 2 50 0 110 40 0 0 1 1 0 0 0 1 0 0 0 1 0 0 5"),
-              AllOf(HasSubstr("line 2"), HasSubstr("c.png was not found"),
+              AllOf(HasSubstr("line 2"), HasSubstr("photographs was not found (c.png"),
                     HasSubstr((folder_ / "images").string())));
 }
 

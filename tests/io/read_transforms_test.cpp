@@ -180,7 +180,7 @@ TEST_F(ReadTransforms, BadFieldsAreNamed) {
   frame(1)["file_path"] = "images/../images/a.png";
   EXPECT_THAT(error(), HasSubstr("listed twice"));
   frame(1)["file_path"] = "images/c";
-  EXPECT_THAT(error(), AllOf(HasSubstr("frame 1"), HasSubstr("images/c was not found")));
+  EXPECT_THAT(error(), AllOf(HasSubstr("frame 1"), HasSubstr("was not found (images/c;")));
 }
 
 TEST_F(ReadTransforms, BrokenJsonIsNamed) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 
 #include "core/error.h"
@@ -119,6 +121,48 @@ TEST(KeepUnexpectedSizes, LetsDecodingTell) {
   std::vector<double> scales(4, 0.5);
   keep_unexpected_sizes(views, scales);
   EXPECT_EQ(scales, (std::vector<double>{0.5, 1, 1, 1}));
+}
+
+/// Every file comes in the size that its view's camera gets.
+TEST(ReducedLoader, ReadsMasksOfTheCamerasSizeAsThoseOfScaledCopies) {
+  const ScratchFolder folder;
+  // The camera was calibrated for 101 x 75 pixels, the photograph is a copy of 50 x 37.
+  const auto disc = [&](const char* name, int width, int height) {
+    std::vector<std::uint8_t> values;
+    const double x0 = 0.4 * width, y0 = 0.55 * height, radius = 0.3 * height;
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x)
+        values.push_back(std::uint8_t(
+            255 * std::clamp(radius - std::hypot(x + 0.5 - x0, y + 0.5 - y0) + 0.5, 0.0, 1.0)));
+    io::write_png(folder / name, width, height, 1, values);
+    return folder / name;
+  };
+  Scene scene = scene_of({view(50, 37, 40), view(50, 37, 40)});
+  scene.views[0].image = disc("a.png", 50, 37);
+  scene.views[0].mask = disc("small.png", 50, 37);
+  scene.views[1].image = disc("b.png", 50, 37);
+  scene.views[1].mask = disc("large.png", 101, 75);
+  const std::vector<double> scales{0.3, 0.3};
+  const ViewLoader loader = reduced_loader(scene, scales);
+  scale_scene(scales, scene);
+  const Intrinsics& k = scene.views[0].camera.intrinsics;
+  EXPECT_EQ(k.width, 15);
+  EXPECT_EQ(k.height, 12);  // the last row covers a third of a pixel
+  const ColourImage image = loader.image(folder / "a.png");
+  const Mask small = loader.mask(folder / "small.png"), large = loader.mask(folder / "large.png");
+  EXPECT_EQ(image.width, k.width);
+  EXPECT_EQ(image.height, k.height);
+  ASSERT_EQ(small.width, k.width);
+  ASSERT_EQ(small.height, k.height);
+  ASSERT_EQ(large.width, k.width);
+  ASSERT_EQ(large.height, k.height);
+  // Two drawings of one disc: their edges differ by less than a pixel of the small one's.
+  for (std::size_t i = 0; i < small.coverage.size(); ++i)
+    EXPECT_NEAR(large.coverage[i], small.coverage[i], 20) << i;
+  scene.views[0].camera.intrinsics = scene.views[1].camera.intrinsics =
+      view(50, 37, 40).camera.intrinsics;
+  const ViewLoader whole = reduced_loader(scene, std::vector<double>{1, 1});
+  EXPECT_EQ(whole.mask(folder / "large.png").width, 101) << "left to those who resize masks";
 }
 
 /// A plan for photographs that are there.

@@ -30,5 +30,46 @@ TEST(WrongMask, IsLeftOutAloneWhereFeaturesConfirmTheCamera) {
   EXPECT_TRUE(report.left_out.empty());
 }
 
+/// A block with 2 of 24 principal points 1.2 pixels off.
+class ViewsThatAreOff : public testing::Test {
+ protected:
+  Report run(std::optional<RefineCameras> refine) {
+    Progress silent;
+    synth::Spec spec = synth::parse_spec(R"({"geometry": {"shape": "block"}, "truth_samples": 100,
+        "material": {"faces": true, "contrast": 0.6},
+        "degradations": {"view_shift": 1.2, "view_shift_views": 0.1},
+        "cameras": {"rings": [{"count": 12, "elevation": 10},
+                              {"count": 12, "elevation": 40, "phase": 0.5}]}})",
+                                         "test", "");
+    spec.image = {240, 180, 3};
+    synth::synthesize(spec, folder_ / "scene", silent);
+    ReconstructOptions options;
+    options.scene = folder_ / "scene";
+    options.output = folder_ / "out";
+    options.resolution = 48;
+    options.method = Method::kHull;
+    options.device = "software";
+    options.refine_cameras = refine;
+    return reconstruct(options, silent);
+  }
+
+  ScratchFolder folder_;
+};
+
+TEST_F(ViewsThatAreOff, GetCamerasThatAgree) {
+  const Report report = run(std::nullopt);
+  EXPECT_THAT(report.warnings,
+              testing::Contains(testing::HasSubstr("the cameras of these were refined")));
+  EXPECT_TRUE(report.outline_room.empty());
+  EXPECT_TRUE(report.left_out.empty());
+}
+
+TEST_F(ViewsThatAreOff, CarveWithAsMuchRoomWhereCamerasStay) {
+  const Report report = run(RefineCameras::kOff);
+  ASSERT_EQ(report.outline_room.size(), 2u);
+  for (const OutlineRoom& room : report.outline_room) EXPECT_NEAR(room.pixels, 1.2, 0.5);
+  EXPECT_THAT(report.warnings, testing::Contains(testing::HasSubstr("carve with as much room")));
+}
+
 }  // namespace
 }  // namespace photohull::pipeline

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "volume/analytic_volumes.h"
+#include "volume/components.h"
 
 namespace photohull::refine {
 namespace {
@@ -99,6 +100,30 @@ TEST(KeepThinHull, WhatPhotographsFreedStaysFree) {
   keep_thin_hull(hull, {}, volume);
   EXPECT_GT(volume.interpolated(kMiddle), 0);
   EXPECT_GT(volume.interpolated(kMiddle + dvec3(4, 0, 0)), 0);
+}
+
+TEST(RejoinThinHull, WhatTheHullJoinsByAStemIsOnePieceAgain) {
+  const Distance stem = [](const dvec3& p) { return std::hypot(p.x - 20.3, p.y - 19.8) - 0.9; };
+  const SparseVolume hull = sample_volume(kBricks, stem);
+  SparseVolume volume = sample_volume(
+      kBricks, [&](const dvec3& p) { return std::max(stem(p), 2.6 - std::abs(p.z - 17.5)); });
+  ASSERT_EQ(component_sizes(volume).size(), 2u);
+  const std::size_t inside = volume.inside_voxels();
+  const std::size_t back = rejoin_thin_hull(hull, {}, volume);
+  EXPECT_EQ(component_sizes(volume).size(), 1u);
+  EXPECT_EQ(volume.inside_voxels(), inside + back);
+  EXPECT_LE(back, 6u);  // voxels of the gap
+}
+
+TEST(RejoinThinHull, PartsThatPhotographsPutApartStayApart) {
+  // The hull joins them by a thick neck, which is not thin: photographs can judge it.
+  const Distance body = box({10, 10, 4}, {30, 30, 36});
+  const SparseVolume hull = sample_volume(kBricks, body);
+  SparseVolume volume = sample_volume(
+      kBricks, [&](const dvec3& p) { return std::max(body(p), 2.6 - std::abs(p.z - 17.5)); });
+  const std::vector<float> before = volume.distance;
+  EXPECT_EQ(rejoin_thin_hull(hull, {}, volume), 0u);
+  EXPECT_EQ(volume.distance, before);
 }
 
 TEST(KeepThinHull, ThickPartsKeepTheirHollows) {

@@ -1,0 +1,158 @@
+#include "pipeline/complete_box.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "calib/feature_tracks.h"
+#include "calib/triangulate.h"
+#include "core/error.h"
+#include "core/median.h"
+#include "pipeline/find_box.h"
+#include "pipeline/image_scale.h"
+
+namespace photohull::pipeline {
+namespace {
+
+constexpr int kLongestSide = 800;       // pixels of reduced photographs
+constexpr std::size_t kMostViews = 60;  // that are looked at: a few seconds' work
+constexpr double kLargestResidual = 4;  // pixels of the photographs, of the scene file's tracks
+constexpr const char* kSparsePoints = "sparse points";  // io/load_scene.cpp's name for its guess
+
+/// Views that are far from each other in place and direction, ascending: one after the other, the
+/// one farthest from those taken.
+std::vector<std::size_t> spread_views(const std::vector<SourceView>& views) {
+  std::vector<std::size_t> taken;
+  if (views.size() <= kMostViews) {
+    for (std::size_t i = 0; i < views.size(); ++i) taken.push_back(i);
+    return taken;
+  }
+  std::vector<double> from_first;
+  for (const SourceView& v : views)
+    from_first.push_back(glm::distance(v.camera.center(), views[0].camera.center()));
+  const double scale = std::max(median(from_first), 1e-300);
+  std::vector<double> farness(views.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t next = 0; taken.size() < kMostViews;) {
+    taken.push_back(next);
+    const Camera& camera = views[next].camera;
+    for (std::size_t i = 0; i < views.size(); ++i)
+      farness[i] =
+          std::min(farness[i], glm::distance(views[i].camera.center(), camera.center()) / scale +
+                                   glm::distance(views[i].camera.forward(), camera.forward()));
+    next = std::size_t(std::max_element(farness.begin(), farness.end()) - farness.begin());
+  }
+  std::sort(taken.begin(), taken.end());
+  return taken;
+}
+
+/// The scene with these views alone.
+Scene scene_of(const Scene& scene, const std::vector<std::size_t>& kept) {
+  Scene out;
+  out.path = scene.path;
+  for (const std::size_t i : kept) out.views.push_back(scene.views[i]);
+  return out;
+}
+
+/// Of each view, so that no photograph is larger than kLongestSide.
+std::vector<double> reduced_scales(const Scene& scene) {
+  std::vector<double> scales;
+  for (const SourceView& view : scene.views) {
+    const Intrinsics& k = view.camera.intrinsics;
+    scales.push_back(std::min(1.0, double(kLongestSide) / std::max(k.width, k.height)));
+  }
+  return scales;
+}
+
+/// The scene file's points, with the kept views that show them where it lists tracks.
+std::vector<ScenePoint> listed_points(const Scene& scene, const std::vector<std::size_t>& kept) {
+  std::vector<View> views;
+  std::vector<Camera> cameras;
+  for (const SourceView& v : scene.views) {
+    views.push_back({v.name, v.camera, {}, {}});
+    cameras.push_back(v.camera);
+  }
+  std::vector<ScenePoint> points;
+  for (const Track& track : undistorted_tracks(scene, views)) {
+    const auto point = triangulate(cameras, track);
+    if (!point || !(reprojection_rms(cameras, track, *point) < kLargestResidual)) continue;
+    ScenePoint listed{*point, {}};
+    for (const Observation& o : track.observations) {
+      const auto at = std::lower_bound(kept.begin(), kept.end(), std::size_t(o.view));
+      if (at != kept.end() && *at == std::size_t(o.view))
+        listed.views.push_back(int(at - kept.begin()));
+    }
+    points.push_back(std::move(listed));
+  }
+  if (points.size() < scene.points.size() / 2) {
+    points.clear();
+    for (const glm::dvec3& p : scene.points) points.push_back({p, {}});
+  }
+  return points;
+}
+
+bool were_given(const PreparedViews& prepared) {
+  return std::any_of(prepared.masks.begin(), prepared.masks.end(), [](const MaskJudgement& m) {
+    return m.source == "mask files" || m.source == "alpha channels";
+  });
+}
+
+FoundBox find_in_photographs(MaskPolicy masks, const Scene& scene, Progress& progress) {
+  std::vector<std::size_t> kept = spread_views(scene.views);
+  Scene reduced = scene_of(scene, kept);
+  const std::vector<double> scales = reduced_scales(reduced);
+  const ViewLoader loader = reduced_loader(reduced, scales);
+  scale_scene(scales, reduced);
+  PrepareOptions options;
+  options.masks = masks;
+  const PreparedViews prepared = prepare_views(reduced, loader, options, progress);
+  // What could not be decoded is not among them; the job itself will name it.
+  std::erase_if(kept, [&](std::size_t i) {
+    return std::none_of(reduced.views.begin(), reduced.views.end(),
+                        [&](const SourceView& view) { return view.name == scene.views[i].name; });
+  });
+  return find_box({prepared.views, were_given(prepared), listed_points(scene, kept)}, progress);
+}
+
+}  // namespace
+
+void BoxOptions::validate() const {
+  if (!(scale >= kLeastScale && scale <= kMostScale))
+    throw UsageError(concat("--box-scale ", scale, ": expected a factor from ", kLeastScale, " to ",
+                            kMostScale));
+}
+
+bool looks_for_box(const BoxOptions& options, const Scene& scene) {
+  return options.find || !scene.box || scene.box_source == kSparsePoints;
+}
+
+std::vector<ScenePoint> complete_box(const BoxOptions& options, MaskPolicy masks, Scene& scene,
+                                     Progress& progress) {
+  options.validate();
+  std::vector<ScenePoint> points;
+  if (looks_for_box(options, scene)) {
+    const bool guessed = scene.box && scene.box_source == kSparsePoints;
+    try {
+      FoundBox found = find_in_photographs(masks, scene, progress);
+      scene.box = found.box;
+      scene.box_source = std::move(found.source);
+      scene.warnings.insert(scene.warnings.end(), found.warnings.begin(), found.warnings.end());
+      points = std::move(found.points);
+    } catch (const Cancelled&) {
+      throw;
+    } catch (const MemoryError&) {
+      throw;
+    } catch (const Error& failure) {
+      if (!guessed) throw Error(concat(scene.path.string(), ": ", failure.what()));
+      scene.warnings.push_back(
+          concat("the box is that of the sparse points, for ", failure.what()));
+    }
+  }
+  if (options.scale != 1) {
+    const glm::dvec3 middle = scene.box->center(), half = 0.5 * options.scale * scene.box->size();
+    scene.box = Box{middle - half, middle + half};
+    scene.box_source += concat(", scaled by ", options.scale);
+  }
+  return points;
+}
+
+}  // namespace photohull::pipeline

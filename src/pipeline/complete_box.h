@@ -1,0 +1,33 @@
+// The scene's box: given, or found in its photographs.
+#pragma once
+
+#include <vector>
+
+#include "calib/prepare_views.h"
+#include "calib/scene_points.h"
+#include "core/progress.h"
+#include "core/scene.h"
+
+namespace photohull::pipeline {
+
+struct BoxOptions {
+  static constexpr double kLeastScale = 0.05, kMostScale = 20;
+  bool find = false;  ///< even where the scene or --box gives one
+  double scale = 1;   ///< of whatever box there is, about its middle, kLeastScale to kMostScale
+
+  /// Throws UsageError naming the option.
+  void validate() const;
+};
+
+/// Will complete_box look into the photographs?
+bool looks_for_box(const BoxOptions& options, const Scene& scene);
+
+/// Gives the scene a box: its own, else the one that find_box finds in at most 60 of its
+/// photographs, spread over all and reduced to 800 pixels at most, with their masks by `masks`. A
+/// box that load_scene made of sparse points stands only where none is found, which adds a warning
+/// to the scene. Then scales it. Returns the points that it was found by, if any. Throws Error as
+/// find_box and prepare_views do; Cancelled.
+std::vector<ScenePoint> complete_box(const BoxOptions& options, MaskPolicy masks, Scene& scene,
+                                     Progress& progress);
+
+}  // namespace photohull::pipeline
