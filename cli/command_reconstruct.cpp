@@ -6,6 +6,8 @@
 #include "commands.h"
 #include "core/error.h"
 #include "core/parse_name.h"
+#include "pipeline/image_scale.h"
+#include "pipeline/memory.h"
 #include "pipeline/reconstruct.h"
 #include "scene_arguments.h"
 #include "terminal_progress.h"
@@ -17,7 +19,7 @@ struct Arguments {
   SceneArguments scene;
   std::string out, quality = "normal", device = "auto", mesh_error = "0", unseen = "auto",
                    mask_offset = "auto", mask_holes = "mend", views_may_miss = "auto",
-                   photometric = "off";
+                   photometric = "off", image_scale = "auto", max_memory = "auto";
   std::optional<std::string> method, refine_cameras, sampler, consistency, visibility;
   std::optional<int> resolution, supersample;
   std::optional<double> voxel_size, r_consistency, noise;
@@ -70,6 +72,8 @@ pipeline::ReconstructOptions to_options(const Arguments& a) {
   o.views_may_miss = pipeline::parse_views_may_miss(a.views_may_miss);
   o.noise = a.noise;
   o.keep_views = a.keep_views;
+  o.image_scale = pipeline::parse_image_scale(a.image_scale);
+  o.max_memory = pipeline::parse_max_memory(a.max_memory);
   o.device = a.device;
   o.threads = a.threads;
   o.evidence = a.evidence;
@@ -83,6 +87,9 @@ void print_summary(const pipeline::Report& report, const std::string& out) {
   const glm::ivec3 n = report.grid.voxels();
   std::printf("%d views, %d x %d x %d voxels of %g, %lld triangles\n", report.views, n.x, n.y, n.z,
               report.grid.voxel_size, static_cast<long long>(report.triangles));
+  if (report.smallest_scale < 1)
+    std::printf("photographs read at %s of their size\n",
+                pipeline::image_scale_text(report.smallest_scale).c_str());
   if (report.voxels_judged)
     std::printf("judged %lld voxels in %d sweeps, carved %lld\n",
                 static_cast<long long>(report.voxels_judged), report.sweeps,
@@ -180,6 +187,14 @@ void add_reconstruct(CLI::App& app) {
                 "standard deviation of the photographs' noise in 8-bit codes (default: measured)");
   c->add_flag("--keep-views", a->keep_views,
               "use views whose silhouettes disagree with all others' too");
+  c->add_option("--image-scale", a->image_scale,
+                "at which photographs are read: 1, 1/2, 1/4, 1/8 or any number up to 1, or auto: "
+                "what --resolution or --voxel-size needs, and --max-memory bears")
+      ->capture_default_str();
+  c->add_option("--max-memory", a->max_memory,
+                "that the job may take, such as 512M or 2G, or auto: three quarters of what is "
+                "available")
+      ->capture_default_str();
   c->add_option("--device", a->device, "auto, software, or an index from 'photohull devices'")
       ->capture_default_str();
   c->add_option("--threads", a->threads, "threads to use (0: one a core)")->capture_default_str();

@@ -5,12 +5,9 @@
 
 #include "core/error.h"
 #include "io/write_scene.h"
-#include "pipeline/mask_policy.h"
 
 namespace photohull::cli {
 namespace {
-
-constexpr const char* kFindBox = "auto";
 
 Box parse_box(const std::string& text) {
   std::string spaced = text;
@@ -105,19 +102,6 @@ io::LoadSceneOptions SceneArguments::options() const {
   out.background = background.value_or("");
   out.validate();
   return out;
-}
-
-pipeline::BoxOptions SceneArguments::box_options() const {
-  pipeline::BoxOptions out{box == kFindBox, box_scale};
-  out.validate();
-  return out;
-}
-
-void SceneArguments::complete_box(Scene& loaded) const {
-  const pipeline::BoxOptions asked = box_options();
-  if (!asked.find && asked.scale == 1) return;
-  Progress silent;
-  pipeline::complete_box(asked, pipeline::mask_policy(options().masks), loaded, silent);
 }
 
 }  // namespace photohull::cli

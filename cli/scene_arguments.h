@@ -18,6 +18,8 @@ std::string format_names();
 SceneFormat parse_format(const std::string& option, const std::string& text);
 
 struct SceneArguments {
+  static constexpr const char* kFindBox = "auto";  ///< --box
+
   std::string scene, masks = "auto";
   std::optional<std::string> format, box, views, hold_out;
   std::optional<std::string> background;

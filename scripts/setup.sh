@@ -22,7 +22,7 @@ packages=(
   # Meshes in other formats; distances to meshes; fewer triangles; nearest neighbours.
   libassimp-dev libembree-dev libmeshoptimizer-dev libnanoflann-dev
   # Images; OpenImageIO's CMake files ask for its tools.
-  libopenimageio-dev openimageio-tools libopencv-dev
+  libopenimageio-dev openimageio-tools libopencv-dev libjpeg-dev
   libglm-dev libcli11-dev nlohmann-json3-dev
   # Scenes of other programs; camera refinement.
   libpugixml-dev zlib1g-dev libceres-dev libeigen3-dev

@@ -9,13 +9,11 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
-#include <mutex>
 #include <new>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
-#include "io/image_signature.h"
-#include "io/text_file.h"
+#include "io/open_image.h"
 
 namespace photohull::io {
 namespace fs = std::filesystem;
@@ -23,99 +21,11 @@ namespace {
 
 constexpr float kHalfMax = 65504.0f;
 
-/// Which of the file's channels matter: `colours` (1 or 3) from channel 0, and an alpha channel.
-struct Layout {
-  int colours = 0;
-  int alpha = -1;              ///< channel index; -1: none
-  bool premultiplied = false;  ///< colours are stored multiplied by alpha
-  int channels = 0;            ///< channels to read, from channel 0
-};
-
-struct OpenImage {
-  fs::path path;
-  std::unique_ptr<OIIO::ImageInput> input;
-  OIIO::ImageSpec spec;
-  Layout layout;
-
-  std::size_t pixels() const { return std::size_t(spec.width) * spec.height; }
-};
-
-/// Callers decode many images side by side; threads inside each would only get in the way.
-void keep_to_one_thread() {
-  static std::once_flag once;
-  std::call_once(once, [] {
-    OIIO::attribute("threads", 1);
-    OIIO::attribute("exr_threads", -1);
-  });
-}
-
-/// OpenImageIO's messages may come as several lines, one a plug-in.
-std::string one_line(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
-}
-
-Layout layout_of(const OIIO::ImageSpec& spec, const fs::path& path) {
-  constexpr int kMaxChannels = 16;
-  Layout layout;
-  layout.alpha = spec.alpha_channel;
-  const int before_alpha = layout.alpha >= 0 ? layout.alpha : spec.nchannels;
-  layout.colours = before_alpha >= 3 ? 3 : 1;
-  layout.channels = std::max(layout.colours, layout.alpha + 1);
-  if (layout.alpha == 0 || layout.channels > kMaxChannels)
-    throw Error(concat(path.string(), ": ", spec.nchannels, " channels with alpha at number ",
-                       layout.alpha, " are no grey or RGB image; save it as grey, RGB or RGBA"));
-  layout.premultiplied =
-      layout.alpha >= 0 && spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;
-  return layout;
-}
-
-void check_size(const OIIO::ImageSpec& spec, const fs::path& path) {
-  if (spec.width <= 0 || spec.height <= 0 || spec.depth > 1 ||
-      std::int64_t(spec.width) * spec.height > kMaxImagePixels)
-    throw Error(concat(path.string(), ": the image claims ", spec.width, " x ", spec.height, " x ",
-                       std::max(spec.depth, 1), " pixels, but at most ", kMaxImagePixels,
-                       " in one plane can be read; scale it down"));
-}
-
-OpenImage open_image(const fs::path& path) {
-  keep_to_one_thread();
-  if (!is_file(path)) throw Error(concat(path.string(), ": there is no such image file"));
-  OpenImage file;
-  file.path = path;
-  OIIO::ImageSpec request;
-  request.attribute("oiio:UnassociatedAlpha", 1);
-  file.input = OIIO::ImageInput::create(image_format(path));
-  if (!file.input || !file.input->open(path.string(), file.spec, request))
-    throw Error(concat(path.string(), ": cannot be read as an image (",
-                       one_line(file.input ? file.input->geterror() : OIIO::geterror()),
-                       "); PNG, JPEG, TIFF and OpenEXR are known"));
-  file.input->threads(1);
-  check_size(file.spec, path);
-  const OIIO::ImageSpec& s = file.spec;
-  if (std::strcmp(file.input->format_name(), "openexr") == 0 &&
-      (s.x != s.full_x || s.y != s.full_y || s.width != s.full_width || s.height != s.full_height))
-    throw Error(concat(path.string(), ": the data window (", s.width, " x ", s.height,
-                       ") is not the display window (", s.full_width, " x ", s.full_height,
-                       "); save the image uncropped"));
-  file.layout = layout_of(file.spec, path);
-  return file;
-}
-
 /// Reads the layout's channels of every pixel, interleaved, converted to `type`.
 void read_pixels(OpenImage& file, OIIO::TypeDesc type, void* out) {
   // Warnings of the decoders (a JPEG cut short) come as an error text after an apparent success.
   const bool read = file.input->read_image(0, 0, 0, file.layout.channels, type, out);
-  if (!read || file.input->has_error())
-    throw Error(concat(file.path.string(), ": the image is damaged or cut short (",
-                       one_line(file.input->geterror()), "); export it again"));
-}
-
-/// Stored colour divided by stored alpha, both up to `maximum`.
-std::uint32_t unpremultiplied(std::uint32_t colour, std::uint32_t alpha, std::uint32_t maximum) {
-  if (alpha == 0) return colour;
-  return std::uint32_t(
-      std::min<std::uint64_t>(maximum, (std::uint64_t(colour) * maximum + alpha / 2) / alpha));
+  if (!read || file.input->has_error()) damaged(file, file.input->geterror());
 }
 
 ColourImage decode_8bit(OpenImage& file, ColourImage image) {
@@ -165,13 +75,6 @@ const HalfTable& half_from_16bit(bool srgb) {
   return srgb ? *srgb_table : *linear_table;
 }
 
-bool declares_linear(const OIIO::ImageSpec& spec) {
-  std::string space(spec.get_string_attribute("oiio:ColorSpace"));
-  std::transform(space.begin(), space.end(), space.begin(),
-                 [](unsigned char c) { return char(std::tolower(c)); });
-  return space.starts_with("lin") || space == "scene_linear" || space == "acescg";
-}
-
 ColourImage decode_16bit(OpenImage& file, ColourImage image) {
   const Layout layout = file.layout;
   const std::size_t pixels = file.pixels();
@@ -194,8 +97,6 @@ ColourImage decode_16bit(OpenImage& file, ColourImage image) {
   }
   return image;
 }
-
-float finite_or_zero(float value) { return std::isfinite(value) ? value : 0.0f; }
 
 ColourImage decode_float(OpenImage& file, ColourImage image) {
   const Layout layout = file.layout;
@@ -220,10 +121,6 @@ ColourImage decode_float(OpenImage& file, ColourImage image) {
   return image;
 }
 
-std::uint8_t luminance(std::uint8_t r, std::uint8_t g, std::uint8_t b) {
-  return std::uint8_t((54u * r + 183u * g + 19u * b + 128u) >> 8);
-}
-
 /// The layout's channels at 8 bits, quantised from whatever the file stores.
 std::unique_ptr<std::uint8_t[]> read_quantised(OpenImage& file) {
   const std::size_t count = file.pixels() * file.layout.channels;
@@ -238,11 +135,6 @@ std::unique_ptr<std::uint8_t[]> read_quantised(OpenImage& file) {
     return std::uint8_t(std::lround(255.0f * std::clamp(finite_or_zero(v), 0.0f, 1.0f)));
   });
   return values;
-}
-
-[[noreturn]] void out_of_memory(const OpenImage& file) {
-  throw MemoryError(concat(file.path.string(), ": there is not enough memory for ", file.spec.width,
-                           " x ", file.spec.height, " pixels; scale the image down"));
 }
 
 }  // namespace
@@ -274,8 +166,7 @@ ColourImage read_image(const fs::path& path) {
   } catch (const std::bad_alloc&) {
     out_of_memory(file);
   }
-  throw Error(concat(path.string(), ": pixels of type ", file.spec.format.c_str(),
-                     " are not supported; save it with 8 or 16 bits, half or float"));
+  unsupported(file);
 }
 
 Mask read_mask(const fs::path& path) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <glm/glm.hpp>
 #include <span>
 
 #include "core/atomic_file.h"
@@ -32,13 +33,25 @@ ImageSize read_image_size(const std::filesystem::path& path);
 ///
 /// Alpha is straight: where a file stores colours multiplied by alpha they are divided by it.
 /// Throws Error naming the file when it is missing, damaged, of another pixel type, cropped
-/// (OpenEXR data window unlike the display window) or larger than kMaxImagePixels.
+/// (OpenEXR data window unlike the display window) or larger than kMaxImagePixels; MemoryError
+/// where there is no memory for its pixels.
 ColourImage read_image(const std::filesystem::path& path);
 
 /// Decodes a mask from an image of any channel count: its alpha where that varies over the image,
 /// else the luminance of its colours (stored values, Rec. 709 weights, no transfer function).
 /// Throws Error as read_image does.
 Mask read_mask(const std::filesystem::path& path);
+
+/// The same at a scale in (0, 1] (core/image_scale.h): what the file's pixels are in the mean over
+/// each of the result's, of colours in linear light. Strips of the file are held at a time, not all
+/// of it (unless its compression asks for that: interlaced PNG, progressive JPEG). JPEG files are
+/// decoded at 1/2, 1/4 or 1/8 by their DCT where that is at least as much as is asked for, which
+/// takes the mean in stored values; the rest is averaged.
+ColourImage read_image(const std::filesystem::path& path, double scale);
+/// Coverage in the mean over each of the result's pixels, so that its sum over the object is kept.
+Mask read_mask(const std::filesystem::path& path, double scale);
+/// Of scales for x and y, above 0: masks that are scaled copies of their photographs' size.
+Mask read_mask(const std::filesystem::path& path, const glm::dvec2& scale);
 
 /// Writes an 8-bit PNG; `bytes` holds width * height * channels values, row-major from the
 /// top-left; 1 to 4 channels: grey, grey + alpha, RGB, RGBA, alpha straight. The file appears whole

@@ -7,9 +7,10 @@
 #include <optional>
 
 #include "calib/masks.h"
-#include "calib/shrink.h"
 #include "calib/undistort.h"
 #include "core/error.h"
+#include "core/image_scale.h"
+#include "core/scaled_size.h"
 #include "io/image_file.h"
 #include "pipeline/box_picture_parts.h"
 
@@ -80,8 +81,9 @@ std::vector<std::size_t> telling_views(const Scene& scene) {
   return chosen;
 }
 
-View load(const SourceView& source) {
-  View view{source.name, source.camera, io::read_image(source.image), {}};
+View load(const SourceView& source, double scale) {
+  View view{source.name, source.camera, io::read_image(source.image, scale), {}};
+  view.camera.intrinsics = scaled_intrinsics(view.camera.intrinsics, scale);
   make_opaque(view.image);
   undistort(source.distortion, 2, view);
   return view;
@@ -241,9 +243,7 @@ cv::Rect place_on_panel(const Camera& camera, const Box& box) {
           std::max(1, int(factor * size.y))};
 }
 
-cv::Mat draw_photograph(const SourceView& source, std::size_t index, const Box& box,
-                        double voxel_size) {
-  const View view = load(source);
+cv::Mat draw_photograph(const View& view, std::size_t index, const Box& box, double voxel_size) {
   cv::Mat panel(kPanelHeight, kPanelWidth, CV_8UC3, kPaper);
   const cv::Rect place = place_on_panel(view.camera, box);
   cv::Mat small;
@@ -251,8 +251,8 @@ cv::Mat draw_photograph(const SourceView& source, std::size_t index, const Box& 
              place.width < view.image.width ? cv::INTER_AREA : cv::INTER_LINEAR);
   small = 0.8 * small;
   small.copyTo(panel(place));
-  const Placed placed{resized(view.camera, place.width, place.height),
-                      cv::Point2d(place.x, place.y)};
+  Placed placed{view.camera, cv::Point2d(place.x, place.y)};
+  placed.camera.intrinsics = scaled_to(view.camera.intrinsics, place.width, place.height);
   draw_edges(panel, placed, box);
   const cv::Rect inset(kPanelWidth - kInset - 8, kPanelHeight - kInset - 8, kInset, kInset);
   draw_corners(panel, placed, box, inset);
@@ -271,12 +271,14 @@ cv::Mat draw_photograph(const SourceView& source, std::size_t index, const Box& 
 }  // namespace
 }  // namespace picture
 
-BoxPicture draw_box(const Scene& scene, double voxel_size, std::span<const ScenePoint> points) {
+BoxPicture draw_box(const Scene& scene, std::span<const double> scales, double voxel_size,
+                    std::span<const ScenePoint> points) {
   using namespace picture;
+  PHOTOHULL_CHECK_OP(scales.size(), ==, scene.views.size());
   PHOTOHULL_CHECK(scene.box.has_value());
   std::vector<cv::Mat> panels;
   for (const std::size_t i : telling_views(scene))
-    panels.push_back(draw_photograph(scene.views[i], i, *scene.box, voxel_size));
+    panels.push_back(draw_photograph(load(scene.views[i], scales[i]), i, *scene.box, voxel_size));
   panels.push_back(draw_plan(scene, points));
   const int rows = int(panels.size() + 1) / 2, head = 2 * kTitle, gap = 6;
   BoxPicture out{2 * kPanelWidth + gap, head + rows * (kPanelHeight + gap), {}};

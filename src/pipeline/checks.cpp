@@ -1,14 +1,12 @@
 #include "pipeline/checks.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "calib/silhouette.h"
-#include "carving/fit_grid.h"
 #include "core/error.h"
+#include "pipeline/memory.h"
 
 namespace photohull::pipeline {
 namespace {
@@ -68,15 +66,11 @@ void check_cameras_outside(const Box& box, const std::string& source,
                          ": make --box smaller, or check that the poses are world-to-camera"));
 }
 
-void check_memory(const GridSpec& grid) {
-  const std::int64_t bytes = carving::estimate_memory(grid);
-  const std::int64_t physical =
-      std::int64_t(sysconf(_SC_PHYS_PAGES)) * std::int64_t(sysconf(_SC_PAGE_SIZE));
-  if (bytes <= physical) return;
-  const glm::ivec3 n = grid.voxels();
-  throw Error(concat("a grid of ", n.x, " x ", n.y, " x ", n.z, " voxels would take about ",
-                     bytes >> 20, " MiB, but this machine has ", physical >> 20,
-                     " MiB; lower --resolution"));
+void check_memory(std::int64_t bytes, std::int64_t limit) {
+  if (bytes <= limit) return;
+  throw Error(concat("this job would take about ", memory_text(bytes), " of memory, but may take ",
+                     memory_text(limit),
+                     " (--max-memory); lower --resolution or --image-scale, or use fewer --views"));
 }
 
 std::string explain_empty_hull(const Box& box, std::span<const View> views,

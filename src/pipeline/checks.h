@@ -1,6 +1,7 @@
 // What must be true of a scene before and after carving, said in the user's words.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,13 +20,12 @@ std::vector<std::string> check_box(const Box& box, const std::string& source,
 void check_cameras_outside(const Box& box, const std::string& source,
                            std::span<const SourceView> views);
 
-/// Throws Error when a volume of the lattice would exceed the machine's memory.
-void check_memory(const GridSpec& grid);
+/// Throws Error when a job that takes `bytes` would exceed `limit`.
+void check_memory(std::int64_t bytes, std::int64_t limit);
 
 /// Why nothing of the box is left: voxels that are too large, or the views whose silhouettes alone
 /// remove the most of it. `silhouettes`: one for each view, as the hull had them.
 std::string explain_empty_hull(const Box& box, std::span<const View> views,
-                               std::span<const carving::Silhouette> silhouettes,
-                               double voxel_size);
+                               std::span<const carving::Silhouette> silhouettes, double voxel_size);
 
 }  // namespace photohull::pipeline

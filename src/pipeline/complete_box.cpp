@@ -1,34 +1,23 @@
 #include "pipeline/complete_box.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 
 #include "calib/feature_tracks.h"
-#include "calib/shrink.h"
 #include "calib/triangulate.h"
 #include "core/error.h"
 #include "core/median.h"
-#include "io/image_file.h"
 #include "pipeline/find_box.h"
+#include "pipeline/image_scale.h"
 
 namespace photohull::pipeline {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr int kLongestSide = 800;       // pixels of reduced photographs
 constexpr std::size_t kMostViews = 60;  // that are looked at: a few seconds' work
 constexpr double kLargestResidual = 4;  // pixels of the photographs, of the scene file's tracks
 constexpr const char* kSparsePoints = "sparse points";  // io/load_scene.cpp's name for its guess
-
-/// Width and height of the reduced photograph.
-std::pair<int, int> reduced_size(int width, int height) {
-  const double factor = std::min(1.0, double(kLongestSide) / std::max(width, height));
-  return {std::max(1, int(std::lround(factor * width))),
-          std::max(1, int(std::lround(factor * height)))};
-}
 
 /// Views that are far from each other in place and direction, ascending: one after the other, the
 /// one farthest from those taken.
@@ -56,18 +45,22 @@ std::vector<std::size_t> spread_views(const std::vector<SourceView>& views) {
   return taken;
 }
 
-/// The scene with these views alone, its photographs' cameras reduced.
-Scene reduced_scene(const Scene& scene, const std::vector<std::size_t>& kept) {
+/// The scene with these views alone.
+Scene scene_of(const Scene& scene, const std::vector<std::size_t>& kept) {
   Scene out;
   out.path = scene.path;
-  for (const std::size_t i : kept) {
-    SourceView view = scene.views[i];
-    const Intrinsics& k = view.camera.intrinsics;
-    const auto [width, height] = reduced_size(k.width, k.height);
-    view.camera = resized(view.camera, width, height);
-    out.views.push_back(std::move(view));
-  }
+  for (const std::size_t i : kept) out.views.push_back(scene.views[i]);
   return out;
+}
+
+/// Of each view, so that no photograph is larger than kLongestSide.
+std::vector<double> reduced_scales(const Scene& scene) {
+  std::vector<double> scales;
+  for (const SourceView& view : scene.views) {
+    const Intrinsics& k = view.camera.intrinsics;
+    scales.push_back(std::min(1.0, double(kLongestSide) / std::max(k.width, k.height)));
+  }
+  return scales;
 }
 
 /// The scene file's points, with the kept views that show them where it lists tracks.
@@ -105,25 +98,17 @@ bool were_given(const PreparedViews& prepared) {
 
 FoundBox find_in_photographs(MaskPolicy masks, const Scene& scene, Progress& progress) {
   std::vector<std::size_t> kept = spread_views(scene.views);
-  const ViewLoader loader{[](const fs::path& path) {
-                            const ColourImage image = io::read_image(path);
-                            const auto [width, height] = reduced_size(image.width, image.height);
-                            return shrink(image, width, height);
-                          },
-                          [](const fs::path& path) {
-                            const Mask mask = io::read_mask(path);
-                            const auto [width, height] = reduced_size(mask.width, mask.height);
-                            return shrink(mask, width, height);
-                          }};
+  Scene reduced = scene_of(scene, kept);
+  const std::vector<double> scales = reduced_scales(reduced);
+  const ViewLoader loader = reduced_loader(reduced, scales);
+  scale_scene(scales, reduced);
   PrepareOptions options;
   options.masks = masks;
-  Scene reduced = reduced_scene(scene, kept);
   const PreparedViews prepared = prepare_views(reduced, loader, options, progress);
   // What could not be decoded is not among them; the job itself will name it.
   std::erase_if(kept, [&](std::size_t i) {
-    return std::none_of(reduced.views.begin(), reduced.views.end(), [&](const SourceView& view) {
-      return view.name == scene.views[i].name;
-    });
+    return std::none_of(reduced.views.begin(), reduced.views.end(),
+                        [&](const SourceView& view) { return view.name == scene.views[i].name; });
   });
   return find_box({prepared.views, were_given(prepared), listed_points(scene, kept)}, progress);
 }
@@ -152,6 +137,10 @@ std::vector<ScenePoint> complete_box(const BoxOptions& options, MaskPolicy masks
       scene.box_source = std::move(found.source);
       scene.warnings.insert(scene.warnings.end(), found.warnings.begin(), found.warnings.end());
       points = std::move(found.points);
+    } catch (const Cancelled&) {
+      throw;
+    } catch (const MemoryError&) {
+      throw;
     } catch (const Error& failure) {
       if (!guessed) throw Error(concat(scene.path.string(), ": ", failure.what()));
       scene.warnings.push_back(

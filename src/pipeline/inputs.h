@@ -1,6 +1,7 @@
 // What a job works on: photographs, cameras, silhouettes and the lattice, read, checked and mended.
 #pragma once
 
+#include <cmath>
 #include <set>
 #include <span>
 #include <string>
@@ -17,6 +18,9 @@
 
 namespace photohull::pipeline {
 
+/// For messages.
+inline double hundredths(double pixels) { return std::round(100 * pixels) / 100; }
+
 /// The stages before the hull, in the order of their declaration; each fills the members that it is
 /// named for, and the report. They throw Error, UsageError or Cancelled.
 class Inputs {
@@ -25,6 +29,7 @@ class Inputs {
       : options_(options), report_(report), progress_(progress) {}
 
   void load();
+  /// Reads the photographs as large as the voxels need them.
   void prepare();
   /// By default only where silhouettes tell at once that the cameras disagree.
   void refine_cameras();
@@ -63,6 +68,12 @@ class Inputs {
   double cameras_moved_alike = 0;  ///< of it what all views have in common
 
  private:
+  /// Scales for `box`; as small as memory needs them.
+  std::vector<double> choose_scales(const Box& box);
+  std::int64_t memory_limit() const;
+  void take_scales(std::vector<double> scales);
+  /// Decodes the photographs at the scales taken.
+  PreparedViews decode();
   void mend_given_masks(std::span<const MaskJudgement> masks);
   GridSpec lattice(std::span<const Camera> cameras) const;
   void refine_cameras_of(const std::vector<double>& off);
@@ -70,6 +81,8 @@ class Inputs {
   void remember_right_cameras(const CameraRefinement& found, bool used);
   void leave_out(std::span<const int> wrong, const std::string& why);
 
+  Scene full_;                           ///< the scene in the files' pixels, until they are decoded
+  std::vector<double> scales_;           ///< of its views
   std::vector<double> room_;             ///< pixels around each view's outline, for what it is off
   std::set<std::string> right_cameras_;  ///< names of views
   std::set<std::string> made_masks_;     ///< names of views whose masks come from the background

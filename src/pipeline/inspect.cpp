@@ -6,20 +6,15 @@
 #include "carving/fit_grid.h"
 #include "core/error.h"
 #include "pipeline/checks.h"
-#include "pipeline/reconstruct.h"
+#include "pipeline/memory.h"
+#include "pipeline/plan.h"
 
 namespace photohull::pipeline {
 namespace {
 
 constexpr double kDegrees = 57.29577951308232;
-// Within a factor of two of the CPU seconds, and a third of the memory, that `photohull reconstruct
-// --json` reported for templeRing, dinoRing and armadillo on a software rasterizer: how much
-// surface a box holds is not known before. They only feed the estimate.
-constexpr double kSecondsPerPixel = 3.5e-8;
-constexpr double kSecondsPerSurfaceVoxel = 3.5e-5;
-constexpr std::int64_t kBaseMemory = 280 << 20;  // libraries and the driver's compiler
-constexpr double kSmallestBaseline = 3;          // degrees: closer views tell little about depth
-constexpr double kLargestBaseline = 50;          // degrees: farther views hardly correlate
+constexpr double kSmallestBaseline = 3;  // degrees: closer views tell little about depth
+constexpr double kLargestBaseline = 50;  // degrees: farther views hardly correlate
 
 void measure_angles(Inspection& out) {
   std::vector<glm::dvec3> rays;
@@ -40,21 +35,9 @@ void measure_angles(Inspection& out) {
   out.nearest_angle = nearest[nearest.size() / 2];
 }
 
-void estimate_cost(Inspection& out) {
-  double pixels = 0;
-  for (const SourceView& view : out.scene.views)
-    pixels += double(view.camera.intrinsics.width) * view.camera.intrinsics.height;
-  const glm::dvec3 n(out.grid.voxels());
-  const double surface = 2 * (n.x * n.y + n.y * n.z + n.z * n.x);
-  // A pixel takes 4 bytes in memory and 4/3 of that with its mip chain on the device.
-  out.memory_bytes =
-      kBaseMemory + carving::estimate_memory(out.grid) + std::int64_t(pixels * (4 + 4 * 4.0 / 3));
-  out.cpu_seconds = pixels * kSecondsPerPixel + surface * kSecondsPerSurfaceVoxel;
-}
-
 }  // namespace
 
-Inspection inspect(const Scene& scene) {
+Inspection inspect(const Scene& scene, const ReconstructOptions& options) {
   Inspection out;
   out.scene = scene;
   out.warnings = scene.warnings;
@@ -66,8 +49,16 @@ Inspection inspect(const Scene& scene) {
   std::vector<Camera> cameras;
   for (const SourceView& view : scene.views) cameras.push_back(view.camera);
   out.voxel_size = carving::pixel_footprint(*scene.box, cameras);
-  out.grid = carving::fit_grid(*scene.box, out.voxel_size * footprint_factor(Quality::kNormal));
-  estimate_cost(out);
+  out.memory_limit = options.max_memory ? *options.max_memory : default_max_memory();
+  Plan plan = plan_job(options, scene, *scene.box, true, out.memory_limit);
+  out.grid = plan.grid;
+  out.scales = std::move(plan.scales);
+  out.memory_bytes = plan.cost.bytes;
+  out.cpu_seconds = plan.cost.cpu_seconds;
+  if (out.memory_bytes > out.memory_limit)
+    out.warnings.push_back(concat("a reconstruction would take more memory than it may (",
+                                  memory_text(out.memory_limit),
+                                  "; --max-memory): lower --resolution"));
   if (out.grid.voxel_size > carving::voxel_size_for(*scene.box, 2))
     out.warnings.push_back("the box is hardly larger than a pixel: check its units");
   if (out.nearest_angle < kSmallestBaseline)

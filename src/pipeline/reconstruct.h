@@ -1,6 +1,7 @@
 // The main job: photographs in, volume and mesh out.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -80,9 +81,13 @@ struct ReconstructOptions {
   std::optional<double> r_consistency;  ///< pixels, 0 to carving::kMaxSearchRadius
   bool fresh = false;     ///< do not go on from where an interrupted run of the same job came to
   bool evidence = false;  ///< write evidence.ply too: what confidence is computed from
-  std::string device = "auto";    ///< auto, software or an index
-  int threads = 0;                ///< 0: one a core
-  std::vector<std::string> tune;  ///< NAME=VALUE, see pipeline/tuning.h
+  /// At which photographs are read, in (0, 1]; nothing: as the voxels need it
+  /// (pipeline/image_scale.h).
+  std::optional<double> image_scale;
+  std::optional<std::int64_t> max_memory;  ///< bytes; nothing: default_max_memory()
+  std::string device = "auto";             ///< auto, software or an index
+  int threads = 0;                         ///< 0: one a core
+  std::vector<std::string> tune;           ///< NAME=VALUE, see pipeline/tuning.h
 
   /// Throws UsageError naming the option.
   void validate() const;

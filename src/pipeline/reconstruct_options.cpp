@@ -181,6 +181,10 @@ void ReconstructOptions::validate() const {
     throw UsageError(concat("--mesh-error ", mesh_error.value, ": must be finite, 0 or more"));
   if (noise && !(*noise >= 0 && *noise <= kMostNoise))
     throw UsageError(concat("--noise ", *noise, ": expected 8-bit codes from 0 to ", kMostNoise));
+  if (image_scale && !(*image_scale > 0 && *image_scale <= 1))
+    throw UsageError(concat("--image-scale ", *image_scale, ": expected above 0 and up to 1"));
+  if (max_memory && *max_memory < 1)
+    throw UsageError(concat("--max-memory ", *max_memory, ": expected a positive size"));
   if (threads < 0) throw UsageError(concat("--threads ", threads, ": 0 (one a core) or more"));
   check_sweep_options(*this);
   check_tuning(tune, effective_method());
@@ -219,6 +223,8 @@ NamedValues named_options(const ReconstructOptions& options) {
     list.emplace_back("background", options.load.background.string());
   if (options.load.pixel_center)
     list.emplace_back("pixel_center", number(*options.load.pixel_center));
+  list.emplace_back("image_scale", options.image_scale ? number(*options.image_scale) : "auto");
+  if (options.max_memory) list.emplace_back("max_memory", concat(*options.max_memory));
   std::string tuning;
   for (const std::string& assignment : options.tune)
     tuning += (tuning.empty() ? "" : " ") + assignment;

@@ -31,6 +31,7 @@ std::string Report::to_json() const {
   for (const auto& [name, value] : options) j["options"][name] = value;
   j["box"] = {
       {"min", to_json_array(box.min)}, {"max", to_json_array(box.max)}, {"source", box_source}};
+  j["image_scale"] = {{"smallest", smallest_scale}, {"largest", largest_scale}};
   j["masks"] = {{"source", mask_source},
                 {"confidence", mask_confidence},
                 {"mended", masks_mended},

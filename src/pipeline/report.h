@@ -95,11 +95,12 @@ struct Report {
   std::vector<LeftOutView> photographs_left_out;  ///< for they cannot be used
   Box box;
   std::string box_source;
+  double smallest_scale = 1, largest_scale = 1;  ///< at which photographs were read
   std::string mask_source;
   double mask_confidence = 0;
   /// Pixels (calib/refine_cameras.h, tangent_disagreement); NaN where it was not looked at.
   double mask_disagreement = NAN;
-  int masks_mended = 0;           ///< by calib/torn_masks.h
+  int masks_mended = 0;                   ///< by calib/torn_masks.h
   std::vector<OutlineRoom> outline_room;  ///< of views whose outlines are off
   double mask_offset = 0;         ///< pixels by which the masks' outlines were moved outward
   std::vector<MaskReport> masks;  ///< of each view

@@ -111,7 +111,7 @@ TEST_F(Output, AnErrorOnATerminalStandsOnALineOfItsOwn) {
   fs::remove(image(2));
   RunOptions terminal;
   terminal.error_terminal = true;
-  const Finished run = run_photohull(reconstruct(), terminal);
+  const Finished run = run_photohull(reconstruct({"--strict"}), terminal);
   EXPECT_EQ(run.code, 1);
   EXPECT_THAT(run.err, HasSubstr("\r\033[Kphotohull: "));
 }

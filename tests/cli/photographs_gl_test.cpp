@@ -4,6 +4,8 @@
 #include "io/image_file.h"
 #include "io/write_scene.h"
 #include "sphere_scene.h"
+#include "volume/analytic_volumes.h"
+#include "volume/write_mesh.h"
 
 namespace photohull::test {
 namespace {
@@ -127,9 +129,11 @@ TEST_F(PhotographsOfScenes, HalfSizeCopiesScaleTheirCameras) {
   for (SourceView& view : half.views)
     view.camera = scene_.views[std::size_t(&view - &half.views[0])].camera;
   io::write_transforms(half, folder_ / "stated");
-  const auto mesh_of = [&](const std::string& scene, const std::string& masks) {
-    const Finished run = succeed({"reconstruct", path(scene), "--out", out(), "--method", "hull",
-                                  "--resolution", "32", "--masks", path(masks)});
+  const auto mesh_of = [&](const std::string& scene, const std::string& masks,
+                           const std::string& image_scale = "auto") {
+    const Finished run =
+        succeed({"reconstruct", path(scene), "--out", out(), "--method", "hull", "--resolution",
+                 "32", "--masks", path(masks), "--image-scale", image_scale});
     const bool scaled = run.err.find("16 of 16 photographs are scaled copies") != std::string::npos;
     EXPECT_EQ(scaled, scene == "stated");
     EXPECT_EQ(report()["photographs"]["scaled"], scaled ? 16 : 0);
@@ -138,6 +142,13 @@ TEST_F(PhotographsOfScenes, HalfSizeCopiesScaleTheirCameras) {
   const std::string right = mesh_of("small", "halves");
   EXPECT_TRUE(mesh_of("stated", "halves") == right);
   EXPECT_TRUE(mesh_of("stated", "cutouts") == right);  // masks of the cameras' size
+  const std::string coarse = mesh_of("small", "halves", "0.5");
+  EXPECT_FALSE(coarse == right);
+  EXPECT_EQ(report()["image_scale"]["largest"], 0.5);
+  EXPECT_TRUE(mesh_of("stated", "halves", "0.5") == coarse);
+  const double volume = signed_volume(read_ply(out() + "/mesh.ply"));
+  mesh_of("stated", "cutouts", "0.5");  // averaged once instead of twice: not the same bytes
+  EXPECT_NEAR(signed_volume(read_ply(out() + "/mesh.ply")), volume, 0.002 * volume);
 }
 
 TEST_F(PhotographsOfScenes, AnotherShapeIsLeftOutWithItsReason) {

@@ -63,7 +63,8 @@ TEST_F(Reconstruct, ReportHasTheDocumentedFields) {
   const json schema = json::parse(R"({
     "photohull": "", "device": "", "noise_sigma": 0.1, "voxels_kept": 1, "wall_seconds": 0.1,
     "cpu_seconds": 0.1, "peak_memory_bytes": 1, "warnings": [], "files": [], "stages": [],
-    "left_out": [], "verdict": {"level": "good"},
+    "left_out": [], "verdict": {"level": "good"}, "image_scale": {"smallest": 0.1, "largest": 0.1},
+    "photographs": {"listed": 1, "left_out": [], "scaled": 1, "passed_over": 1},
     "options": {}, "scene": {"path": "", "format": "", "views": 1},
     "box": {"min": [], "max": [], "source": ""}, "masks": {"source": "", "confidence": 0.1, "mended": 0, "left_out": [], "offset": 0.1, "disagreement": 0.1},
     "grid": {"origin": [], "voxel_size": 0.1, "voxels": [], "bricks_stored": 1},

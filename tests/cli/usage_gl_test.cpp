@@ -33,7 +33,7 @@ TEST_F(Usage, InfoTellsWhatWasUnderstood) {
   const std::string text = succeed({"info", scene()}).out;
   for (const char* part :
        {"16 (middlebury format)", "96 x 72 pixels", "focal length   145.0", "from bbox.txt",
-        "degrees to the nearest", "normal quality", "MiB", "CPU seconds"})
+        "degrees to the nearest", "image scale    1\n", "MiB", "CPU seconds"})
     EXPECT_THAT(text, HasSubstr(part));
 }
 
@@ -51,6 +51,29 @@ TEST_F(Usage, InfoAsJson) {
   EXPECT_EQ(info["box"]["source"], "bbox.txt");
   EXPECT_GT(info["memory_bytes"], 0);
   EXPECT_GT(info["cpu_seconds"], 0);
+}
+
+TEST_F(Usage, InfoEstimatesTheJobThatIsAskedFor) {
+  const auto estimate = [&](std::vector<std::string> options) {
+    options.insert(options.begin(), {"info", scene(), "--json"});
+    return json::parse(succeed(options).out);
+  };
+  const json coarse = estimate({"--resolution", "64"}), fine = estimate({"--resolution", "512"});
+  EXPECT_GT(fine["memory_bytes"], coarse["memory_bytes"]);
+  EXPECT_GT(fine["cpu_seconds"], coarse["cpu_seconds"]);
+  EXPECT_EQ(coarse["image_scale"], 1);
+  EXPECT_EQ(estimate({"--image-scale", "1/4"})["image_scale"], 0.25);
+  EXPECT_GT(estimate({"--resolution", "512", "--masks", "none"})["memory_bytes"],
+            fine["memory_bytes"]);
+  EXPECT_LT(estimate({"--resolution", "512", "--method", "hull"})["cpu_seconds"],
+            fine["cpu_seconds"]);
+  // Of the views that will be used.
+  EXPECT_LT(estimate({"--resolution", "512", "--views", "spread:4"})["cpu_seconds"],
+            fine["cpu_seconds"]);
+  EXPECT_LT(estimate({"--resolution", "512", "--views", "spread:4"})["memory_bytes"],
+            fine["memory_bytes"]);
+  EXPECT_THAT(succeed({"info", scene(), "--max-memory", "1M"}).out,
+              HasSubstr("would take more memory than it may (1 MiB; --max-memory)"));
 }
 
 TEST_F(Usage, InfoFindsABoxThatTheSceneDoesNotGive) {

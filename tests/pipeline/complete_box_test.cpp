@@ -18,11 +18,11 @@ using testing::StartsWith;
 using testing::ThrowsMessage;
 
 /// A textured block; `more` are fields of the spec.
-void render(const std::string& more, const std::filesystem::path& folder) {
+void render(const std::string& more, const std::filesystem::path& folder, int width = 400) {
   synth::Spec spec = synth::parse_spec(
       R"({"geometry": {"shape": "block"}, "material": {"contrast": 0.9},)" + more + "}", "test",
       "");
-  spec.image = {400, 300, 2};
+  spec.image = {width, 3 * width / 4, 2};
   spec.truth_samples = 200;
   Progress progress;
   synth::synthesize(spec, folder, progress);
@@ -54,6 +54,14 @@ void expect_found(const std::filesystem::path& folder, MaskPolicy masks, const c
 TEST(CompleteBox, FindsTheObjectOnPlainGround) {
   ScratchFolder folder;
   render(kRings, folder / "scene");
+  expect_found(folder / "scene", MaskPolicy::kAuto, "the silhouettes of 16 views");
+  expect_found(folder / "scene", MaskPolicy::kNone, "features triangulated");
+}
+
+/// Which are read at 800 pixels.
+TEST(CompleteBox, FindsTheObjectInLargePhotographs) {
+  ScratchFolder folder;
+  render(kRings, folder / "scene", 1300);
   expect_found(folder / "scene", MaskPolicy::kAuto, "the silhouettes of 16 views");
   expect_found(folder / "scene", MaskPolicy::kNone, "features triangulated");
 }
@@ -120,13 +128,21 @@ TEST(DrawBox, ShowsTheBoxInPhotographsAndFromAbove) {
   ScratchFolder folder;
   render(kRings, folder / "scene");
   Scene scene = io::load_scene(folder / "scene/transforms.json");
-  const BoxPicture whole = draw_box(scene, 0.01 * scene.box->diagonal(), {});
+  const std::vector<double> scales(scene.views.size(), 1), halves(scene.views.size(), 0.5);
+  const BoxPicture whole = draw_box(scene, scales, 0.01 * scene.box->diagonal(), {});
   ASSERT_EQ(whole.rgb.size(), std::size_t(3) * whole.width * whole.height);
   const std::array<int, 3> edges = edge_pixels(whole);
   for (int axis = 0; axis < 3; ++axis) EXPECT_GT(edges[std::size_t(axis)], 300) << axis;
+  // Photographs of fewer pixels are drawn as large, with the box at the same place.
+  const BoxPicture coarse = draw_box(scene, halves, 0.01 * scene.box->diagonal(), {});
+  ASSERT_EQ(coarse.rgb.size(), whole.rgb.size());
+  for (int axis = 0; axis < 3; ++axis)
+    EXPECT_NEAR(edge_pixels(coarse)[std::size_t(axis)], edges[std::size_t(axis)],
+                0.02 * edges[std::size_t(axis)]);
+  EXPECT_NE(coarse.rgb, whole.rgb);
   // Half as long along x: fewer red pixels, and not in the same places.
   scene.box->max.x = scene.box->center().x;
-  const BoxPicture half = draw_box(scene, 0.01 * scene.box->diagonal(), {});
+  const BoxPicture half = draw_box(scene, scales, 0.01 * scene.box->diagonal(), {});
   EXPECT_LT(edge_pixels(half)[0], 0.8 * edges[0]);
 }
 

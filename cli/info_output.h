@@ -1,0 +1,18 @@
+// What `photohull info` prints.
+#pragma once
+
+#include "calib/diagnose.h"
+#include "calib/prepare_views.h"
+#include "pipeline/inspect.h"
+
+namespace photohull::cli {
+
+/// On standard output, for people. `masks` and `diagnosis`: null where they were not asked for.
+void print_info_text(const pipeline::Inspection& info, const PreparedViews* masks,
+                     const CameraDiagnosis* diagnosis);
+
+/// The same as JSON; infinite and undefined numbers become null.
+void print_info_json(const pipeline::Inspection& info, const PreparedViews* masks,
+                     const CameraDiagnosis* diagnosis);
+
+}  // namespace photohull::cli

@@ -1,0 +1,35 @@
+// What a job will cost, before anything is decoded.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/grid.h"
+#include "pipeline/reconstruct.h"
+
+namespace photohull::pipeline {
+
+/// Where the silhouettes come from.
+enum class Silhouettes { kGiven, kMade, kNone };
+
+struct CostQuestion {
+  std::vector<Intrinsics> files;  ///< sizes of the photographs as they are
+  std::vector<Camera> cameras;    ///< of the photographs as they are read, in the same order
+  std::optional<GridSpec> grid;   ///< nothing: not known yet, photographs alone count
+  Method method = Method::kRefine;
+  Silhouettes masks = Silhouettes::kGiven;
+};
+
+struct Cost {
+  std::int64_t bytes = 0;  ///< peak of the process
+  double cpu_seconds = 0;  ///< all threads, on the software rasterizer
+};
+
+/// Estimates fitted on runs over methods, resolutions, numbers and sizes of photographs, with and
+/// without masks (docs/limits.md has the table). How much surface a box holds is not known before:
+/// that of the runs is taken, as a share of the box's faces.
+Cost estimate_cost(const CostQuestion& question);
+
+}  // namespace photohull::pipeline

@@ -1,0 +1,105 @@
+// Inputs: cameras that the photographs correct.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "calib/diagnose.h"
+#include "calib/feature_tracks.h"
+#include "calib/refine_cameras.h"
+#include "core/error.h"
+#include "pipeline/inputs.h"
+#include "pipeline/refine_cameras.h"
+#include "projtex/gpu_views.h"
+
+namespace photohull::pipeline {
+namespace {
+
+constexpr int kFewestFeatures = 20;  // held-out ones that confirm a camera
+constexpr double kAgrees = 0.5;      // pixels, of these
+constexpr double kMended = 0.5;      // of what the outlines of views were off
+
+std::string in_common(const CameraRefinement& found) {
+  return concat(" (in all views focal lengths times ", std::round(1e4 * found.focal_factor) / 1e4,
+                ", principal points by ", hundredths(found.principal.x), ", ",
+                hundredths(found.principal.y), " px)");
+}
+
+double sum(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+}  // namespace
+
+/// Refines the cameras of the views that are off; all others agree and stay as they are.
+void Inputs::refine_cameras_of(const std::vector<double>& off) {
+  RefineCamerasOptions o;
+  for (std::size_t i = 0; i < off.size(); ++i)
+    if (off[i] == 0) o.held.push_back(int(i));
+  o.given = undistorted_tracks(scene, views);
+  o.box = scene.box;
+  const CameraRefinement found = photohull::refine_cameras(views, o, progress_);
+  const double left = sum(outlines_off(found.cameras, views));
+  const bool use = found.changed && left < kMended * sum(off);
+  report_.camera_refinement = to_json(found, scene, use);
+  if (!use) return;
+  const std::size_t count = off.size() - o.held.size();
+  warn(concat(
+      "the outlines of ", count, count == 1 ? " view" : " views",
+      " are off what the others say, by up to ",
+      hundredths(*std::max_element(off.begin(), off.end())),
+      " px: the cameras of these were refined (--refine-cameras off takes them as they are)"));
+  use_cameras(found);
+}
+
+void Inputs::use_cameras(const CameraRefinement& found) {
+  apply(found, scene);
+  for (std::size_t i = 0; i < views.size(); ++i) views[i].camera = found.cameras[i];
+}
+
+void Inputs::refine_cameras() {
+  const bool asked = options_.refine_cameras.has_value();
+  if (!asked) {
+    report_.mask_disagreement = tangent_disagreement(views);
+    if (!(report_.mask_disagreement > kSuspiciousTangents)) {
+      const std::vector<double> off = outlines_off(projtex::cameras_of(views), views);
+      if (sum(off) > 0) refine_cameras_of(off);
+      return;
+    }
+  }
+  RefineCamerasOptions o;
+  if (options_.refine_cameras == RefineCameras::kPosesAndIntrinsics)
+    o.intrinsics = SharedIntrinsics::kAll;
+  else if (options_.refine_cameras != RefineCameras::kPoses)
+    o.intrinsics = SharedIntrinsics::kWhereAlike;
+  o.given = undistorted_tracks(scene, views);
+  o.box = scene.box;
+  const CameraRefinement found = photohull::refine_cameras(views, o, progress_);
+  const bool always = asked && options_.refine_cameras != RefineCameras::kAuto;
+  const bool use = found.changed && (always || pays(found));
+  report_.camera_refinement = to_json(found, scene, use);
+  remember_right_cameras(found, use);
+  if (!use) return;
+  if (!asked)
+    warn(concat("the masks' outlines disagree by ", hundredths(report_.mask_disagreement),
+                " px: the cameras were refined",
+                shares_intrinsics(found) ? in_common(found) : std::string(),
+                ", and what they see agrees to ",
+                hundredths(found.all.observations ? found.all.after : found.tangents_after),
+                " px instead of ",
+                hundredths(found.all.observations ? found.all.before : found.tangents_before),
+                " (--refine-cameras off takes them as they are)"));
+  cameras_moved = found.moved;
+  cameras_moved_alike = found.moved_alike;
+  use_cameras(found);
+}
+
+/// Features of a view whose camera is right lie where those of other views say, whatever its mask.
+void Inputs::remember_right_cameras(const CameraRefinement& found, bool used) {
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const ViewAgreement& v = found.views[i];
+    if (v.observations >= kFewestFeatures && (used ? v.after : v.before) <= kAgrees)
+      right_cameras_.insert(views[i].name);
+  }
+}
+
+}  // namespace photohull::pipeline

@@ -1,0 +1,92 @@
+#include "pipeline/plan.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "carving/fit_grid.h"
+#include "core/error.h"
+#include "core/image_scale.h"
+#include "pipeline/image_scale.h"
+
+namespace photohull::pipeline {
+namespace {
+
+/// Alpha channels are not known before decoding: they count as masks that must be made.
+Silhouettes silhouettes_of(const ReconstructOptions& options, const Scene& scene) {
+  if (options.load.masks == io::MaskSource::kNone) return Silhouettes::kNone;
+  const bool given = options.load.masks != io::MaskSource::kBackground &&
+                     std::any_of(scene.views.begin(), scene.views.end(),
+                                 [](const SourceView& view) { return !view.mask.empty(); });
+  return given ? Silhouettes::kGiven : Silhouettes::kMade;
+}
+
+void count_cost(const ReconstructOptions& options, const Scene& scene, const Box& box,
+                bool with_grid, Plan& plan) {
+  CostQuestion question;
+  for (std::size_t i = 0; i < plan.scales.size(); ++i) {
+    question.files.push_back(scene.views[i].camera.intrinsics);
+    question.cameras.push_back(scene.views[i].camera);
+    Intrinsics& k = question.cameras.back().intrinsics;
+    k = scaled_intrinsics(k, plan.scales[i]);
+  }
+  if (with_grid)
+    plan.grid =
+        *(question.grid = carving::fit_grid(box, voxel_size_of(options, box, question.cameras)));
+  question.method = options.effective_method();
+  question.masks = silhouettes_of(options, scene);
+  plan.cost = estimate_cost(question);
+}
+
+}  // namespace
+
+double voxel_size_of(const ReconstructOptions& options, const Box& box,
+                     std::span<const Camera> cameras) {
+  if (options.resolution) return carving::voxel_size_for(box, *options.resolution);
+  const double largest = carving::voxel_size_for(box, 2);
+  if (options.voxel_size) {
+    if (*options.voxel_size > largest)
+      throw UsageError(concat("--voxel-size ", *options.voxel_size, ": at most ", largest,
+                              ", half of the box's longest side"));
+    return *options.voxel_size;
+  }
+  const double footprint = carving::pixel_footprint(box, cameras);
+  if (!(footprint > 0)) throw Error("no camera has the box's centre in front of it");
+  const double size = footprint * footprint_factor(options.quality);
+  if (size > largest)
+    throw Error(concat("a pixel is ", footprint,
+                       " world units large at the box's centre, too much for a box whose longest "
+                       "side is ",
+                       2 * largest, "; check the box's units, or give --voxel-size"));
+  return size;
+}
+
+Plan plan_job(const ReconstructOptions& options, const Scene& scene, const Box& box, bool with_grid,
+              std::int64_t limit) {
+  Plan plan;
+  plan.wanted.assign(scene.views.size(), options.image_scale.value_or(1));
+  // Voxels that follow the pixels need these as they are.
+  const bool given = options.resolution || options.voxel_size;
+  const double voxel =
+      given ? voxel_size_of(options, box, {}) : std::numeric_limits<double>::infinity();
+  if (given && !options.image_scale) {
+    plan.wanted = image_scales(box, scene.views, voxel);
+    keep_unexpected_sizes(scene.views, plan.wanted);
+  }
+  plan.scales = plan.wanted;
+  count_cost(options, scene, box, with_grid, plan);
+  while (!options.image_scale && plan.cost.bytes > limit) {
+    std::vector<double> smaller = plan.scales;
+    if (!halve_image_scales(box, scene.views, voxel, smaller)) break;
+    keep_unexpected_sizes(scene.views, smaller);
+    if (smaller == plan.scales) break;
+    plan.scales = std::move(smaller);
+    count_cost(options, scene, box, with_grid, plan);
+  }
+  return plan;
+}
+
+std::string smallest_scale_text(std::span<const double> scales) {
+  return image_scale_text(*std::min_element(scales.begin(), scales.end()));
+}
+
+}  // namespace photohull::pipeline
