@@ -43,7 +43,7 @@ struct RefineOptions {
   double noise_sigma = 0.003;  ///< of the images, square-root encoding
   bool voting = true;          ///< start from coarse depth maps' free space instead of the hull
   VoteOptions vote;
-  LabelOptions label;  ///< where there are no silhouettes; 0 iterations: unknown space is solid
+  LabelOptions label;   ///< where there are no silhouettes; 0 iterations: unknown space is solid
   bool closing = true;  ///< of surface that no camera sees
   CloseOptions close;
   RestoreOptions restore;
