@@ -178,4 +178,14 @@ std::size_t keep_thin_parts(SparseVolume& volume, const Box& box, std::span<cons
   return found.size() + joining.size();
 }
 
+std::vector<bool> on_stems(const GridSpec& grid, std::span<const Camera> cameras,
+                           std::span<const Silhouette> silhouettes,
+                           std::span<const glm::ivec3> voxels) {
+  std::vector<bool> out(voxels.size(), false);
+  const Field field(grid, grid.bounds(), cameras, silhouettes, {});
+  if (!field.has_lines()) return out;
+  for (std::size_t i = 0; i < voxels.size(); ++i) out[i] = field.on_stem(dvec3(voxels[i]));
+  return out;
+}
+
 }  // namespace photohull::carving

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include "carving/hull.h"
 #include "core/box.h"
@@ -18,5 +19,11 @@ namespace photohull::carving {
 /// number of voxels that changed.
 std::size_t keep_thin_parts(SparseVolume& volume, const Box& box, std::span<const Camera> cameras,
                             std::span<const Silhouette> silhouettes, const HullOptions& options);
+
+/// Which of the lattice's voxels fall beside lines in a third of the views that see them, and in
+/// three at least: stems, and sheets seen on edge.
+std::vector<bool> on_stems(const GridSpec& grid, std::span<const Camera> cameras,
+                           std::span<const Silhouette> silhouettes,
+                           std::span<const glm::ivec3> voxels);
 
 }  // namespace photohull::carving

@@ -129,7 +129,8 @@ class Refiner {
                                                       proof_.weights, options_.unproven, volume));
       if (last) keep_thin(volume, hull, counts);
       if (last && any_silhouette(silhouettes_))
-        counts.restored += std::int64_t(rejoin_thin_hull(hull, options_.thin, volume));
+        counts.restored +=
+            std::int64_t(rejoin_stems(hull, cameras_, silhouettes_, options_.thin, volume));
       settled_ = next_settled_;
       counts.split = settled_.count(Settled::kSplit);
       counts.settled_pixels = settled_.count(Settled::kPixels);

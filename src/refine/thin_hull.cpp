@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "carving/join_parts.h"
+#include "carving/thin_parts.h"
 
 namespace photohull::refine {
 namespace {
@@ -74,9 +75,12 @@ std::size_t keep_thin_hull(const SparseVolume& hull, const ThinHullOptions& opti
   return count;
 }
 
-std::size_t rejoin_thin_hull(const SparseVolume& hull, const ThinHullOptions& options,
-                             SparseVolume& volume) {
-  if (options.depth == 0) return 0;
+std::size_t rejoin_stems(const SparseVolume& hull, std::span<const Camera> cameras,
+                         std::span<const carving::Silhouette> silhouettes,
+                         const ThinHullOptions& options, SparseVolume& volume) {
+  const bool lines = std::any_of(silhouettes.begin(), silhouettes.end(),
+                                 [](const auto& s) { return s.lines && !s.lines->empty(); });
+  if (options.depth == 0 || !lines) return 0;
   std::vector<std::vector<carving::Joint>> found(volume.bricks.size());
   tbb::parallel_for(std::size_t(0), volume.bricks.size(), [&](std::size_t slot) {
     const std::uint32_t of_hull = hull.table[hull.grid.brick_index(volume.bricks[slot])];
@@ -90,6 +94,13 @@ std::size_t rejoin_thin_hull(const SparseVolume& hull, const ThinHullOptions& op
   });
   std::vector<carving::Joint> joints;
   for (const auto& list : found) joints.insert(joints.end(), list.begin(), list.end());
+  std::vector<ivec3> voxels;
+  for (const carving::Joint& joint : joints) voxels.push_back(joint.voxel);
+  const std::vector<bool> shown = carving::on_stems(volume.grid, cameras, silhouettes, voxels);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < joints.size(); ++i)
+    if (shown[i]) joints[kept++] = joints[i];
+  joints.resize(kept);
   const std::vector<std::size_t> joining = carving::find_joining(volume, joints);
   for (const std::size_t i : joining) carving::put(joints[i], volume);
   return joining.size();

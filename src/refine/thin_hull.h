@@ -2,7 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 
+#include "carving/hull.h"
+#include "core/camera.h"
 #include "core/grid.h"
 
 namespace photohull::refine {
@@ -21,10 +24,11 @@ struct ThinHullOptions {
 std::size_t keep_thin_hull(const SparseVolume& hull, const ThinHullOptions& options,
                            SparseVolume& volume);
 
-/// Joins parts of the volume that the hull joins by sheets and stems: where these are thin, by the
-/// fewest of their voxels (carving/join_parts.h). Both on one grid. Returns the number of voxels
-/// that came back.
-std::size_t rejoin_thin_hull(const SparseVolume& hull, const ThinHullOptions& options,
-                             SparseVolume& volume);
+/// Joins parts of the volume that the hull joins by stems which silhouettes show as lines: where it
+/// is thin, by the fewest of its voxels (carving/join_parts.h). Both on one grid. Returns the
+/// number of voxels that came back.
+std::size_t rejoin_stems(const SparseVolume& hull, std::span<const Camera> cameras,
+                         std::span<const carving::Silhouette> silhouettes,
+                         const ThinHullOptions& options, SparseVolume& volume);
 
 }  // namespace photohull::refine

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/cameras.h"
 #include "volume/analytic_volumes.h"
 #include "volume/components.h"
 
@@ -102,27 +103,63 @@ TEST(KeepThinHull, WhatPhotographsFreedStaysFree) {
   EXPECT_GT(volume.interpolated(kMiddle + dvec3(4, 0, 0)), 0);
 }
 
-TEST(RejoinThinHull, WhatTheHullJoinsByAStemIsOnePieceAgain) {
+/// Views that show the axis x = 20.3, y = 19.8 (voxels) as a line, or nothing.
+class Shown {
+ public:
+  Shown(const GridSpec& grid, bool line)
+      : cameras(test::cameras_around(grid.origin + grid.voxel_size * dvec3(20, 20, 18),
+                                     120 * grid.voxel_size, 6, 200, 160, 120)) {
+    for (const Camera& camera : cameras) {
+      SilhouetteDistance& d = distances_.emplace_back();
+      d.width = 160, d.height = 120;
+      d.pixels.assign(160 * 120, 1.0f);
+      std::vector<LinePoint>& points = lines_.emplace_back();
+      for (double z = 0; line && z < 40; z += 0.5) {
+        const auto at = camera.project(grid.origin + grid.voxel_size * dvec3(20.3, 19.8, z));
+        if (at) points.push_back({float(at->x), float(at->y), 1, 0, 1});
+      }
+    }
+    for (std::size_t i = 0; i < cameras.size(); ++i)
+      silhouettes.push_back({nullptr, &distances_[i], &lines_[i]});
+  }
+
+  std::vector<Camera> cameras;
+  std::vector<carving::Silhouette> silhouettes;
+
+ private:
+  std::vector<SilhouetteDistance> distances_;
+  std::vector<std::vector<LinePoint>> lines_;
+};
+
+/// With a gap of five voxels.
+SparseVolume torn(const Distance& body) {
+  return sample_volume(
+      kBricks, [&](const dvec3& p) { return std::max(body(p), 2.6 - std::abs(p.z - 17.5)); });
+}
+
+TEST(RejoinStems, WhatTheHullJoinsByAStemIsOnePieceAgain) {
   const Distance stem = [](const dvec3& p) { return std::hypot(p.x - 20.3, p.y - 19.8) - 0.9; };
   const SparseVolume hull = sample_volume(kBricks, stem);
-  SparseVolume volume = sample_volume(
-      kBricks, [&](const dvec3& p) { return std::max(stem(p), 2.6 - std::abs(p.z - 17.5)); });
+  SparseVolume volume = torn(stem);
+  const Shown shown(hull.grid, true), unseen(hull.grid, false);
   ASSERT_EQ(component_sizes(volume).size(), 2u);
   const std::size_t inside = volume.inside_voxels();
-  const std::size_t back = rejoin_thin_hull(hull, {}, volume);
+  EXPECT_EQ(rejoin_stems(hull, unseen.cameras, unseen.silhouettes, {}, volume), 0u)
+      << "no mask shows a line there";
+  const std::size_t back = rejoin_stems(hull, shown.cameras, shown.silhouettes, {}, volume);
   EXPECT_EQ(component_sizes(volume).size(), 1u);
   EXPECT_EQ(volume.inside_voxels(), inside + back);
   EXPECT_LE(back, 6u);  // voxels of the gap
 }
 
-TEST(RejoinThinHull, PartsThatPhotographsPutApartStayApart) {
-  // The hull joins them by a thick neck, which is not thin: photographs can judge it.
+TEST(RejoinStems, PartsThatPhotographsPutApartStayApart) {
+  // The hull joins them by a thick neck, which photographs can judge.
   const Distance body = box({10, 10, 4}, {30, 30, 36});
   const SparseVolume hull = sample_volume(kBricks, body);
-  SparseVolume volume = sample_volume(
-      kBricks, [&](const dvec3& p) { return std::max(body(p), 2.6 - std::abs(p.z - 17.5)); });
+  SparseVolume volume = torn(body);
+  const Shown shown(hull.grid, true);
   const std::vector<float> before = volume.distance;
-  EXPECT_EQ(rejoin_thin_hull(hull, {}, volume), 0u);
+  EXPECT_EQ(rejoin_stems(hull, shown.cameras, shown.silhouettes, {}, volume), 0u);
   EXPECT_EQ(volume.distance, before);
 }
 
