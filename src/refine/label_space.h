@@ -10,7 +10,9 @@
 namespace photohull::refine {
 
 struct LabelOptions {
-  double evidence = 2;    ///< weight of a sure ray's say against a voxel's face of surface
+  /// Faces of surface that the usual claim of the rays on a voxel outweighs. What is usual depends
+  /// on how many views there are and how sure they are, so that few views are believed as well.
+  double evidence = 24;
   double unknown = 0.02;  ///< cost of a solid voxel that no ray says anything of
   int iterations = 150;
 };

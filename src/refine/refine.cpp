@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "carving/fit_grid.h"
 #include "core/error.h"
 #include "refine/checkpoint.h"
 #include "refine/settle.h"
@@ -20,6 +21,7 @@
 namespace photohull::refine {
 namespace {
 
+constexpr double kLeastPixels = 3;  // that a voxel of the first level is wide, without silhouettes
 constexpr double kNearReach = kStillReach;  // voxels of exact distance that a step needs
 constexpr double kAnglePerSpacing = 2.0;  // reach of a view's partners, in spacings of the cameras
 constexpr double kFullReach = SparseVolume::kBand;
@@ -359,10 +361,15 @@ SparseVolume refine_surface(gpu::Context& context, const GridSpec& finest, const
     const glm::ivec3 n = grid.voxels();
     return std::max({n.x, n.y, n.z});
   };
-  const int coarsest = any_silhouette(silhouettes) ? RefineOptions::kCoarsestVoxels
-                                                   : RefineOptions::kCoarsestWithoutMasks;
-  while (options.levels > 0 ? int(grids.size()) < options.levels
-                            : longest(grids.front()) > coarsest)
+  // The votes' patches reach as far as voxels: where these hardly hold pixels, they hold nothing.
+  const double least = any_silhouette(silhouettes)
+                           ? 0
+                           : kLeastPixels * carving::pixel_footprint(finest.bounds(), cameras);
+  const auto is_fine = [&](const GridSpec& grid) {
+    return longest(grid) > RefineOptions::kCoarsestVoxels ||
+           (grid.voxel_size < least && longest(grid) > RefineOptions::kFewestVoxels);
+  };
+  while (options.levels > 0 ? int(grids.size()) < options.levels : is_fine(grids.front()))
     grids.insert(grids.begin(), coarser(grids.front()));
   RefineReport counts;
   SparseVolume volume =

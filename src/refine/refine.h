@@ -29,10 +29,10 @@ namespace photohull::refine {
 
 struct RefineOptions {
   /// Voxel sizes, each half the one before; the last is the result's. 0: as many as bring the first
-  /// grid to kCoarsestVoxels along its longest side, or to fewer where no silhouette brings the
-  /// first guess near the surface.
+  /// grid to kCoarsestVoxels along its longest side, and without silhouettes to voxels of some
+  /// pixels, if that leaves more than kFewestVoxels.
   int levels = 0;
-  static constexpr int kCoarsestVoxels = 80, kCoarsestWithoutMasks = 80;
+  static constexpr int kCoarsestVoxels = 80, kFewestVoxels = 20;
   int coarse_iterations = 3;  ///< of matching and moving, at the first level
   int middle_iterations = 2;
   int fine_iterations = 1;  ///< at the last level

@@ -66,8 +66,13 @@ class Voter {
     for_each_voxel(bricks, [&](std::size_t i, const glm::ivec3& voxel) {
       const Say say = ask(glm::dvec3(voxel));
       told[i] = say.total > 0 ? float(say.sum / say.total * options_.band) : 0;
-      evidence[i] =
-          hull_.at(voxel) > 0 ? kCertain : float(options.evidence * say.sum + options.unknown);
+      evidence[i] = float(say.sum);
+    });
+    const double usual = usual_claim(evidence);
+    for_each_voxel(bricks, [&](std::size_t i, const glm::ivec3& voxel) {
+      evidence[i] = hull_.at(voxel) > 0
+                        ? kCertain
+                        : float(options.evidence / usual * double(evidence[i]) + options.unknown);
     });
     std::vector<float> labels = label_space(context, bricks, evidence, options.iterations);
     for_each_voxel(bricks, [&](std::size_t i, const glm::ivec3& voxel) {
@@ -87,6 +92,16 @@ class Voter {
     if (told == 0) return solid ? -1 : 1;
     if (solid == (told < 0)) return told;
     return solid ? -kBesides : kBesides;
+  }
+
+  /// The upper quartile of what claims voxels: the more views there are and the surer they are, the
+  /// more say each voxel has. 1 where nothing is claimed.
+  static double usual_claim(std::vector<float> sums) {
+    std::erase_if(sums, [](float sum) { return sum >= 0; });
+    if (sums.empty()) return 1;
+    const auto at = sums.begin() + long(sums.size() / 4);
+    std::nth_element(sums.begin(), at, sums.end());
+    return -double(*at);
   }
 
   /// Those that are not outside.

@@ -51,7 +51,7 @@ TEST_F(Refine, SameBytesInEveryRunWhateverTheThreads) {
 TEST_F(Refine, WithoutMasksBetterThanTheHull) {
   EXPECT_EQ(run_photohull(reconstruct({"--method", "hull", "--masks", "none"})).code, 3);
   const double hull = error();
-  succeed(reconstruct({"--method", "refine", "--masks", "none", "--tune", "levels=3"}));
+  succeed(reconstruct({"--method", "refine", "--masks", "none", "--unseen", "closed"}));
   EXPECT_EQ(report()["masks"]["source"], "none");
   EXPECT_LT(error(), 0.6 * hull);
 }
