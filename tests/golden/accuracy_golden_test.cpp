@@ -44,7 +44,8 @@ TEST(Accuracy, Block) {
   expect_scores(SyntheticScene("block", 24, 320, 240), 96,
                 {{Method::kHull, 30.27, 29.3, 49.85, 48.8},
                  {Method::kSpaceCarving, 46.89, 45.9, 85.25, 84.2},
-                 {Method::kRefine, 89.74, 88.7, 93.88, 92.8}});
+                 // 89.74 on one processor, 88.12 on another: one program, other vector code.
+                 {Method::kRefine, 88.12, 87.1, 93.48, 92.4}});
 }
 
 TEST(Accuracy, RodsBeforeTexture) {
