@@ -1,13 +1,12 @@
 #include "pipeline/complete_box.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "calib/feature_tracks.h"
 #include "calib/triangulate.h"
 #include "core/error.h"
-#include "core/median.h"
+#include "io/spread_views.h"
 #include "pipeline/find_box.h"
 #include "pipeline/image_scale.h"
 
@@ -18,32 +17,6 @@ constexpr int kLongestSide = 800;       // pixels of reduced photographs
 constexpr std::size_t kMostViews = 60;  // that are looked at: a few seconds' work
 constexpr double kLargestResidual = 4;  // pixels of the photographs, of the scene file's tracks
 constexpr const char* kSparsePoints = "sparse points";  // io/load_scene.cpp's name for its guess
-
-/// Views that are far from each other in place and direction, ascending: one after the other, the
-/// one farthest from those taken.
-std::vector<std::size_t> spread_views(const std::vector<SourceView>& views) {
-  std::vector<std::size_t> taken;
-  if (views.size() <= kMostViews) {
-    for (std::size_t i = 0; i < views.size(); ++i) taken.push_back(i);
-    return taken;
-  }
-  std::vector<double> from_first;
-  for (const SourceView& v : views)
-    from_first.push_back(glm::distance(v.camera.center(), views[0].camera.center()));
-  const double scale = std::max(median(from_first), 1e-300);
-  std::vector<double> farness(views.size(), std::numeric_limits<double>::infinity());
-  for (std::size_t next = 0; taken.size() < kMostViews;) {
-    taken.push_back(next);
-    const Camera& camera = views[next].camera;
-    for (std::size_t i = 0; i < views.size(); ++i)
-      farness[i] =
-          std::min(farness[i], glm::distance(views[i].camera.center(), camera.center()) / scale +
-                                   glm::distance(views[i].camera.forward(), camera.forward()));
-    next = std::size_t(std::max_element(farness.begin(), farness.end()) - farness.begin());
-  }
-  std::sort(taken.begin(), taken.end());
-  return taken;
-}
 
 /// The scene with these views alone.
 Scene scene_of(const Scene& scene, const std::vector<std::size_t>& kept) {
@@ -97,7 +70,7 @@ bool were_given(const PreparedViews& prepared) {
 }
 
 FoundBox find_in_photographs(MaskPolicy masks, const Scene& scene, Progress& progress) {
-  std::vector<std::size_t> kept = spread_views(scene.views);
+  std::vector<std::size_t> kept = io::spread_views(scene.views, scene.box, kMostViews);
   Scene reduced = scene_of(scene, kept);
   const std::vector<double> scales = reduced_scales(reduced);
   const ViewLoader loader = reduced_loader(reduced, scales);
