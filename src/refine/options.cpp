@@ -35,7 +35,20 @@ void check(const VoteOptions& o) {
   require(o.band > 0 && o.band <= SparseVolume::kBand, "vote.band must lie in (0, 3] voxels");
   require(o.least_weight > 0, "vote.least_weight must be positive");
   require(o.again_weight > 0, "vote.again_weight must be positive");
+  require(o.rounds >= 0 && o.rounds <= 20, "vote.rounds must be 0 to 20");
+  require(o.bare_reach >= 0 && o.bare_reach <= OpenVoteOptions::kAnyReach,
+          "vote.bare_reach must be 0 to 1048576 rays");
   require(o.freeing_weight > 0, "vote.freeing_weight must be positive");
+}
+
+void check(const OpenVoteOptions& o) {
+  require(o.distinct_by > 0, "open.distinct_by must be positive");
+  require(o.rounds >= 0 && o.rounds <= 20, "open.rounds must be 0 to 20");
+  require(o.last_rounds >= 0 && o.last_rounds <= 20, "open.last_rounds must be 0 to 20");
+  require(o.reach >= 0 && o.reach <= OpenVoteOptions::kAnyReach,
+          "open.reach must be 0 to 1048576 rays");
+  require(o.last_reach >= 0 && o.last_reach <= OpenVoteOptions::kAnyReach,
+          "open.last_reach must be 0 to 1048576 rays");
 }
 
 void check(const CloseOptions& o) {
@@ -141,6 +154,7 @@ void RefineOptions::validate() const {
   require(aggregations >= 0, "aggregations must not be negative");
   require(noise_sigma > 0 && std::isfinite(noise_sigma), "noise_sigma must be positive");
   check(vote);
+  check(open);
   check(close);
   check(rims);
   check(thin);

@@ -1,4 +1,3 @@
-// Depth along rays by comparing patches across them [Collins96].
 #include "refine/ray_maps.h"
 
 #include <tbb/parallel_for.h>
@@ -6,34 +5,20 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gpu/buffer.h"
-#include "gpu/program.h"
 #include "projtex/gpu_views.h"
-#include "refine/match.h"
-#include "shared/bake.h"
-#include "shared/refine.h"
+#include "refine/ray_partners.h"
+#include "refine/ray_search.h"
 
 namespace photohull::refine {
 namespace {
 
-using gpu::Buffer;
-
-constexpr int kLengths[] = {8, 16, 32, 64};  // samples along a ray
-// Degrees between a view and those it is matched with, and what deviations cost.
-constexpr double kNearestPartner = 4, kFarthestPartner = 60, kBestPartner = 15;
-constexpr double kDuplicate = 8, kDuplicateCost = 30;
-constexpr std::size_t kMostThreads = std::size_t(1) << 21;  // of a dispatch
 // Samples about the surface that say whether it explains what a ray shows, voxels apart.
 constexpr int kSurfaceSamples = 2;
 constexpr double kBeside = 2;         // voxels from the surface within which a ray says nothing new
 constexpr double kLeastStride = 1.5;  // pixels between rays: closer ones show the same
-
-struct Ray {
-  int view, x, y;
-  glm::dvec3 from, direction;  // voxels; direction unit
-  double length, depth_per_length;
-  double surface = -1;  // where it meets the surface, voxels from `from`; negative: nowhere
-};
+// Share of the variance of what a ray shows that noise does not explain, below which it does not
+// search space that no surface bounds: plain background fits anywhere.
+constexpr float kLeastTexture = 0.5f;
 
 double value_at(const SparseVolume& v, const glm::dvec3& p) {
   return v.at(glm::ivec3(glm::floor(p + 0.5)));
@@ -51,78 +36,79 @@ double crossing(const SparseVolume& surface, const glm::dvec3& from, const glm::
   return 0.5 * (outside + inside);
 }
 
-double degrees_between(const glm::dvec3& a, const glm::dvec3& b) {
-  return glm::degrees(std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0)));
+/// The surface's normal at a place on it; that of a plane across the ray where it has none.
+glm::dvec3 normal_at(const SparseVolume& surface, const Ray& ray) {
+  const glm::dvec3 p = ray.from + ray.surface * ray.direction;
+  glm::dvec3 slope;
+  for (int a = 0; a < 3; ++a) {
+    glm::dvec3 e(0);
+    e[a] = 1;
+    slope[a] = surface.interpolated(p + e) - surface.interpolated(p - e);
+  }
+  return glm::dot(slope, ray.direction) < 0 ? glm::normalize(slope) : -ray.direction;
 }
 
-class RayMatcher {
+class RayMapper {
  public:
-  RayMatcher(gpu::Context& context, const SparseVolume& hull, const projtex::ImageSet& images,
-             std::span<const Camera> cameras, double noise_sigma, const VoteOptions& options)
-      : context_(context), hull_(hull), images_(images), options_(options), noise_(noise_sigma) {
-    const glm::ivec2 size(images.texture().width(), images.texture().height());
-    for (const Camera& camera : cameras) {
-      cameras_.push_back(projtex::to_grid(camera, hull.grid));
-      gpu_views_.push_back(projtex::to_gpu_view(cameras_.back(), size));
-    }
-  }
+  RayMapper(gpu::Context& context, const SparseVolume& hull, const SparseVolume* surface,
+            const projtex::ImageSet& images, std::span<const Camera> cameras, double noise_sigma,
+            const VoteOptions& options)
+      : hull_(hull),
+        surface_(surface),
+        options_(options),
+        cameras_(on_grid(cameras, hull.grid)),
+        partners_(choose_partners(cameras_, 0.5 * glm::dvec3(hull.grid.voxels()))),
+        search_(context, images, gpu_views(images), noise_sigma, options) {}
 
+  /// View by view, so that memory is that of one view's rays.
   std::vector<RayMap> run() {
-    choose_partners();
-    search(make_rays(nullptr));
-    return std::move(maps_);
-  }
-
-  /// Only rays that the surface does not explain search the hull; what they find elsewhere than at
-  /// the surface is news.
-  std::vector<RayMap> run(const SparseVolume& surface) {
-    choose_partners();
-    std::vector<Ray> rays = make_rays(&surface);
-    std::erase_if(rays, [](const Ray& ray) { return ray.surface < 0; });
-    std::vector<Ray> unexplained;
-    match(about_surface(rays), kSurfaceSamples, [&](std::size_t i, const float* s) {
-      const int best = int(std::max_element(s, s + kSurfaceSamples) - s);
-      if (s[best] < options_.least_score) {
-        unexplained.push_back(rays[i]);
-      } else {
-        tell(rays[i], rays[i].surface, confidence(s[best]));
-      }
-    });
-    tbb::parallel_for(std::size_t(0), unexplained.size(),
-                      [&](std::size_t i) { reach_through_hull(unexplained[i]); });
-    search(unexplained);
-    return std::move(maps_);
+    std::vector<RayMap> maps;
+    for (std::size_t v = 0; v < cameras_.size(); ++v) maps.push_back(map_of(v));
+    return maps;
   }
 
  private:
-  void choose_partners() {
-    const glm::dvec3 centre = 0.5 * glm::dvec3(hull_.grid.voxels());
-    std::vector<glm::dvec3> d;
-    for (const auto& c : cameras_) d.push_back(glm::normalize(c.centre - centre));
-    for (std::size_t i = 0; i < d.size(); ++i) {
-      std::vector<int> chosen{int(i)};
-      while (chosen.size() < shaders::kMatchViews) {
-        int best = -1;
-        double least = 1e9;
-        for (std::size_t j = 0; j < d.size(); ++j) {
-          if (std::find(chosen.begin(), chosen.end(), int(j)) != chosen.end()) continue;
-          const double angle = degrees_between(d[i], d[j]);
-          if (angle < kNearestPartner || angle > kFarthestPartner) continue;
-          double nearest = 180;
-          for (const int k : chosen)
-            nearest = std::min(nearest, degrees_between(d[std::size_t(k)], d[j]));
-          const double cost =
-              std::abs(angle - kBestPartner) + (nearest < kDuplicate ? kDuplicateCost : 0);
-          if (cost < least) least = cost, best = int(j);
-        }
-        if (best < 0) break;
-        chosen.push_back(best);
-      }
-      shaders::MatchChoice c{{-1, -1, -1, -1}, {-1, -1, 0, int(chosen.size())}, glm::ivec4(-1)};
-      for (std::size_t k = 0; k < chosen.size(); ++k)
-        (k < 4 ? c.first[int(k)] : c.second[int(k - 4)]) = chosen[k];
-      partners_.push_back(c);
-    }
+  static std::vector<projtex::GridCamera> on_grid(std::span<const Camera> cameras,
+                                                  const GridSpec& grid) {
+    std::vector<projtex::GridCamera> out;
+    for (const Camera& camera : cameras) out.push_back(projtex::to_grid(camera, grid));
+    return out;
+  }
+
+  std::vector<shaders::GpuView> gpu_views(const projtex::ImageSet& images) const {
+    const glm::ivec2 size(images.texture().width(), images.texture().height());
+    std::vector<shaders::GpuView> out;
+    for (const auto& camera : cameras_) out.push_back(projtex::to_gpu_view(camera, size));
+    return out;
+  }
+
+  RayMap map_of(std::size_t v) const {
+    RayMap map = empty_map(v);
+    std::vector<Ray> rays = make_rays(v, map);
+    std::vector<Finding> findings(rays.size());
+    if (surface_) explain(v, rays, findings, map);
+    search_.sweep(rays, partners_[v], findings);
+    search_.spread(rays, map.width, map.height, partners_[v], findings);
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      if (!findings[i].known && findings[i].score >= options_.least_score)
+        tell(v, rays[i], findings[i].along,
+             confidence(findings[i].score) *
+                 std::clamp(findings[i].lead() / options_.distinct_by, 0.0, 1.0),
+             map);
+    return map;
+  }
+
+  RayMap empty_map(std::size_t v) const {
+    const auto& c = cameras_[v];
+    const glm::dvec3 middle = 0.5 * glm::dvec3(hull_.grid.voxels());
+    const double depth = (c.projection * glm::dvec4(middle, 1)).z;
+    RayMap map;
+    map.stride = std::max(kLeastStride, options_.ray_spacing * c.focal / std::max(depth, 1.0));
+    map.width = int(std::ceil(c.width / map.stride));
+    map.height = int(std::ceil(c.height / map.stride));
+    map.depth.assign(std::size_t(map.width) * map.height, 0);
+    map.weight = map.depth;
+    return map;
   }
 
   /// Calls visit(t) for places in the hull along a ray, from `t` voxels on, until it returns false.
@@ -154,123 +140,92 @@ class RayMatcher {
   }
 
   /// Rays through the hull, and with a surface only as far as that.
-  std::vector<Ray> make_rays(const SparseVolume* surface) {
-    maps_.resize(cameras_.size());
-    std::vector<std::vector<Ray>> found(cameras_.size());
-    tbb::parallel_for(std::size_t(0), cameras_.size(), [&](std::size_t v) {
-      const auto& c = cameras_[v];
-      RayMap& map = maps_[v];
-      const glm::dvec3 centre = 0.5 * glm::dvec3(hull_.grid.voxels());
-      const double depth = (c.projection * glm::dvec4(centre, 1)).z;
-      map.stride = std::max(kLeastStride, options_.ray_spacing * c.focal / std::max(depth, 1.0));
-      map.width = int(std::ceil(c.width / map.stride));
-      map.height = int(std::ceil(c.height / map.stride));
-      map.depth.assign(std::size_t(map.width) * map.height, 0);
-      map.weight = map.depth;
-      const glm::dmat3 m(c.projection[0], c.projection[1], c.projection[2]);
-      const glm::dmat3 inverse = glm::inverse(m);
-      for (int y = 0; y < map.height; ++y)
-        for (int x = 0; x < map.width; ++x) {
-          const glm::dvec3 d = glm::normalize(
-              inverse * glm::dvec3((x + 0.5) * map.stride - 0.5, (y + 0.5) * map.stride - 0.5, 1));
-          double first = -1, last = -1, at = -1;
-          walk(c.centre, d, 0, [&](double t) {
-            if (first < 0) first = t;
-            last = t;
-            if (!surface || value_at(*surface, c.centre + t * d) > 0) return true;
-            at = crossing(*surface, c.centre, d, t);
-            return false;
-          });
-          if (first < 0) continue;
-          first -= 1;
-          last += 1;
-          found[v].push_back({int(v), x, y, c.centre + first * d, d, last - first, (m * d).z,
-                              at < 0 ? -1 : at - first});
-        }
+  std::vector<Ray> make_rays(std::size_t v, const RayMap& map) const {
+    const auto& c = cameras_[v];
+    const glm::dmat3 m(c.projection[0], c.projection[1], c.projection[2]);
+    const glm::dmat3 inverse = glm::inverse(m);
+    std::vector<std::vector<Ray>> rows(std::size_t(map.height));
+    tbb::parallel_for(0, map.height, [&](int y) {
+      for (int x = 0; x < map.width; ++x) {
+        const glm::dvec3 d = glm::normalize(
+            inverse * glm::dvec3((x + 0.5) * map.stride - 0.5, (y + 0.5) * map.stride - 0.5, 1));
+        double first = -1, last = -1, at = -1;
+        walk(c.centre, d, 0, [&](double t) {
+          if (first < 0) first = t;
+          last = t;
+          if (!surface_ || value_at(*surface_, c.centre + t * d) > 0) return true;
+          at = crossing(*surface_, c.centre, d, t);
+          return false;
+        });
+        if (first < 0) continue;
+        first -= 1;
+        last += 1;
+        rows[std::size_t(y)].push_back(
+            {x, y, c.centre + first * d, d, last - first, (m * d).z, at < 0 ? -1 : at - first});
+      }
     });
     std::vector<Ray> rays;
-    for (const auto& list : found) rays.insert(rays.end(), list.begin(), list.end());
+    for (const auto& row : rows) rays.insert(rays.end(), row.begin(), row.end());
     return rays;
   }
 
-  /// Rays that start before where the surface is and end behind.
-  static std::vector<Ray> about_surface(std::vector<Ray> rays) {
-    for (Ray& ray : rays) {
+  /// What the surface explains is known, and its planes spread to rays beside. Of rays that
+  /// meet no surface those stay that bare_reach allows and that show more than plain background.
+  void explain(std::size_t v, std::vector<Ray>& rays, std::vector<Finding>& findings,
+               RayMap& map) const {
+    std::vector<Ray> meeting, missing;
+    for (const Ray& ray : rays) (ray.surface < 0 ? missing : meeting).push_back(ray);
+    std::vector<Ray> about = meeting;
+    for (Ray& ray : about) {
       ray.from += (ray.surface - 0.5 * (kSurfaceSamples - 1)) * ray.direction;
       ray.length = kSurfaceSamples;
     }
-    return rays;
-  }
-
-  void search(const std::vector<Ray>& rays) {
-    std::vector<Ray> by_length[std::size(kLengths)];
-    for (const Ray& ray : rays) {
-      std::size_t k = 0;
-      while (k + 1 < std::size(kLengths) && ray.length > kLengths[k]) ++k;
-      by_length[k].push_back(ray);
-    }
-    for (std::size_t k = 0; k < std::size(kLengths); ++k)
-      match(by_length[k], kLengths[k],
-            [&](std::size_t i, const float* s) { decide(by_length[k][i], s, kLengths[k]); });
-  }
-
-  /// Calls decide(i, scores) with the scores of `length` samples along the i-th ray.
-  template <typename Decide>
-  void match(const std::vector<Ray>& rays, int length, Decide&& decide) {
-    const auto program =
-        gpu::Program::compute("refine_match_patches.comp.glsl", "#define PATCH_RADIUS 1\n");
-    const Buffer views = Buffer::of(gpu_views_);
-    const std::size_t batch = kMostThreads / std::size_t(length);
-    for (std::size_t first = 0; first < rays.size(); first += batch) {
-      const std::size_t count = std::min(batch, rays.size() - first);
-      std::vector<shaders::BakeVertex> surfels;
-      std::vector<shaders::MatchChoice> choices;
-      for (std::size_t i = first; i < first + count; ++i) {
-        const Ray& ray = rays[i];
-        surfels.push_back({glm::vec4(ray.from, std::max(1.0, ray.length / length)),
-                           glm::vec4(-ray.direction, 0)});
-        choices.push_back(partners_[std::size_t(ray.view)]);
+    findings.assign(meeting.size(), {});
+    search_.scores_along(about, partners_[v], kSurfaceSamples, [&](std::size_t i, const float* s) {
+      findings[i].score = *std::max_element(s, s + kSurfaceSamples);
+      findings[i].known = findings[i].score >= options_.least_score;
+    });
+    tbb::parallel_for(std::size_t(0), meeting.size(), [&](std::size_t i) {
+      Finding& found = findings[i];
+      if (found.known) {
+        found.along = meeting[i].surface;
+        found.normal = normal_at(*surface_, meeting[i]);
+      } else {
+        found = {};
+        reach_through_hull(meeting[i]);
       }
-      shaders::MatchParameters p{};
-      p.counts = {int(count), int(cameras_.size()), length, 0};
-      p.search = {0, -1, float(options_.tap_spacing), 1};
-      p.consistency = {float(noise_ * noise_), float(options_.best_pairs),
-                       float(variance_floor(noise_)), 0};
-      const Buffer uniforms(sizeof p, &p), surfel_buffer = Buffer::of(surfels),
-                                           choice_buffer = Buffer::of(choices);
-      const Buffer scores(count * std::size_t(length) * 4);
-      uniforms.bind_uniform(0);
-      views.bind_storage(0);
-      surfel_buffer.bind_storage(1);
-      choice_buffer.bind_storage(2);
-      scores.bind_storage(3);
-      const Buffer textures(count * sizeof(float));
-      textures.bind_storage(5);
-      images_.texture().bind(0);
-      program.dispatch(context_, "refine_vote", gpu::group_count(count * std::size_t(length), 64));
-      const auto s = scores.download<float>(count * std::size_t(length));
-      for (std::size_t i = 0; i < count; ++i) decide(first + i, s.data() + i * std::size_t(length));
-    }
+    });
+    for (std::size_t i = 0; i < meeting.size(); ++i)
+      if (findings[i].known)
+        tell(v, meeting[i], meeting[i].surface, confidence(findings[i].score), map);
+    rays = std::move(meeting);
+    if (options_.bare_reach == 0) return;
+    keep_beside(rays, map, missing);
+    const std::vector<float> textures = search_.textures(missing, partners_[v]);
+    for (std::size_t i = 0; i < missing.size(); ++i)
+      if (textures[i] >= kLeastTexture) rays.push_back(missing[i]);
+    findings.resize(rays.size());
   }
 
-  void decide(const Ray& ray, const float* s, int length) {
-    const double step = std::max(1.0, ray.length / length);
-    const int n = std::min(length, int(std::ceil(ray.length / step)) + 1);
-    int best = 0;
-    for (int i = 1; i < n; ++i)
-      if (s[i] > s[best]) best = i;
-    if (s[best] < options_.least_score) return;
-    float second = -1;
-    for (int i = 0; i < n; ++i)
-      if (std::abs(i - best) > 2) second = std::max(second, s[i]);
-    double shift = 0;
-    if (best > 0 && best + 1 < n) {
-      const double curvature = s[best - 1] - 2.0 * s[best] + s[best + 1];
-      if (curvature < 0)
-        shift = std::clamp(0.5 * (s[best - 1] - s[best + 1]) / curvature, -0.5, 0.5);
-    }
-    tell(ray, (best + shift) * step,
-         confidence(s[best]) * std::clamp((s[best] - second) / options_.distinct_by, 0.0, 1.0));
+  /// Of `missing` the rays at most bare_reach rays, along both axes, from one that meets the
+  /// surface.
+  void keep_beside(std::span<const Ray> meeting, const RayMap& map,
+                   std::vector<Ray>& missing) const {
+    // Sums over the lattice from its corner: those of four corners tell whether a square holds any.
+    std::vector<int> sums(std::size_t(map.width + 1) * (map.height + 1));
+    const auto at = [&](int x, int y) -> int& {
+      return sums[std::size_t(y) * (map.width + 1) + x];
+    };
+    for (const Ray& ray : meeting) at(ray.x + 1, ray.y + 1) = 1;
+    for (int y = 1; y <= map.height; ++y)
+      for (int x = 1; x <= map.width; ++x)
+        at(x, y) += at(x - 1, y) + at(x, y - 1) - at(x - 1, y - 1);
+    const int reach = options_.bare_reach;
+    std::erase_if(missing, [&](const Ray& ray) {
+      const int left = std::max(ray.x - reach, 0), right = std::min(ray.x + reach + 1, map.width);
+      const int top = std::max(ray.y - reach, 0), low = std::min(ray.y + reach + 1, map.height);
+      return at(right, low) - at(left, low) - at(right, top) + at(left, top) == 0;
+    });
   }
 
   double confidence(double score) const {
@@ -278,29 +233,25 @@ class RayMatcher {
   }
 
   /// The ray's say: what it shows lies `along` voxels from its start.
-  void tell(const Ray& ray, double along, double weight) {
-    RayMap& map = maps_[std::size_t(ray.view)];
+  void tell(std::size_t v, const Ray& ray, double along, double weight, RayMap& map) const {
     const std::size_t at = std::size_t(ray.y) * map.width + ray.x;
-    const auto& c = cameras_[std::size_t(ray.view)];
-    map.depth[at] =
-        float(glm::dot(ray.from - c.centre, ray.direction) + along) * float(ray.depth_per_length);
+    map.depth[at] = float((glm::dot(ray.from - cameras_[v].centre, ray.direction) + along) *
+                          ray.depth_per_length);
     map.weight[at] = float(weight);
-    if (ray.surface >= 0 && along < ray.surface - kBeside && weight > 0)
+    if (!surface_ || !(weight > 0)) return;
+    if (ray.surface < 0 || along < ray.surface - kBeside)
       map.before.push_back(glm::vec3(ray.from + along * ray.direction));
-    if (ray.surface >= 0 && along > ray.surface + kBeside && weight > 0)
+    if (ray.surface >= 0 && along > ray.surface + kBeside)
       for (double t = ray.surface; t < along - 1; t += 1)
         map.through.push_back(glm::vec3(ray.from + t * ray.direction));
   }
 
-  gpu::Context& context_;
   const SparseVolume& hull_;
-  const projtex::ImageSet& images_;
+  const SparseVolume* surface_;
   const VoteOptions& options_;
-  double noise_;
   std::vector<projtex::GridCamera> cameras_;
-  std::vector<shaders::GpuView> gpu_views_;
   std::vector<shaders::MatchChoice> partners_;
-  std::vector<RayMap> maps_;
+  RaySearch search_;
 };
 
 }  // namespace
@@ -308,14 +259,14 @@ class RayMatcher {
 std::vector<RayMap> match_rays(gpu::Context& context, const SparseVolume& hull,
                                const projtex::ImageSet& images, std::span<const Camera> cameras,
                                double noise_sigma, const VoteOptions& options) {
-  return RayMatcher(context, hull, images, cameras, noise_sigma, options).run();
+  return RayMapper(context, hull, nullptr, images, cameras, noise_sigma, options).run();
 }
 
 std::vector<RayMap> match_rays_again(gpu::Context& context, const SparseVolume& hull,
                                      const SparseVolume& surface, const projtex::ImageSet& images,
                                      std::span<const Camera> cameras, double noise_sigma,
                                      const VoteOptions& options) {
-  return RayMatcher(context, hull, images, cameras, noise_sigma, options).run(surface);
+  return RayMapper(context, hull, &surface, images, cameras, noise_sigma, options).run();
 }
 
 }  // namespace photohull::refine

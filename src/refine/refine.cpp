@@ -160,7 +160,7 @@ class Refiner {
   SparseVolume first_guess(const SparseVolume& hull) {
     if (!any_silhouette(silhouettes_) && options_.voting && options_.label.iterations > 0)
       return bounded(label_by_votes(context_, hull, images_, cameras_, options_.noise_sigma,
-                                    options_.vote, options_.label),
+                                    vote_options(false), options_.label),
                      hull);
     return bounded(options_.voting ? vote_free_space(context_, hull, images_, cameras_,
                                                      options_.noise_sigma, options_.vote)
@@ -178,8 +178,17 @@ class Refiner {
       counts.restored += std::int64_t(keep_thin_hull(hull, options_.thin, volume));
   }
 
-  void vote(SparseVolume& volume, const SparseVolume& hull, bool last, LevelReport& counts) {
+  VoteOptions vote_options(bool last) const {
     VoteOptions options = options_.vote;
+    if (any_silhouette(silhouettes_)) return options;
+    options.distinct_by = options_.open.distinct_by;
+    options.rounds = last ? options_.open.last_rounds : options_.open.rounds;
+    options.bare_reach = last ? options_.open.last_reach : options_.open.reach;
+    return options;
+  }
+
+  void vote(SparseVolume& volume, const SparseVolume& hull, bool last, LevelReport& counts) {
+    VoteOptions options = vote_options(last);
     if (last) options.again_spacing = options.last_spacing;
     const Revision revision =
         vote_again(context_, volume, hull, images_, cameras_, options_.noise_sigma, options);

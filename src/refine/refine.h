@@ -27,6 +27,14 @@
 
 namespace photohull::refine {
 
+/// How rays vote where no silhouettes bound space, for what VoteOptions says with them.
+struct OpenVoteOptions {
+  double distinct_by = 0.25;
+  int rounds = 2, last_rounds = 1;        ///< at all levels but the last, and at that
+  int reach = kAnyReach, last_reach = 8;  ///< likewise, of rays that meet no surface
+  static constexpr int kAnyReach = 1 << 20;
+};
+
 struct RefineOptions {
   /// Voxel sizes, each half the one before; the last is the result's. 0: as many as bring the first
   /// grid to kCoarsestVoxels along its longest side, and without silhouettes to voxels of some
@@ -43,6 +51,7 @@ struct RefineOptions {
   double noise_sigma = 0.003;  ///< of the images, square-root encoding
   bool voting = true;          ///< start from coarse depth maps' free space instead of the hull
   VoteOptions vote;
+  OpenVoteOptions open;
   LabelOptions label;   ///< where there are no silhouettes; 0 iterations: unknown space is solid
   bool closing = true;  ///< of surface that no camera sees
   CloseOptions close;

@@ -24,6 +24,9 @@ struct VoteOptions {
   double least_weight = 1.5;  ///< sum of the rays' weights below which a voxel stays
   double again_weight = 2;    ///< likewise, for what vote_again adds
   double freeing_weight = 3;  ///< and for what it frees: plain surface is not explained either
+  int rounds = 0;  ///< of trying neighbours' planes, after a ray has been searched by itself
+  int bare_reach =
+      0;  ///< rays between one that meets no surface and votes again, and one that does
 };
 
 /// The hull without what the views' depth maps see through: each view's rays are matched with views
