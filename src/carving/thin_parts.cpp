@@ -8,7 +8,7 @@
 #include <functional>
 #include <vector>
 
-#include "calib/silhouette.h"
+#include "calib/outline_probe.h"
 #include "carving/join_parts.h"
 #include "projtex/gpu_views.h"
 
@@ -33,9 +33,13 @@ class Field {
         high_((box.max - grid.origin) / grid.voxel_size),
         least_views_(options.min_views),
         missing_(options.views_may_miss) {
-    for (std::size_t v = 0; v < cameras.size(); ++v)
-      views_.push_back({projtex::to_grid(cameras[v], grid), silhouettes[v].distance,
+    for (std::size_t v = 0; v < cameras.size(); ++v) {
+      const projtex::GridCamera camera = projtex::to_grid(cameras[v], grid);
+      views_.push_back({{camera.projection, camera.width, camera.height, silhouettes[v].distance},
+                        1 / camera.focal,
                         beside_lines(silhouettes[v])});
+    }
+    std::ranges::stable_partition(views_, [](const View& v) { return !v.beside_lines.empty(); });
   }
 
   bool has_lines() const {
@@ -46,14 +50,12 @@ class Field {
   /// Does the point fall beside lines in a third of the views that see it, and in some at least?
   bool on_stem(const dvec3& p) const {
     int seen = 0, beside = 0;
+    Appearance at;
     for (const View& view : views_) {
-      const dvec3 q = view.camera.projection * glm::dvec4(p, 1);
-      if (q.z <= 0) continue;
-      const int x = int(std::lround(q.x / q.z)), y = int(std::lround(q.y / q.z));
-      if (x < 0 || y < 0 || x >= view.camera.width || y >= view.camera.height) continue;
+      if (view.beside_lines.empty() && beside < kFewestViews) return false;  // the rest has none
+      if (!view.probe.sees(p, at)) continue;
       ++seen;
-      beside += !view.beside_lines.empty() &&
-                view.beside_lines[std::size_t(y) * std::size_t(view.camera.width) + std::size_t(x)];
+      beside += !view.beside_lines.empty() && view.beside_lines[view.probe.nearest_pixel(at)];
     }
     return beside >= kFewestViews && 3 * beside >= seen;
   }
@@ -66,15 +68,12 @@ class Field {
     int seen = 0, beyond_enough = 0;
     thread_local std::vector<double> said;
     said.clear();
+    Appearance seen_at;
     for (const View& view : views_) {
-      const dvec3 q = view.camera.projection * glm::dvec4(p, 1);
-      if (q.z <= 0) continue;
-      const double x = q.x / q.z, y = q.y / q.z;
-      if (x < -0.5 || y < -0.5 || x > view.camera.width - 0.5 || y > view.camera.height - 0.5)
-        continue;
+      if (!view.probe.sees(p, seen_at)) continue;
       ++seen;
-      if (!view.distance) continue;
-      said.push_back(interpolated(*view.distance, {x, y}) * q.z / view.camera.focal);
+      if (!view.probe.has_outline()) continue;
+      said.push_back(view.probe.distance(seen_at) * seen_at.depth * view.per_depth);
       beyond_enough += said.back() >= enough;
       if (beyond_enough > missing_) return enough;
     }
@@ -86,8 +85,8 @@ class Field {
 
  private:
   struct View {
-    projtex::GridCamera camera;
-    const SilhouetteDistance* distance;
+    OutlineProbe probe;
+    double per_depth;                        ///< voxels of a pixel at depth 1
     std::vector<std::uint8_t> beside_lines;  ///< a pixel each; empty where there are no lines
   };
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/frontier.h"
 #include "calib/prepare_views.h"
 #include "calib/refine_cameras.h"
 #include "calib/silhouette.h"
@@ -38,6 +39,8 @@ class Inputs {
   void crop();
   void measure_silhouettes();
   void correct_masks();
+  /// Of the masks as they are from here on: their lines, and the outlines' convex hulls.
+  void trace_outlines();
   void leave_out_wrong_views();
   /// Gives silhouettes that are a little off as much room as they are off.
   void bear_disagreement();
@@ -83,6 +86,7 @@ class Inputs {
 
   Scene full_;                           ///< the scene in the files' pixels, until they are decoded
   std::vector<double> scales_;           ///< of its views
+  std::vector<Outline> outlines_;        ///< of the masks, one a view
   std::vector<double> room_;             ///< pixels around each view's outline, for what it is off
   std::set<std::string> right_cameras_;  ///< names of views
   std::set<std::string> made_masks_;     ///< names of views whose masks come from the background

@@ -91,6 +91,7 @@ class Job {
     SparseVolume volume = clock_.run("hull", Weights::kHull, [&] {
       in_.measure_silhouettes();
       in_.correct_masks();
+      in_.trace_outlines();
       in_.leave_out_wrong_views();
       in_.bear_disagreement();
       in_.widen_lines();
