@@ -39,7 +39,8 @@ class Field {
                         1 / camera.focal,
                         beside_lines(silhouettes[v])});
     }
-    std::ranges::stable_partition(views_, [](const View& v) { return !v.beside_lines.empty(); });
+    std::stable_partition(views_.begin(), views_.end(),
+                          [](const View& v) { return !v.beside_lines.empty(); });
   }
 
   bool has_lines() const {
