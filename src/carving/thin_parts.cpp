@@ -32,7 +32,8 @@ class Field {
       : low_((box.min - grid.origin) / grid.voxel_size),
         high_((box.max - grid.origin) / grid.voxel_size),
         least_views_(options.min_views),
-        missing_(options.views_may_miss) {
+        missing_(options.views_may_miss),
+        full_evidence_(options.full_evidence) {
     for (std::size_t v = 0; v < cameras.size(); ++v) {
       const projtex::GridCamera camera = projtex::to_grid(cameras[v], grid);
       views_.push_back({{camera.projection, camera.width, camera.height, silhouettes[v].distance},
@@ -67,19 +68,22 @@ class Field {
     const dvec3 beyond = glm::max(low_ - p, p - high_);
     double value = std::max({beyond.x, beyond.y, beyond.z});
     int seen = 0, beyond_enough = 0;
-    thread_local std::vector<double> said;
-    said.clear();
+    thread_local std::vector<double> said, full;
+    said.clear(), full.clear();
     Appearance seen_at;
     for (const View& view : views_) {
       if (!view.probe.sees(p, seen_at)) continue;
       ++seen;
       if (!view.probe.has_outline()) continue;
-      said.push_back(view.probe.distance(seen_at) * seen_at.depth * view.per_depth);
-      beyond_enough += said.back() >= enough;
+      const double per_pixel = seen_at.depth * view.per_depth;
+      said.push_back(view.probe.distance(seen_at) * per_pixel);
+      full.push_back(full_evidence_ * per_pixel);
+      beyond_enough += said.back() - full.back() >= enough;
       if (beyond_enough > missing_) return enough;
     }
     if (seen < least_views_) return double(SparseVolume::kBand);
     if (int(said.size()) <= missing_) return value;
+    if (full_evidence_ > 0) return std::max(value, distance_by_evidence(said, full));
     std::nth_element(said.begin(), said.begin() + missing_, said.end(), std::greater<>());
     return std::max(value, said[std::size_t(missing_)]);
   }
@@ -90,6 +94,20 @@ class Field {
     double per_depth;                        ///< voxels of a pixel at depth 1
     std::vector<std::uint8_t> beside_lines;  ///< a pixel each; empty where there are no lines
   };
+
+  /// As in carving_hull_distance.comp.glsl.
+  static double distance_by_evidence(std::span<const double> said, std::span<const double> full) {
+    double s = -1e30;
+    for (std::size_t i = 0; i < said.size(); ++i) s = std::max(s, said[i] - full[i]);
+    for (double last = -1e30; s > last;) {
+      last = s;
+      double slopes = 0, weighted = 0;
+      for (std::size_t i = 0; i < said.size(); ++i)
+        if (said[i] > last) slopes += 1 / full[i], weighted += said[i] / full[i];
+      s = std::max((weighted - 1) / slopes, last);
+    }
+    return s;
+  }
 
   static std::vector<std::uint8_t> beside_lines(const Silhouette& silhouette) {
     std::vector<std::uint8_t> marks;
@@ -107,6 +125,7 @@ class Field {
 
   dvec3 low_, high_;
   int least_views_, missing_;
+  double full_evidence_;  ///< pixels
   std::vector<View> views_;
 };
 

@@ -42,7 +42,8 @@ class Inputs {
   /// Of the masks as they are from here on: their lines, and the outlines' convex hulls.
   void trace_outlines();
   void leave_out_wrong_views();
-  /// Gives silhouettes that are a little off as much room as they are off.
+  /// Gives silhouettes that are a little off as much room as they are off, and finds out what one
+  /// view's evidence is worth.
   void bear_disagreement();
   /// Gives stems and wires the room that voxels need; their width is known from `lines`.
   void widen_lines();
@@ -66,6 +67,7 @@ class Inputs {
   /// The masks with room around their lines, and with what other views put into them; an empty one
   /// where nothing changed.
   std::vector<Mask> widened;
+  double full_evidence = 0;  ///< pixels (HullOptions)
   double contradiction = 0;  ///< share of the silhouettes' rays that other silhouettes leave empty
   double cameras_moved = 0;  ///< by refinement, pixels
   double cameras_moved_alike = 0;  ///< of it what all views have in common

@@ -8,6 +8,7 @@
 #include "calib/diagnose.h"
 #include "calib/mask_bias.h"
 #include "calib/mask_lines.h"
+#include "calib/refine_cameras.h"
 #include "carving/missing_parts.h"
 #include "core/error.h"
 #include "pipeline/inputs.h"
@@ -99,6 +100,8 @@ void Inputs::bear_disagreement() {
   room_.assign(views.size(), 0);
   if (options_.views_may_miss || !any_mask()) return;
   room_ = outlines_off(fit_silhouettes(cameras, outlines_));
+  const double usual = tangent_disagreement(cameras, outlines_);
+  if (usual > kSuspiciousTangents) report_.full_evidence = full_evidence = usual;
   for (std::size_t i = 0; i < room_.size(); ++i)
     if (room_[i] > 0) report_.outline_room.push_back({views[i].name, room_[i]});
   if (report_.outline_room.empty()) return;

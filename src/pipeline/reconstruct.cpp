@@ -175,6 +175,7 @@ class Job {
     carving::HullOptions hull_options;
     hull_options.min_views = in_.any_mask() ? 1 : 2;
     hull_options.views_may_miss = options_.views_may_miss.value_or(0);
+    hull_options.full_evidence = in_.full_evidence;
     // Where hardly more views see a point than may leave it out, nothing would be known of it.
     if (hull_options.views_may_miss > 0)
       hull_options.min_views =
