@@ -160,6 +160,9 @@ void Inputs::explain_foreground() {
     silhouettes[i] = silhouette_distance(mask);
     widened[i] = std::move(mask);
   });
+  for (std::size_t i = 0; i < views.size() && full_evidence > 0; ++i)
+    if (!views[i].mask.empty() && made_masks_.contains(views[i].name))
+      weigh_by_certainty(widened[i].empty() ? views[i].mask : widened[i], silhouettes[i]);
   ThinReport& counts = report_.thin;
   double worst = 0;
   for (std::size_t i = 0; i < views.size(); ++i) {
