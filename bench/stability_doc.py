@@ -5,7 +5,7 @@
     build/release/photohull stress bench/plans/stress_marks.json --out out/stress_marks
     bench/stability_doc.py out/stress out/stress_marks
     bench/stability_doc.py --verdicts out/seed2               # the table of verdicts alone
-    bench/stability_doc.py --thin out/stress_thin             # the curves and the table of thin parts alone
+    bench/stability_doc.py --thin out/stress_thin             # the axes of group thin alone
 
 Replaces what stands between the lines `<!-- stress:NAME -->` and `<!-- /stress:NAME -->` by the sections of the folders'
 summary.md, and copies the charts to docs/images. Without the second folder the promises in larger pictures stay as they are.
@@ -33,6 +33,8 @@ CURES = [
     ("the same", "white-balance", "gains", "default"),
     ("the same", "vignetting", "gains", "default"),
 ]
+
+THIN = {"stem-width", "mask-style", "views-off-1", "views-off-2", "view-shift"}  # axes, each scene's figures in full
 
 DOCS = Path(__file__).resolve().parent.parent / "docs"
 
@@ -69,6 +71,8 @@ def thin(folder):
         "|---|---|---|---|---|---|---|---|---|",
     ]
     for s in results["samples"]:
+        if s["axis"] not in THIN:
+            continue
         run = json.loads((folder / "runs" / f"{s['run']}.json").read_text())
         scores = {f["t"]: f["f"] for f in run.get("evaluation", {}).get("f", [])}
         missed = s["report"]["verdict"]["signals"]["silhouettes_missed"] if s.get("report") else None
@@ -77,13 +81,13 @@ def thin(folder):
         cells += [f"{100 * s['f025']:.1f}", f"{100 * s['f05']:.1f}"]
         cells += ["" if missed is None else f"{100 * missed:.2f} %", s.get("verdict") or ""]
         lines.append("| " + " | ".join(cells) + " |")
-    return "\n".join(lines) + "\n\n" + pictures(folder)
+    return "\n".join(lines) + "\n\n" + pictures(folder, lambda group: group == "thin")
 
 
-def pictures(folder):
+def pictures(folder, wanted):
     lines = []
     for chart in sorted(folder.glob("stress--*.png")):
-        if chart.stem == "stress--marks":
+        if not wanted(chart.stem.removeprefix("stress--")):
             continue
         shutil.copy(chart, DOCS / "images" / chart.name)
         lines.append(f"![Breakdown curves: {chart.stem[8:]}](images/{chart.name})")
@@ -116,8 +120,10 @@ def main():
         "breakdown": section(curves, "Where it breaks"),
         "cures": cures(curves),
         "bytes": section(curves, "Equal bytes"),
-        "curves": pictures(curves),
+        "curves": pictures(curves, lambda group: group not in ("marks", "thin")),
     }
+    if any(s["axis"] in THIN for s in json.loads((curves / "results.json").read_text())["samples"]):
+        parts["thin"] = thin(curves)
     if len(sys.argv) == 3:
         parts["marks"] = section(Path(sys.argv[2]), "Promises")
     replace(parts)

@@ -102,14 +102,16 @@ void main() {
       bool whole = on_image(view, low) && on_image(view, high);
       partly_seen += 1;
       wholly_seen += whole ? 1 : 0;
-      // One pixel more on each side: samples are bilinear.
-      vec2 range = coverage_range(v, max(low - 1.0, vec2(-0.5)), min(high + 1.0, view.size.xy - 0.51));
+      // One pixel more on each side: samples are bilinear. And as many as one view alone needs to reject a
+      // point; nearer its outline it adds to the others' evidence.
+      float margin = 1.0 + parameters.evidence.x;
+      vec2 range = coverage_range(v, max(low - margin, vec2(-0.5)), min(high + margin, view.size.xy - 0.51));
       if (range.x >= 0.5) continue;
       bool rejects = range.y < 0.5;
-      float clearance = rejects ? 1.0 : sphere_clearance(v, view, centre, half_edge * 1.7321);
-      if (clearance < 0.0) continue;
+      float clearance = rejects ? 0.0 : sphere_clearance(v, view, centre, half_edge * 1.7321);
+      if (clearance < -parameters.evidence.x) continue;
       doubting += 1;
-      rejecting += whole && clearance > 0.0 ? 1 : 0;
+      rejecting += whole && (rejects || clearance > parameters.evidence.x) ? 1 : 0;
       outside = outside || rejecting > missing;
       bits |= 1u << uint(v & 31);
     }

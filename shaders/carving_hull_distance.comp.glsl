@@ -3,8 +3,8 @@
 // Truncated signed distance to the visual hull for every voxel of a brick: the greatest (or, where
 // K silhouettes may leave a point out, the K + 1-th), over the views that see the voxel, of its
 // distance to the silhouette, brought from pixels to voxels by
-// depth / focal length. One work group a brick, one thread a block of 2^3 voxels: a look at the
-// block's centre tells which few views can be the greatest anywhere in it.
+// depth / focal length; or the distance at which the evidence of all views sums to one. One work
+// group a brick, one thread a block of 2^3 voxels: a look at the block's centre tells which few views can be the greatest anywhere in it.
 // Reference: carving::reference::hull_distance.
 #include "include/projection.glsl"
 #include "shared/hull.h"
@@ -22,6 +22,9 @@ const float kNothing = -1e30;
 // block's diagonal between voxel centres, 0.87, with room for the perspective.
 const float kReach = 1.2;
 const int kMaxCandidates = 64;
+const int kMaxHeard = 128;  // views beside whose outlines a voxel lies; the rest says nothing
+const int kMaxRounds = 16;
+const float kSettled = 1e-4;  // voxels
 
 // Distance in voxels that one view gives a point; kNothing where it is not on the image.
 float view_distance(int v, GpuView view, vec3 p) {
@@ -62,7 +65,7 @@ void main() {
   float band = parameters.pyramid.w;
   uint first = first_and_views[brick], end = first_and_views[brick + 1u];
 
-  float greatest = kNothing;
+  float greatest = kNothing, slack = 0.0;
   float centre[kMaxCandidates];
   int relevant_count = int(end - first);
   for (int i = 0; i < relevant_count; ++i) {
@@ -71,10 +74,11 @@ void main() {
     vec3 p = project(view, base + 0.5);
     float d = near_border(view, p) ? -kNothing : view_distance(v, view, p);
     greatest = d == -kNothing ? greatest : max(greatest, d);
+    slack = max(slack, parameters.evidence.x * p.z / view.centre.w);
     centre[min(i, kMaxCandidates - 1)] = i < kMaxCandidates - 1 ? d : -kNothing;
   }
   // Beyond the band the block's centre answers for all of it, unless a frame's border interferes.
-  float least = abs(greatest) > band + kReach && greatest != kNothing ? 1e29 : greatest - 2.0 * kReach;
+  float least = abs(greatest) > band + kReach + slack && greatest != kNothing ? 1e29 : greatest - 2.0 * kReach - slack;
   int candidates[kMaxCandidates];
   int count = 0;
   for (int i = 0; i < min(relevant_count, kMaxCandidates); ++i) {
@@ -94,8 +98,38 @@ void main() {
     for (int i = candidates[c]; i < last; ++i) {
       int v = int(first_and_views[first + uint(i)]);
       GpuView view = views[v];
-      for (int j = 0; j < 8; ++j)
-        value[j] = max(value[j], view_distance(v, view, project(view, base + vec3(j >> 2, (j >> 1) & 1, j & 1))));
+      for (int j = 0; j < 8; ++j) {
+        vec3 p = project(view, base + vec3(j >> 2, (j >> 1) & 1, j & 1));
+        value[j] = max(value[j], view_distance(v, view, p) - parameters.evidence.x * p.z / view.centre.w);
+      }
+    }
+  }
+  // So much each view says alone. Evidence rises with the distance, so that of all views that of those
+  // beyond s is sum((d - s) / full): the s at which it is one, and who is beyond it, settle in some rounds.
+  for (int j = 0; j < (parameters.evidence.x > 0.0 && count > 1 ? 8 : 0); ++j) {
+    float said[kMaxHeard], slopes[kMaxHeard];
+    int heard = 0;
+    for (int c = 0; c < count; ++c) {
+      int last = candidates[c] == kMaxCandidates - 1 ? relevant_count : candidates[c] + 1;
+      for (int i = candidates[c]; i < last; ++i) {
+        int v = int(first_and_views[first + uint(i)]);
+        GpuView view = views[v];
+        vec3 p = project(view, base + vec3(j >> 2, (j >> 1) & 1, j & 1));
+        said[heard] = view_distance(v, view, p);
+        slopes[heard] = view.centre.w / (parameters.evidence.x * p.z);
+        heard = min(heard + (said[heard] > value[j] ? 1 : 0), kMaxHeard - 1);
+      }
+    }
+    float rise = heard > 1 ? 1.0 : 0.0;
+    for (int round = 0; round < kMaxRounds && rise > kSettled; ++round) {
+      float evidence = -1.0, slope = 1e-6;
+      for (int i = 0; i < heard; ++i) {
+        float beyond = max(said[i] - value[j], 0.0);
+        evidence += beyond * slopes[i];
+        slope += beyond > 0.0 ? slopes[i] : 0.0;
+      }
+      rise = max(evidence / slope, 0.0);
+      value[j] += rise;
     }
   }
   int missing = parameters.limits.x;

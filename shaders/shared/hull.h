@@ -26,10 +26,11 @@ struct HullParameters {
   ivec4 counts;   // x: items, y: views, z: words of a view bit set, w: views that must see a point
   vec4 pyramid;   // x: pixels of a cell at level 0, y: levels, z: margin in voxels, w: band in voxels
   ivec4 limits;   // x: silhouettes that may leave a point out, at most kMostMissing
+  vec4 evidence;  // x: pixels outside an outline at which one view's evidence is full; 0: at once
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(HullParameters) == 80);
+static_assert(sizeof(HullParameters) == 96);
 }  // namespace photohull::shaders
 #endif
 

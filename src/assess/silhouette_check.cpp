@@ -13,9 +13,9 @@ namespace {
 constexpr double kRays = 4000;      // a view, about
 constexpr double kLineStep = 0.15;  // pixels across a line: a tube may be a third of a pixel wide
 
-/// Areas in pixels.
 struct Areas {
-  double foreground = 0, missed = 0, covered = 0, excess = 0;
+  double foreground = 0, missed = 0;  ///< pixels
+  double covered = 0, excess = 0;     ///< places of a lattice
 };
 
 class Checker {
@@ -23,26 +23,34 @@ class Checker {
   Checker(const RayScene& rays, const Box& box, const Camera& camera, double tolerance)
       : rays_(rays), box_(box), camera_(camera), origin_(camera.center()), tolerance_(tolerance) {}
 
-  void look_at_lattice(const CheckedSilhouette& s, SilhouetteFit& fit, Areas& areas) const {
+  /// The lattice has as many places in a stem as in a body: a place of the whole picture's lattice
+  /// would stand for a tenth of the foreground where that is small.
+  void look_at_foreground(const CheckedSilhouette& s, SilhouetteFit& fit, Areas& areas) const {
     const SilhouetteDistance& given = *s.given;
-    const double pixels = double(given.width) * given.height;
-    const int step = std::max(1, int(std::sqrt(pixels / kRays)));
-    const double area = double(step) * step;
-    for (int y = step / 2; y < given.height; y += step)
-      for (int x = step / 2; x < given.width; x += step) {
-        const std::size_t i = std::size_t(y) * std::size_t(given.width) + x;
-        const bool inside = given.pixels[i] < -tolerance_;
-        const bool outside = s.used->pixels[i] > tolerance_;
-        if (!inside && !outside) continue;
-        const glm::dvec3 ray = camera_.ray({x, y});
-        if (!clip_ray(box_, origin_, ray)) continue;
-        const bool hit = rays_.occluded(origin_, ray);
-        const double sure = sureness(s, i);
-        fit.covered += hit, areas.covered += hit ? area : 0;
-        fit.foreground += inside, areas.foreground += inside ? sure * area : 0;
-        areas.missed += inside && !hit ? sure * area : 0;
-        areas.excess += outside && hit ? area : 0;
-      }
+    const auto inside = [&](float d) { return d < -tolerance_; };
+    const int step = lattice_step(std::ranges::count_if(given.pixels, inside));
+    visit_lattice(given, step, [&](int x, int y, std::size_t i) {
+      if (!inside(given.pixels[i])) return;
+      const glm::dvec3 ray = camera_.ray({x, y});
+      if (!clip_ray(box_, origin_, ray)) return;
+      const double area = sureness(s, i) * step * step;
+      ++fit.foreground;
+      areas.foreground += area;
+      areas.missed += rays_.occluded(origin_, ray) ? 0 : area;
+    });
+  }
+
+  void look_for_excess(const CheckedSilhouette& s, SilhouetteFit& fit, Areas& areas) const {
+    const SilhouetteDistance &given = *s.given, &used = *s.used;
+    visit_lattice(given, lattice_step(given.pixels.size()), [&](int x, int y, std::size_t i) {
+      const bool outside = used.pixels[i] > tolerance_;
+      if (!outside && !(given.pixels[i] < -tolerance_)) return;
+      const glm::dvec3 ray = camera_.ray({x, y});
+      if (!clip_ray(box_, origin_, ray) || !rays_.occluded(origin_, ray)) return;
+      ++fit.covered;
+      areas.covered += 1;
+      areas.excess += outside;
+    });
   }
 
   void look_at_lines(const CheckedSilhouette& s, SilhouetteFit& fit, Areas& areas) const {
@@ -64,6 +72,17 @@ class Checker {
   }
 
  private:
+  /// Pixels between places of a lattice that has some thousand among so many pixels.
+  static int lattice_step(std::size_t pixels) {
+    return std::max(1, int(std::sqrt(double(pixels) / kRays)));
+  }
+
+  static void visit_lattice(const SilhouetteDistance& d, int step, auto&& visit) {
+    for (int y = step / 2; y < d.height; y += step)
+      for (int x = step / 2; x < d.width; x += step)
+        visit(x, y, std::size_t(y) * std::size_t(d.width) + x);
+  }
+
   /// How sure the mask is of its foreground at a pixel, [0, 1].
   static double sureness(const CheckedSilhouette& s, std::size_t i) {
     return s.mask ? std::max(s.mask->coverage[i] / 127.5 - 1, 0.0) : 1;
@@ -81,7 +100,8 @@ SilhouetteFit check(const RayScene& rays, const Box& box, const Camera& camera,
   SilhouetteFit fit;
   Areas areas;
   const Checker checker(rays, box, camera, tolerance);
-  checker.look_at_lattice(silhouette, fit, areas);
+  checker.look_at_foreground(silhouette, fit, areas);
+  checker.look_for_excess(silhouette, fit, areas);
   if (silhouette.lines) checker.look_at_lines(silhouette, fit, areas);
   if (areas.foreground > 0) fit.missed = areas.missed / areas.foreground;
   if (areas.covered > 0) fit.excess = areas.excess / areas.covered;

@@ -34,10 +34,10 @@ struct CheckedSilhouette {
 bool covers_line(const RayScene& rays, const Camera& camera, const LinePoint& point,
                  double tolerance);
 
-/// One for each view, by rays through a lattice of some thousand pixels and through the lines.
-/// Pixels within `tolerance` of the silhouette's contour (pixels) do not count, nor do those whose
-/// ray does not meet the box. A line is covered where the surface is within `tolerance` of its
-/// middle.
+/// One for each view, by rays through lattices of some thousand pixels, of the foreground for what
+/// is missed and of the whole picture for the excess, and through the lines. Pixels within
+/// `tolerance` of the silhouette's contour (pixels) do not count, nor do those whose ray does not
+/// meet the box. A line is covered where the surface is within `tolerance` of its middle.
 std::vector<SilhouetteFit> check_silhouettes(const RayScene& rays, const Box& box,
                                              std::span<const Camera> cameras,
                                              std::span<const CheckedSilhouette> silhouettes,

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "calib/outline_probe.h"
 #include "core/clip_ray.h"
 #include "core/median.h"
 
@@ -39,24 +40,22 @@ class Silhouettes {
  public:
   Silhouettes(const Box& box, std::span<const Camera> cameras,
               std::span<const SilhouetteDistance* const> distances)
-      : box_(box), cameras_(cameras), distances_(distances) {}
+      : box_(box), cameras_(cameras), distances_(distances) {
+    for (std::size_t v = 0; v < cameras.size(); ++v) {
+      probes_.emplace_back(cameras[v], distances[v]);
+      tolerances_.push_back(distances[v] ? tolerance_of(*distances[v]) : 0);
+    }
+  }
 
   bool known(std::size_t view) const { return distances_[view] != nullptr; }
 
-  double tolerance(std::size_t view) const {
-    const SilhouetteDistance& d = *distances_[view];
-    return std::max(kTolerance, kTolerantShare * std::max(d.width, d.height));
-  }
+  double tolerance(std::size_t view) const { return tolerances_[view]; }
 
   /// Is the point on background in the view, beyond the tolerance? Not where it is off the image.
   bool rejects(std::size_t view, const glm::dvec3& point) const {
-    if (!distances_[view]) return false;
-    const auto pixel = cameras_[view].project(point);
-    if (!pixel || !cameras_[view].on_image(*pixel)) return false;
-    const SilhouetteDistance& d = *distances_[view];
-    const int x = std::clamp(int(std::lround(pixel->x)), 0, d.width - 1);
-    const int y = std::clamp(int(std::lround(pixel->y)), 0, d.height - 1);
-    return d.pixels[std::size_t(y) * d.width + x] > tolerance(view);
+    Appearance at;
+    return probes_[view].has_outline() && probes_[view].sees(point, at) &&
+           probes_[view].nearest_distance(at) > tolerances_[view];
   }
 
   /// The view's rays that meet the box and are empty; `count` takes how many meet it. What the
@@ -84,6 +83,10 @@ class Silhouettes {
   }
 
  private:
+  static double tolerance_of(const SilhouetteDistance& d) {
+    return std::max(kTolerance, kTolerantShare * std::max(d.width, d.height));
+  }
+
   /// So close that a part that other views show twice the tolerance wide is not stepped over.
   std::vector<glm::dvec3> points_along(const Box& box, std::size_t view,
                                        const glm::dvec2& pixel) const {
@@ -114,10 +117,8 @@ class Silhouettes {
 
   std::size_t seen_by(const glm::dvec3& point) const {
     std::size_t count = 0;
-    for (std::size_t v = 0; v < cameras_.size(); ++v) {
-      const auto pixel = cameras_[v].project(point);
-      count += distances_[v] && pixel && cameras_[v].on_image(*pixel);
-    }
+    Appearance at;
+    for (const OutlineProbe& probe : probes_) count += probe.has_outline() && probe.sees(point, at);
     return count;
   }
 
@@ -146,6 +147,8 @@ class Silhouettes {
   const Box& box_;
   std::span<const Camera> cameras_;
   std::span<const SilhouetteDistance* const> distances_;
+  std::vector<OutlineProbe> probes_;
+  std::vector<double> tolerances_;  ///< pixels
 };
 
 /// Which views' rays stay empty when some views are taken out.

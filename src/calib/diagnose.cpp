@@ -68,20 +68,29 @@ CameraDiagnosis diagnose_cameras(std::span<const View> views, const std::optiona
 }
 
 std::vector<ViewFit> fit_silhouettes(std::span<const Camera> cameras, std::span<const View> views) {
+  return fit_silhouettes(cameras, outlines_of(views));
+}
+
+std::vector<ViewFit> fit_silhouettes(std::span<const Camera> cameras,
+                                     std::span<const Outline> outlines) {
   using namespace diagnosis;
-  PHOTOHULL_CHECK_OP(cameras.size(), ==, views.size());
-  std::vector<ViewFit> fits(views.size());
-  find_disagreeing(evidence_of(Cameras(cameras.begin(), cameras.end()),
-                               frontier_pairs(cameras, outlines_of(views))),
-                   ViewFit::By::kSilhouettes, fits);
+  PHOTOHULL_CHECK_OP(cameras.size(), ==, outlines.size());
+  std::vector<ViewFit> fits(outlines.size());
+  find_disagreeing(
+      evidence_of(Cameras(cameras.begin(), cameras.end()), frontier_pairs(cameras, outlines)),
+      ViewFit::By::kSilhouettes, fits);
   return fits;
 }
 
 std::vector<double> outlines_off(std::span<const Camera> cameras, std::span<const View> views) {
+  return outlines_off(fit_silhouettes(cameras, views));
+}
+
+std::vector<double> outlines_off(std::span<const ViewFit> fits) {
   constexpr double kUnusual = 4;  // times what is usual: as where views disagree (find_disagreeing)
   std::vector<double> off;
   std::size_t known = 0, found = 0;
-  for (const ViewFit& fit : fit_silhouettes(cameras, views)) {
+  for (const ViewFit& fit : fits) {
     const bool is_off = fit.residual > std::max(kSuspiciousTangents, kUnusual * fit.others);
     off.push_back(is_off ? std::numbers::sqrt2 * fit.residual : 0);
     known += fit.count > 0, found += is_off;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/frontier.h"
 #include "core/box.h"
 #include "core/image.h"
 #include "core/progress.h"
@@ -93,6 +94,9 @@ CameraDiagnosis diagnose_cameras(std::span<const View> views, const std::optiona
 /// have in common (frontier_pairs). Needs no texture, and a tenth of a second.
 /// `cameras`: one for each view, in place of the view's own.
 std::vector<ViewFit> fit_silhouettes(std::span<const Camera> cameras, std::span<const View> views);
+/// The same, of outlines that are known (outlines_of).
+std::vector<ViewFit> fit_silhouettes(std::span<const Camera> cameras,
+                                     std::span<const Outline> outlines);
 
 /// Pixels between tangents of outlines from which on cameras or masks look wrong.
 inline constexpr double kSuspiciousTangents = 0.25;
@@ -103,5 +107,7 @@ inline constexpr double kSuspiciousTangents = 0.25;
 /// moves a tangent by d |cos a|, where a is the angle between the shift and the tangent's normal;
 /// the median over all directions is d / sqrt(2).
 std::vector<double> outlines_off(std::span<const Camera> cameras, std::span<const View> views);
+/// The same, of fits that are known (fit_silhouettes).
+std::vector<double> outlines_off(std::span<const ViewFit> fits);
 
 }  // namespace photohull

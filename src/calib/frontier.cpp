@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <optional>
 
 #include "calib/mask_lines.h"
@@ -75,15 +77,35 @@ double distance_from_line(const Camera& a, const glm::dvec2& p, const Camera& b,
   return glm::dot(line, glm::dvec3(q, 1)) / std::max(glm::length(glm::dvec2(line)), 1e-300);
 }
 
+/// Eight where the contour passes neither between that many pixels from here on, nor below them,
+/// nor to the right of them; else 0. Pixels of the frame do not count.
+int run_without_contour(const Mask& mask, int x, int y) {
+  constexpr std::uint64_t kTopBits = 0x8080808080808080u;  // coverage of 128 and more
+  if (x == 0 || y == 0 || x + 9 > mask.width || y + 1 >= mask.height) return 0;
+  const std::uint8_t* here = &mask.coverage[std::size_t(y) * std::size_t(mask.width) + x];
+  std::uint64_t eight[3];
+  std::memcpy(&eight[0], here, 8);
+  std::memcpy(&eight[1], here + 1, 8);
+  std::memcpy(&eight[2], here + mask.width, 8);
+  const bool none = ((eight[0] | eight[1] | eight[2]) & kTopBits) == 0;
+  return none || (eight[0] & eight[1] & eight[2] & kTopBits) == kTopBits ? 8 : 0;
+}
+
 }  // namespace
 
-Outline outline_of(const Mask& mask) {
+Outline outline_of(const Mask& mask) { return outline_of(mask, find_lines(mask)); }
+
+Outline outline_of(const Mask& mask, std::span<const LinePoint> lines) {
   std::vector<glm::dvec2> points;
   const auto at = [&](int x, int y) {
     return double(mask.coverage[std::size_t(y) * mask.width + x]);
   };
   for (int y = 0; y < mask.height; ++y)
     for (int x = 0; x < mask.width; ++x) {
+      if (const int run = run_without_contour(mask, x, y); run > 0) {
+        x += run - 1;
+        continue;
+      }
       const double here = at(x, y);
       const bool inside = here > kLevel;
       if (inside && (x == 0 || y == 0 || x == mask.width - 1 || y == mask.height - 1))
@@ -97,7 +119,7 @@ Outline outline_of(const Mask& mask) {
       }
     }
   // Half the coverage leaves out lines: their edges follow from their widths.
-  for (const LinePoint& line : find_lines(mask)) {
+  for (const LinePoint& line : lines) {
     const glm::dvec2 middle(line.x, line.y), normal(line.normal_x, line.normal_y);
     points.push_back(middle + 0.5 * double(line.width) * normal);
     points.push_back(middle - 0.5 * double(line.width) * normal);

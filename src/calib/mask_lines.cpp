@@ -286,6 +286,15 @@ std::vector<LinePoint> find_lines(const Mask& mask) {
   return without_short_lines(mask, lines);
 }
 
+std::vector<LinePoint> sure_lines(const Mask& mask, std::vector<LinePoint> lines) {
+  std::erase_if(lines, [&](const LinePoint& p) {
+    const int x = std::clamp(int(std::lround(p.x)), 0, mask.width - 1);
+    const int y = std::clamp(int(std::lround(p.y)), 0, mask.height - 1);
+    return mask.coverage[std::size_t(y) * std::size_t(mask.width) + x] < kSureForeground;
+  });
+  return lines;
+}
+
 double line_slack(double width) { return kFullSlack * std::clamp(kWidestLine - width, 0.0, 1.0); }
 
 void widen_lines(const std::vector<LinePoint>& lines, Mask& mask) {

@@ -1,6 +1,7 @@
 // Parts of a silhouette that are narrower than about two pixels, and the room that they need.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "core/image.h"
@@ -16,6 +17,14 @@ inline constexpr double kWidestLine = 2.5;
 /// line's width, however few percent a pixel holds of it. Lines narrower than a tenth of a pixel
 /// are not told from the rounding and the ringing of masks. `mask` must not be empty.
 std::vector<LinePoint> find_lines(const Mask& mask);
+
+/// Coverage from which on a mask that was made is sure of its foreground, of 255: its coverage is
+/// the chance, and this is the middle between no knowledge, one half, and certainty.
+inline constexpr std::uint8_t kSureForeground = 192;
+
+/// Those of a made mask's lines that are sure foreground: most ridges of likelihoods are fringes
+/// of the background.
+std::vector<LinePoint> sure_lines(const Mask& mask, std::vector<LinePoint> lines);
 
 /// Pixels by which a line of this width must be widened on either side before its distance is
 /// sampled once a pixel: half a pixel, by which the bilinear interpolation of the distance to a

@@ -403,8 +403,12 @@ CameraRefinement refine_cameras(std::span<const View> views, const RefineCameras
 double tangent_disagreement(std::span<const View> views) {
   Cameras cameras;
   for (const View& view : views) cameras.push_back(view.camera);
+  return tangent_disagreement(cameras, outlines_of(views));
+}
+
+double tangent_disagreement(std::span<const Camera> cameras, std::span<const Outline> outlines) {
   const std::vector<double> distances =
-      tangent_distances(cameras, frontier_pairs(cameras, outlines_of(views)));
+      tangent_distances(Cameras(cameras.begin(), cameras.end()), frontier_pairs(cameras, outlines));
   return distances.empty() ? NAN : median(distances);
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calib/feature_tracks.h"
+#include "calib/frontier.h"
 #include "core/box.h"
 
 namespace photohull {
@@ -81,5 +82,7 @@ CameraRefinement refine_cameras(std::span<const View> views, const RefineCameras
 /// pairs of views with masks (frontier_pairs); NaN where there is no pair. Says in some hundredths
 /// of a second whether refine_cameras may pay.
 double tangent_disagreement(std::span<const View> views);
+/// The same, of outlines that are known (outlines_of).
+double tangent_disagreement(std::span<const Camera> cameras, std::span<const Outline> outlines);
 
 }  // namespace photohull

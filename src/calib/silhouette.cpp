@@ -228,6 +228,13 @@ SilhouetteDistance silhouette_distance(const Mask& mask) {
   return result;
 }
 
+void weigh_by_certainty(const Mask& mask, SilhouetteDistance& distance) {
+  PHOTOHULL_CHECK_OP(mask.coverage.size(), ==, distance.pixels.size());
+  for (std::size_t i = 0; i < distance.pixels.size(); ++i)
+    if (distance.pixels[i] > 0)
+      distance.pixels[i] *= std::max(1 - float(mask.coverage[i]) / 127.5f, 0.0f);
+}
+
 double interpolated(const SilhouetteDistance& distance, const glm::dvec2& pixel) {
   const int left = int(std::floor(pixel.x)), top = int(std::floor(pixel.y));
   const auto at = [&](int x, int y) {

@@ -104,7 +104,10 @@ class HullCarver {
     static_assert(HullOptions::kMostMissing == shaders::kMostMissing);
     PHOTOHULL_CHECK(options.views_may_miss >= 0 &&
                     options.views_may_miss <= HullOptions::kMostMissing);
+    PHOTOHULL_CHECK(options.full_evidence >= 0);
+    PHOTOHULL_CHECK(options.full_evidence == 0 || options.views_may_miss == 0);
     parameters_.limits = {options.views_may_miss, 0, 0, 0};
+    parameters_.evidence = {float(options.full_evidence), 0, 0, 0};
     parameters_.pyramid = {MaskPyramid::kBlock, device_.levels, kSplitMargin, SparseVolume::kBand};
   }
 

@@ -103,20 +103,42 @@ bool touches_image(const Camera& camera, const ProjectedCube& cube) {
          cube.low.y <= k.height - 0.5;
 }
 
-/// Least and greatest coverage of the pixels within one pixel of the cube's projection: those that
-/// a bilinear look-up there can use.
+/// Least and greatest coverage of the pixels within `margin` pixels of the cube's projection: with
+/// one, those that a bilinear look-up there can use.
 glm::dvec2 coverage_range(const Silhouette& silhouette, const Intrinsics& k,
-                          const ProjectedCube& cube) {
-  const glm::ivec2 first(glm::max(glm::floor(cube.low) - 1.0, glm::dvec2(0)));
-  const glm::ivec2 last(glm::min(glm::ceil(cube.high) + 1.0, glm::dvec2(k.width, k.height) - 1.0));
+                          const ProjectedCube& cube, double margin) {
+  const glm::dvec2 size(k.width, k.height);
+  const glm::ivec2 first(glm::max(glm::floor(cube.low - margin), glm::dvec2(0)));
+  const glm::ivec2 last(glm::min(glm::ceil(cube.high + margin), size - 1.0));
   glm::dvec2 range(1, 0);
   for (int y = first.y; y <= last.y; ++y)
     for (int x = first.x; x <= last.x; ++x) {
-      if (distance_to(cube.outline, {x, y}) > 1) continue;
+      if (distance_to(cube.outline, {x, y}) > margin) continue;
       const double c = coverage(silhouette, x, y);
       range = {std::min(range.x, c), std::max(range.y, c)};
     }
   return range;
+}
+
+/// What a view says of a point, voxels: its distance from the outline, and that at which the view's
+/// evidence is full.
+struct Said {
+  double distance = 0, full = 0;
+};
+
+/// The distance that is farthest outside of those at which the evidence sums to one, by bisection;
+/// the definition.
+double distance_by_evidence(const std::vector<Said>& said) {
+  double low = 1e30, high = -1e30;
+  for (const Said& s : said)
+    low = std::min(low, s.distance - s.full), high = std::max(high, s.distance);
+  for (int i = 0; i < 200; ++i) {
+    const double middle = 0.5 * (low + high);
+    double evidence = 0;
+    for (const Said& s : said) evidence += std::clamp((s.distance - middle) / s.full, 0.0, 1.0);
+    (evidence >= 1 ? low : high) = middle;
+  }
+  return low;
 }
 
 }  // namespace
@@ -143,7 +165,9 @@ NodeClass classify_node(const GridSpec& grid, const Box& box, std::span<const Ca
     ++partly_seen;
     const bool whole = cameras[v].on_image(cube.low) && cameras[v].on_image(cube.high);
     wholly_seen += whole;
-    const glm::dvec2 range = coverage_range(silhouettes[v], cameras[v].intrinsics, cube);
+    // One pixel for the look-up's; the rest is what one view alone needs to reject a point.
+    const glm::dvec2 range =
+        coverage_range(silhouettes[v], cameras[v].intrinsics, cube, 1 + options.full_evidence);
     rejecting += whole && range.y < 0.5;
     doubting += range.x < 0.5;
   }
@@ -160,6 +184,7 @@ double hull_distance(const GridSpec& grid, const Box& box, std::span<const Camer
   const glm::dvec3 world = grid.world(voxel);
   const glm::dvec3 beyond = glm::max(box.min - world, world - box.max) / grid.voxel_size;
   std::vector<double> said;
+  std::vector<Said> evidence;
   for (std::size_t v = 0; v < cameras.size(); ++v) {
     const auto pixel = cameras[v].project(world);
     if (!pixel || !cameras[v].on_image(*pixel)) continue;
@@ -167,11 +192,14 @@ double hull_distance(const GridSpec& grid, const Box& box, std::span<const Camer
     const double voxels_per_pixel =
         cameras[v].to_camera(world).z / std::sqrt(std::abs(k.fx * k.fy)) / grid.voxel_size;
     said.push_back(bilinear_distance(silhouettes[v], *pixel) * voxels_per_pixel);
+    evidence.push_back({said.back(), options.full_evidence * voxels_per_pixel});
   }
   if (int(said.size()) < options.min_views) return band;
   std::sort(said.begin(), said.end(), std::greater<>());
   const auto missing = std::size_t(options.views_may_miss);
-  const double silhouettes_say = missing < said.size() ? said[missing] : -1e30;
+  double silhouettes_say = missing < said.size() ? said[missing] : -1e30;
+  if (options.full_evidence > 0 && !evidence.empty())
+    silhouettes_say = distance_by_evidence(evidence);
   return std::clamp(std::max({beyond.x, beyond.y, beyond.z, silhouettes_say}), -band, band);
 }
 

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "calib/mask_lines.h"
+#include "calib/outline_probe.h"
 #include "calib/silhouette.h"
 #include "core/clip_ray.h"
 #include "core/error.h"
@@ -26,6 +28,8 @@ constexpr double kInside = 1.5;  // pixels within an outline from where on foreg
 constexpr int kLatticePlaces = 400;       // a view, about
 constexpr std::size_t kMostLines = 6000;  // a view
 constexpr int kNeighbourhood = 2;         // pixels around unexplained foreground that count as such
+constexpr int kNotFar = 3;                // pixels around these
+constexpr double kCoarse = 4;             // pixels of a ray that are given up as one
 constexpr double kSafety = 0.8;           // of the distance to an outline that a ray may skip
 constexpr double kFarthestSkip = 4;       // pixels: likelihoods change from place to place
 constexpr double kDeep = 0.1;             // pixels within an outline: there is nothing to mend
@@ -35,8 +39,8 @@ constexpr double kShare = 0.25;  // of the depth within an outline, along a ray 
 constexpr int kHintSteps = 8;
 constexpr double kNeighbour = 6;     // pixels
 constexpr std::size_t kPiece = 128;  // places
-constexpr std::uint8_t kSure = 192;  // of 255: the chance of a half, and half of the rest
 constexpr int kFewestViews = 4;
+constexpr std::uint8_t kBeside = 1, kNear = 2;  // marks
 
 /// A place of a view's foreground, pixels.
 struct Seed {
@@ -55,7 +59,8 @@ class Searcher {
   Searcher(const Box& box, std::span<const Camera> cameras, std::span<const Silhouette> silhouettes,
            const MissingOptions& options)
       : box_(box), silhouettes_(silhouettes), options_(options), cameras_(cameras) {
-    for (const Camera& camera : cameras) projections_.push_back(camera.projection());
+    for (std::size_t v = 0; v < cameras.size(); ++v)
+      probes_.emplace_back(cameras[v], silhouettes[v].distance);
   }
 
   /// The line's points, and a lattice within what is thicker.
@@ -93,9 +98,11 @@ class Searcher {
     if (!part) return std::nullopt;
     std::size_t last = view;
     if (near)
-      for (int i = -kHintSteps; i <= kHintSteps; ++i) {
-        const double t = near->depth * (1 + i * seed.finest * ray.footprint);
-        if (rejected_by(ray.at(t), last) > 0 || farthest(ray.at(t)) >= -kDeep) continue;
+      for (int i = 0; i <= 2 * kHintSteps; ++i) {
+        const int step = i % 2 == 0 ? i / 2 : -(i + 1) / 2;
+        const double t = near->depth * (1 + step * seed.finest * ray.footprint);
+        double beside = 0;
+        if (rejected_by(ray.at(t), last, beside) > 0 || beside >= -kDeep) continue;
         seed.explained = true, seed.depth = t;
         return std::nullopt;
       }
@@ -111,7 +118,7 @@ class Searcher {
     return seed.is_line ? found : std::nullopt;
   }
 
-  /// Marks the surroundings of unexplained places of a view.
+  /// Marks the surroundings of unexplained places of a view, and what is not far from these.
   void mark(std::size_t view, std::span<const Seed> seeds) {
     if (marks_.size() != cameras_.size()) marks_.resize(cameras_.size());
     const SilhouetteDistance& d = *silhouettes_[view].distance;
@@ -119,10 +126,13 @@ class Searcher {
       if (seed.explained) continue;
       if (marks_[view].empty()) marks_[view].resize(d.pixels.size());
       const int px = int(std::lround(seed.pixel.x)), py = int(std::lround(seed.pixel.y));
-      const int reach = kNeighbourhood + int(seed.radius);
+      const int near = kNeighbourhood + int(seed.radius), reach = near + kNotFar;
       for (int y = std::max(py - reach, 0); y <= std::min(py + reach, d.height - 1); ++y)
-        for (int x = std::max(px - reach, 0); x <= std::min(px + reach, d.width - 1); ++x)
-          marks_[view][std::size_t(y) * std::size_t(d.width) + x] = 1;
+        for (int x = std::max(px - reach, 0); x <= std::min(px + reach, d.width - 1); ++x) {
+          const bool is_near = std::max(std::abs(x - px), std::abs(y - py)) <= near;
+          std::uint8_t& mark = marks_[view][std::size_t(y) * std::size_t(d.width) + x];
+          mark = std::max(mark, is_near ? kNear : kBeside);
+        }
     }
   }
 
@@ -133,14 +143,20 @@ class Searcher {
     if (!part) return std::nullopt;
     std::optional<MissingPart> best;
     double best_score = 0;
-    for (double t = part->first, skip = 0; t < part->second;
-         t += std::max(skip, seed.step * t * ray.footprint)) {
-      const dvec3 p = ray.at(t);
-      const double score = judge(p, skip);
-      skip = std::min(skip, kFarthestSkip * t * ray.footprint);
-      if (!(score > best_score)) continue;
-      best_score = score;
-      best = MissingPart{p, seed.radius * t * ray.footprint};
+    for (double t = part->first; t < part->second;) {
+      const double pixel = t * ray.footprint, half = 0.5 * kCoarse * pixel, end = t + 2 * half;
+      double skip = 0;
+      const bool hopeless = judge(ray.at(t + half), half, skip) <= best_score;
+      if (hopeless)
+        t = std::max(end, t + half + std::min(skip, kFarthestSkip * pixel));
+      else
+        for (; t < end && t < part->second; t += std::max(skip, seed.step * pixel)) {
+          const double score = judge(ray.at(t), 0, skip);
+          skip = std::min(skip, kFarthestSkip * pixel);
+          if (!(score > best_score)) continue;
+          best_score = score;
+          best = MissingPart{ray.at(t), seed.radius * pixel};
+        }
     }
     return best;
   }
@@ -159,10 +175,10 @@ class Searcher {
     double least = kBorne, where = 0;
     for (double t = part.first; t < part.second;) {
       const dvec3 p = ray.at(t);
-      const double skip = rejected_by(p, last);
+      double beside = 0;
+      const double skip = rejected_by(p, last, beside);
       if (skip <= 0) {
         seed.explained = true;
-        const double beside = farthest(p);
         if (beside < -kDeep) {
           seed.depth = t;
           return std::nullopt;
@@ -180,75 +196,64 @@ class Searcher {
     return {camera.center(), camera.ray(pixel), 1 / camera.intrinsics.fx};
   }
 
-  /// Signed pixels from the view's outline; nothing where the view says nothing. `depth` as well.
-  std::optional<double> outline(std::size_t v, const dvec3& p, double& depth) const {
-    if (!silhouettes_[v].distance) return std::nullopt;
-    const dvec3 q = projections_[v] * glm::dvec4(p, 1);
-    if (q.z <= 0) return std::nullopt;
-    const dvec2 pixel(q.x / q.z, q.y / q.z);
-    if (!cameras_[v].on_image(pixel)) return std::nullopt;
-    depth = q.z;
-    return interpolated(*silhouettes_[v].distance, pixel);
-  }
-
   /// Is the foreground of a mask that was made little more than a guess here?
   bool is_doubtful(std::size_t view, const dvec2& pixel) const {
     const Silhouette& s = silhouettes_[view];
     if (!s.likelihood || !s.mask) return false;
     const int x = std::clamp(int(std::lround(pixel.x)), 0, s.mask->width - 1);
     const int y = std::clamp(int(std::lround(pixel.y)), 0, s.mask->height - 1);
-    return s.mask->coverage[std::size_t(y) * std::size_t(s.mask->width) + x] < kSure;
+    return s.mask->coverage[std::size_t(y) * std::size_t(s.mask->width) + x] < kSureForeground;
   }
 
   /// 0 where every view bears the point; else the world distance within which the view that
   /// rejects it goes on doing so. `last`: the view that is asked first, and that rejected it.
-  double rejected_by(const dvec3& p, std::size_t& last) const {
-    for (std::size_t i = 0; i <= cameras_.size(); ++i) {
+  /// `beside`: signed pixels by which the point lies outside the outline of the view that bears it
+  /// least, if all do.
+  double rejected_by(const dvec3& p, std::size_t& last, double& beside) const {
+    beside = -1e30;
+    Appearance at;
+    for (std::size_t i = 0; i <= probes_.size(); ++i) {
       const std::size_t v = i == 0 ? last : i - 1;
-      double depth = 0;
-      const auto d = outline(v, p, depth);
-      if (!d || *d <= kBorne) continue;
+      if (!probes_[v].has_outline() || !probes_[v].sees(p, at)) continue;
+      const double d = probes_[v].distance(at);
+      beside = std::max(beside, d);
+      if (d <= kBorne) continue;
       last = v;
-      return std::max(kSafety * *d * depth / cameras_[v].intrinsics.fx, 1e-300);
+      return std::max(kSafety * d * at.depth / cameras_[v].intrinsics.fx, 1e-300);
     }
     return 0;
   }
 
-  /// Signed pixels by which the point lies outside the outline of the view that bears it least.
-  double farthest(const dvec3& p) const {
-    double most = -1e30, depth = 0;
-    for (std::size_t v = 0; v < cameras_.size(); ++v)
-      if (const auto d = outline(v, p, depth)) most = std::max(most, *d);
-    return most;
-  }
-
   /// How many views show unexplained foreground at the point, less twice those that leave it out;
-  /// 0 where it must not be taken. `skip`: the world distance within which the views that leave it
-  /// out go on doing so; 0: unknown.
-  double judge(const dvec3& p, double& skip) const {
+  /// 0 where it must not be taken. With `around`, a world distance, an upper bound for all points
+  /// within it. `skip`: the world distance within which the views that leave it out go on doing so;
+  /// 0: unknown.
+  double judge(const dvec3& p, double around, double& skip) const {
     int seen = 0, support = 0;
     double missing = 0, lasting = 0, lasts = INFINITY;  // lasting: by views that go on doing so
     skip = 0;
     const double most = options_.most_missing * double(cameras_.size());
-    for (std::size_t v = 0; v < cameras_.size(); ++v) {
-      double depth = 0;
-      const auto d = outline(v, p, depth);
-      if (!d) continue;
+    Appearance at;
+    for (std::size_t v = 0; v < probes_.size(); ++v) {
+      if (!probes_[v].has_outline() || !probes_[v].sees(p, at)) continue;
       ++seen;
-      if (*d > kBorne) {
+      const double per_pixel = kSafety * at.depth / cameras_[v].intrinsics.fx;  // world distance
+      const double slack = around / per_pixel;
+      const double d = probes_[v].distance(at) - slack;
+      if (d > kBorne) {
         const double miss =
-            background(v, p) * std::min((*d - kBorne) / (options_.full_miss - kBorne), 1.0);
+            background(v, at) * std::min((d - kBorne) / (options_.full_miss - kBorne), 1.0);
         missing += miss;
-        if (const double far = *d - options_.full_miss; far > kBorne) {
+        if (const double far = d - options_.full_miss; far > kBorne) {
           lasting += miss;
-          lasts = std::min(lasts, kSafety * far * depth / cameras_[v].intrinsics.fx);
+          lasts = std::min(lasts, (far + slack) * per_pixel);
         }
         if (missing > most) {
           if (lasting > most) skip = lasts;
           return 0;
         }
       }
-      support += is_marked(v, p);
+      support += slack > kNotFar || mark_at(v, at) >= (around > 0 ? kBeside : kNear);
     }
     if (seen < kFewestViews || missing > options_.most_missing * seen ||
         support < std::max(double(options_.least_support), options_.support_share * seen))
@@ -258,54 +263,51 @@ class Searcher {
 
   /// How sure the view's mask is that it shows background at the point, [0, 1]: its coverage there
   /// is the chance of the opposite.
-  double background(std::size_t v, const dvec3& p) const {
+  double background(std::size_t v, const Appearance& at) const {
     const Mask* mask = silhouettes_[v].mask;
     if (!mask || mask->empty()) return 1;
-    const dvec3 q = projections_[v] * glm::dvec4(p, 1);
-    const int x = std::clamp(int(std::lround(q.x / q.z)), 0, mask->width - 1);
-    const int y = std::clamp(int(std::lround(q.y / q.z)), 0, mask->height - 1);
-    return std::max(1 - mask->coverage[std::size_t(y) * std::size_t(mask->width) + x] / 127.5, 0.0);
+    return std::max(1 - mask->coverage[probes_[v].nearest_pixel(at)] / 127.5, 0.0);
   }
 
-  bool is_marked(std::size_t v, const dvec3& p) const {
-    if (marks_[v].empty()) return false;
-    const dvec3 q = projections_[v] * glm::dvec4(p, 1);
-    const SilhouetteDistance& d = *silhouettes_[v].distance;
-    const int x = std::clamp(int(std::lround(q.x / q.z)), 0, d.width - 1);
-    const int y = std::clamp(int(std::lround(q.y / q.z)), 0, d.height - 1);
-    return marks_[v][std::size_t(y) * std::size_t(d.width) + x];
+  std::uint8_t mark_at(std::size_t v, const Appearance& at) const {
+    return marks_[v].empty() ? 0 : marks_[v][probes_[v].nearest_pixel(at)];
   }
 
   Box box_;
   std::span<const Silhouette> silhouettes_;
   MissingOptions options_;
   std::span<const Camera> cameras_;
-  std::vector<glm::dmat4x3> projections_;
-  std::vector<std::vector<std::uint8_t>> marks_;  ///< by view: near unexplained foreground
+  std::vector<OutlineProbe> probes_;
+  std::vector<std::vector<std::uint8_t>> marks_;  ///< by view: kNear or kBeside what is unexplained
 };
 
 /// The nearest of these places whose depth is known, if it is near enough to tell anything.
 const Seed* nearest_known(std::span<const Seed> seeds, const Seed& to) {
   const Seed* best = nullptr;
-  double within = to.reach;
+  double within = to.reach * to.reach;
   for (const Seed& seed : seeds) {
-    const double d = glm::distance(seed.pixel, to.pixel);
-    if (seed.depth > 0 && d < within) within = d, best = &seed;
+    const dvec2 apart = seed.pixel - to.pixel;
+    const double squared = glm::dot(apart, apart);
+    if (seed.depth > 0 && squared < within) within = squared, best = &seed;
   }
   return best;
 }
 
-/// Raises the coverage to that of a disc.
-void draw_disc(const dvec2& centre, double radius, Mask& mask) {
+/// Raises the coverage to that of a disc. Was it less anywhere?
+bool draw_disc(const dvec2& centre, double radius, Mask& mask) {
   const double reach = radius + 0.5;
+  bool raised = false;
   for (int y = std::max(0, int(std::ceil(centre.y - reach)));
        y <= std::min(mask.height - 1, int(std::floor(centre.y + reach))); ++y)
     for (int x = std::max(0, int(std::ceil(centre.x - reach)));
          x <= std::min(mask.width - 1, int(std::floor(centre.x + reach))); ++x) {
       const double share = std::clamp(0.5 + radius - glm::distance(dvec2(x, y), centre), 0.0, 1.0);
       std::uint8_t& value = mask.coverage[std::size_t(y) * std::size_t(mask.width) + x];
-      value = std::max(value, std::uint8_t(std::lround(255 * share)));
+      const auto drawn = std::uint8_t(std::lround(255 * share));
+      raised = raised || drawn > value;
+      value = std::max(value, drawn);
     }
+  return raised;
 }
 
 }  // namespace
@@ -360,8 +362,8 @@ bool mend_silhouette(std::span<const MissingPart> parts, const Camera& camera,
     if (!pixel || !camera.on_image(*pixel)) continue;
     if (interpolated(distance, *pixel) < -kDeep) continue;
     const double depth = camera.to_camera(part.centre).z;
-    draw_disc(*pixel, part.radius * camera.intrinsics.fx / depth + kRoom, mask);
-    mended = true;
+    const double radius = part.radius * camera.intrinsics.fx / depth + kRoom;
+    mended = draw_disc(*pixel, radius, mask) || mended;
   }
   return mended;
 }

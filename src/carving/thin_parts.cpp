@@ -8,7 +8,7 @@
 #include <functional>
 #include <vector>
 
-#include "calib/silhouette.h"
+#include "calib/outline_probe.h"
 #include "carving/join_parts.h"
 #include "projtex/gpu_views.h"
 
@@ -32,10 +32,16 @@ class Field {
       : low_((box.min - grid.origin) / grid.voxel_size),
         high_((box.max - grid.origin) / grid.voxel_size),
         least_views_(options.min_views),
-        missing_(options.views_may_miss) {
-    for (std::size_t v = 0; v < cameras.size(); ++v)
-      views_.push_back({projtex::to_grid(cameras[v], grid), silhouettes[v].distance,
+        missing_(options.views_may_miss),
+        full_evidence_(options.full_evidence) {
+    for (std::size_t v = 0; v < cameras.size(); ++v) {
+      const projtex::GridCamera camera = projtex::to_grid(cameras[v], grid);
+      views_.push_back({{camera.projection, camera.width, camera.height, silhouettes[v].distance},
+                        1 / camera.focal,
                         beside_lines(silhouettes[v])});
+    }
+    std::stable_partition(views_.begin(), views_.end(),
+                          [](const View& v) { return !v.beside_lines.empty(); });
   }
 
   bool has_lines() const {
@@ -46,14 +52,12 @@ class Field {
   /// Does the point fall beside lines in a third of the views that see it, and in some at least?
   bool on_stem(const dvec3& p) const {
     int seen = 0, beside = 0;
+    Appearance at;
     for (const View& view : views_) {
-      const dvec3 q = view.camera.projection * glm::dvec4(p, 1);
-      if (q.z <= 0) continue;
-      const int x = int(std::lround(q.x / q.z)), y = int(std::lround(q.y / q.z));
-      if (x < 0 || y < 0 || x >= view.camera.width || y >= view.camera.height) continue;
+      if (view.beside_lines.empty() && beside < kFewestViews) return false;  // the rest has none
+      if (!view.probe.sees(p, at)) continue;
       ++seen;
-      beside += !view.beside_lines.empty() &&
-                view.beside_lines[std::size_t(y) * std::size_t(view.camera.width) + std::size_t(x)];
+      beside += !view.beside_lines.empty() && view.beside_lines[view.probe.nearest_pixel(at)];
     }
     return beside >= kFewestViews && 3 * beside >= seen;
   }
@@ -64,32 +68,46 @@ class Field {
     const dvec3 beyond = glm::max(low_ - p, p - high_);
     double value = std::max({beyond.x, beyond.y, beyond.z});
     int seen = 0, beyond_enough = 0;
-    thread_local std::vector<double> said;
-    said.clear();
+    thread_local std::vector<double> said, full;
+    said.clear(), full.clear();
+    Appearance seen_at;
     for (const View& view : views_) {
-      const dvec3 q = view.camera.projection * glm::dvec4(p, 1);
-      if (q.z <= 0) continue;
-      const double x = q.x / q.z, y = q.y / q.z;
-      if (x < -0.5 || y < -0.5 || x > view.camera.width - 0.5 || y > view.camera.height - 0.5)
-        continue;
+      if (!view.probe.sees(p, seen_at)) continue;
       ++seen;
-      if (!view.distance) continue;
-      said.push_back(interpolated(*view.distance, {x, y}) * q.z / view.camera.focal);
-      beyond_enough += said.back() >= enough;
+      if (!view.probe.has_outline()) continue;
+      const double per_pixel = seen_at.depth * view.per_depth;
+      said.push_back(view.probe.distance(seen_at) * per_pixel);
+      full.push_back(full_evidence_ * per_pixel);
+      beyond_enough += said.back() - full.back() >= enough;
       if (beyond_enough > missing_) return enough;
     }
     if (seen < least_views_) return double(SparseVolume::kBand);
     if (int(said.size()) <= missing_) return value;
+    if (full_evidence_ > 0) return std::max(value, distance_by_evidence(said, full));
     std::nth_element(said.begin(), said.begin() + missing_, said.end(), std::greater<>());
     return std::max(value, said[std::size_t(missing_)]);
   }
 
  private:
   struct View {
-    projtex::GridCamera camera;
-    const SilhouetteDistance* distance;
+    OutlineProbe probe;
+    double per_depth;                        ///< voxels of a pixel at depth 1
     std::vector<std::uint8_t> beside_lines;  ///< a pixel each; empty where there are no lines
   };
+
+  /// As in carving_hull_distance.comp.glsl.
+  static double distance_by_evidence(std::span<const double> said, std::span<const double> full) {
+    double s = -1e30;
+    for (std::size_t i = 0; i < said.size(); ++i) s = std::max(s, said[i] - full[i]);
+    for (double last = -1e30; s > last;) {
+      last = s;
+      double slopes = 0, weighted = 0;
+      for (std::size_t i = 0; i < said.size(); ++i)
+        if (said[i] > last) slopes += 1 / full[i], weighted += said[i] / full[i];
+      s = std::max((weighted - 1) / slopes, last);
+    }
+    return s;
+  }
 
   static std::vector<std::uint8_t> beside_lines(const Silhouette& silhouette) {
     std::vector<std::uint8_t> marks;
@@ -107,6 +125,7 @@ class Field {
 
   dvec3 low_, high_;
   int least_views_, missing_;
+  double full_evidence_;  ///< pixels
   std::vector<View> views_;
 };
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/frontier.h"
 #include "calib/prepare_views.h"
 #include "calib/refine_cameras.h"
 #include "calib/silhouette.h"
@@ -38,8 +39,11 @@ class Inputs {
   void crop();
   void measure_silhouettes();
   void correct_masks();
+  /// Of the masks as they are from here on: their lines, and the outlines' convex hulls.
+  void trace_outlines();
   void leave_out_wrong_views();
-  /// Gives silhouettes that are a little off as much room as they are off.
+  /// Gives silhouettes that are a little off as much room as they are off, and finds out what one
+  /// view's evidence is worth.
   void bear_disagreement();
   /// Gives stems and wires the room that voxels need; their width is known from `lines`.
   void widen_lines();
@@ -63,6 +67,7 @@ class Inputs {
   /// The masks with room around their lines, and with what other views put into them; an empty one
   /// where nothing changed.
   std::vector<Mask> widened;
+  double full_evidence = 0;  ///< pixels (HullOptions)
   double contradiction = 0;  ///< share of the silhouettes' rays that other silhouettes leave empty
   double cameras_moved = 0;  ///< by refinement, pixels
   double cameras_moved_alike = 0;  ///< of it what all views have in common
@@ -83,6 +88,7 @@ class Inputs {
 
   Scene full_;                           ///< the scene in the files' pixels, until they are decoded
   std::vector<double> scales_;           ///< of its views
+  std::vector<Outline> outlines_;        ///< of the masks, one a view
   std::vector<double> room_;             ///< pixels around each view's outline, for what it is off
   std::set<std::string> right_cameras_;  ///< names of views
   std::set<std::string> made_masks_;     ///< names of views whose masks come from the background

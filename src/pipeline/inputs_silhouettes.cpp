@@ -8,12 +8,12 @@
 #include "calib/diagnose.h"
 #include "calib/mask_bias.h"
 #include "calib/mask_lines.h"
+#include "calib/refine_cameras.h"
 #include "carving/missing_parts.h"
 #include "core/error.h"
 #include "pipeline/inputs.h"
 #include "pipeline/self_check.h"
 #include "pipeline/tuning.h"
-#include "projtex/gpu_views.h"
 
 namespace photohull::pipeline {
 namespace {
@@ -23,8 +23,7 @@ constexpr double kFarOff = 0.005;      // of the image's longer side: this view 
 
 /// Views whose outlines' tangents are far from all others', who agree; none where these are more
 /// than a quarter.
-std::vector<int> views_off_tangents(std::span<const View> views) {
-  const std::vector<ViewFit> fits = fit_silhouettes(projtex::cameras_of(views), views);
+std::vector<int> views_off_tangents(std::span<const View> views, std::span<const ViewFit> fits) {
   std::vector<int> off;
   std::size_t known = 0;
   for (std::size_t i = 0; i < fits.size(); ++i) {
@@ -69,11 +68,23 @@ void Inputs::correct_masks() {
     if (!views[i].mask.empty()) move_outline(offset, views[i].mask, silhouettes[i]);
 }
 
+void Inputs::trace_outlines() {
+  lines.assign(views.size(), {});
+  outlines_.assign(views.size(), {});
+  tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
+    if (views[i].mask.empty()) return;
+    lines[i] = find_lines(views[i].mask);
+    if (made_masks_.contains(views[i].name))
+      lines[i] = sure_lines(views[i].mask, std::move(lines[i]));
+    outlines_[i] = outline_of(views[i].mask, lines[i]);
+  });
+}
+
 /// One view that is far off carves away what all others have.
 void Inputs::leave_out_wrong_views() {
   if (!options_.keep_views)
     leave_out(
-        views_off_tangents(views),
+        views_off_tangents(views, fit_silhouettes(cameras, outlines_)),
         "its outline is not where the other views' outlines say (check its camera and its mask)");
   const assess::SilhouetteConsistency found =
       assess::find_wrong_views(*scene.box, cameras, pointers(silhouettes));
@@ -88,7 +99,9 @@ void Inputs::leave_out_wrong_views() {
 void Inputs::bear_disagreement() {
   room_.assign(views.size(), 0);
   if (options_.views_may_miss || !any_mask()) return;
-  room_ = outlines_off(cameras, views);
+  room_ = outlines_off(fit_silhouettes(cameras, outlines_));
+  const double usual = tangent_disagreement(cameras, outlines_);
+  if (usual > kSuspiciousTangents) report_.full_evidence = full_evidence = usual;
   for (std::size_t i = 0; i < room_.size(); ++i)
     if (room_[i] > 0) report_.outline_room.push_back({views[i].name, room_[i]});
   if (report_.outline_room.empty()) return;
@@ -103,11 +116,9 @@ void Inputs::bear_disagreement() {
 }
 
 void Inputs::widen_lines() {
-  lines.assign(views.size(), {});
   widened.assign(views.size(), {});
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
     if (views[i].mask.empty()) return;
-    lines[i] = find_lines(views[i].mask);
     if (lines[i].empty() && room_[i] == 0) return;
     widened[i] = views[i].mask;
     photohull::widen_lines(lines[i], widened[i]);
@@ -149,6 +160,9 @@ void Inputs::explain_foreground() {
     silhouettes[i] = silhouette_distance(mask);
     widened[i] = std::move(mask);
   });
+  for (std::size_t i = 0; i < views.size() && full_evidence > 0; ++i)
+    if (!views[i].mask.empty() && made_masks_.contains(views[i].name))
+      weigh_by_certainty(widened[i].empty() ? views[i].mask : widened[i], silhouettes[i]);
   ThinReport& counts = report_.thin;
   double worst = 0;
   for (std::size_t i = 0; i < views.size(); ++i) {
@@ -177,6 +191,8 @@ void Inputs::leave_out(std::span<const int> wrong, const std::string& why) {
       report_.masks_left_out.push_back(name);
       views[*i].mask = {};
       silhouettes[*i] = {};
+      lines[*i] = {};
+      outlines_[*i] = {};
       continue;
     }
     warn(concat("view ", name, " is left out: ", why));
@@ -185,6 +201,8 @@ void Inputs::leave_out(std::span<const int> wrong, const std::string& why) {
     scene.views.erase(scene.views.begin() + *i);
     cameras.erase(cameras.begin() + *i);
     silhouettes.erase(silhouettes.begin() + *i);
+    lines.erase(lines.begin() + *i);
+    outlines_.erase(outlines_.begin() + *i);
   }
 }
 

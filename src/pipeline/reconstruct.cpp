@@ -91,6 +91,7 @@ class Job {
     SparseVolume volume = clock_.run("hull", Weights::kHull, [&] {
       in_.measure_silhouettes();
       in_.correct_masks();
+      in_.trace_outlines();
       in_.leave_out_wrong_views();
       in_.bear_disagreement();
       in_.widen_lines();
@@ -174,6 +175,7 @@ class Job {
     carving::HullOptions hull_options;
     hull_options.min_views = in_.any_mask() ? 1 : 2;
     hull_options.views_may_miss = options_.views_may_miss.value_or(0);
+    hull_options.full_evidence = in_.full_evidence;
     // Where hardly more views see a point than may leave it out, nothing would be known of it.
     if (hull_options.views_may_miss > 0)
       hull_options.min_views =

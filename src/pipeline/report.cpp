@@ -37,6 +37,7 @@ std::string Report::to_json() const {
                 {"mended", masks_mended},
                 {"offset", mask_offset}};
   if (std::isfinite(mask_disagreement)) j["masks"]["disagreement"] = mask_disagreement;
+  j["masks"]["full_evidence"] = full_evidence;
   j["masks"]["views"] = ordered_json::array();
   for (const MaskReport& m : masks)
     j["masks"]["views"].push_back(

@@ -100,6 +100,8 @@ struct Report {
   double mask_confidence = 0;
   /// Pixels (calib/refine_cameras.h, tangent_disagreement); NaN where it was not looked at.
   double mask_disagreement = NAN;
+  /// Pixels outside an outline at which one view alone carves (HullOptions); 0: at once.
+  double full_evidence = 0;
   int masks_mended = 0;                   ///< by calib/torn_masks.h
   std::vector<OutlineRoom> outline_room;  ///< of views whose outlines are off
   double mask_offset = 0;         ///< pixels by which the masks' outlines were moved outward

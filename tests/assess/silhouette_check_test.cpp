@@ -40,5 +40,22 @@ TEST(SilhouetteCheck, SharesAreThoseOfTheAreas) {
   }
 }
 
+// A lattice of the whole picture would have two or three places in this foreground: one that falls
+// into a gap by chance would be a third of it.
+TEST(SilhouetteCheck, SmallForegroundIsLookedAtPixelByPixel) {
+  const std::vector<Camera> cameras = test::cameras_around({0, 0, 0}, 5, 3, 1200, 900, 900);
+  std::vector<test::Outline> outlines;
+  for (const Camera& camera : cameras)
+    outlines.push_back(test::sphere_outline(camera, {0, 0, 0}, 0.06));
+  std::vector<CheckedSilhouette> silhouettes;
+  for (const test::Outline& o : outlines) silhouettes.push_back({&o.distance, &o.distance});
+  const TriMesh smaller = test::sphere_mesh({0, 0, 0}, 0.05, 60);
+  for (const SilhouetteFit& fit :
+       check_silhouettes(RayScene(smaller), kBox, cameras, silhouettes, 0)) {
+    EXPECT_GT(fit.foreground, 300);
+    EXPECT_NEAR(fit.missed, 1 - 25.0 / 36, 0.03);
+  }
+}
+
 }  // namespace
 }  // namespace photohull::assess

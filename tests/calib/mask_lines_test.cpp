@@ -209,6 +209,22 @@ TEST(FindLines, AShortSpikeOfSomethingThickIsNone) {
   EXPECT_TRUE(find_lines(drawing.mask()).empty());
 }
 
+TEST(SureLines, WhereTheMiddleOfTheLineIsMoreThanAGuess) {
+  Mask mask{kSize, kSize, std::vector<std::uint8_t>(kSize * kSize, 0)};
+  for (int y = 0; y < kSize; ++y)
+    for (const auto& [x, chance] : {std::pair(10, 150), std::pair(30, 191), std::pair(50, 230)})
+      mask.coverage[std::size_t(y * kSize + x)] = std::uint8_t(chance);
+  const std::vector<LinePoint> all = find_lines(mask), sure = sure_lines(mask, all);
+  const auto count_at = [](const std::vector<LinePoint>& lines, double x) {
+    return std::count_if(lines.begin(), lines.end(),
+                         [&](const LinePoint& p) { return std::abs(p.x - x) < 1; });
+  };
+  for (const double x : {10, 30, 50}) EXPECT_GT(count_at(all, x), kSize / 2) << x;
+  EXPECT_EQ(count_at(sure, 10), 0);
+  EXPECT_EQ(count_at(sure, 30), 0);
+  EXPECT_EQ(count_at(sure, 50), count_at(all, 50));
+}
+
 TEST(FindLines, NoneInMasksOfOneValueOrOneThatHoldsNoLine) {
   for (const int width : {1, 3, 8, 40})
     for (const int value : {0, 1, 128, 255})

@@ -223,5 +223,15 @@ TEST(SilhouetteDistance, KeepsSinglePixelParts) {
   EXPECT_NEAR(result.pixels[4 * 9 + 7], 2.5f, 1e-3);
 }
 
+TEST(WeighByCertainty, DistancesOutsideByHowSureTheMaskIs) {
+  const Mask mask{4, 1, {0, 51, 127, 200}};
+  SilhouetteDistance distance{4, 1, {8, 5, 2, -3}};
+  weigh_by_certainty(mask, distance);
+  EXPECT_FLOAT_EQ(distance.pixels[0], 8);
+  EXPECT_NEAR(distance.pixels[1], 5 * 0.6, 1e-5);
+  EXPECT_NEAR(distance.pixels[2], 0, 0.01);
+  EXPECT_FLOAT_EQ(distance.pixels[3], -3);
+}
+
 }  // namespace
 }  // namespace photohull

@@ -43,6 +43,7 @@ HullKernels::HullKernels(gpu::Context& context, const HullScene& scene)
   parameters_.counts = {0, count, words_, scene.options.min_views};
   parameters_.pyramid = {MaskPyramid::kBlock, shape.levels.size(), 0, SparseVolume::kBand};
   parameters_.limits = {scene.options.views_may_miss, 0, 0, 0};
+  parameters_.evidence = {float(scene.options.full_evidence), 0, 0, 0};
 }
 
 void HullKernels::upload(int view, const test::Outline& outline) {

@@ -234,6 +234,39 @@ TEST_F(HullKernelTest, DistancesFromCamerasInsideTheBoxThatSomeMayMiss) {
   }
 }
 
+TEST_F(HullKernelTest, DistancesByTheEvidenceOfAllViews) {
+  for (const double full : {0.3, 1.0, 4.0}) {
+    int within_band = 0;
+    for (int trial = 0; trial < 5; ++trial) {
+      HullScene scene = empty_scene({4, 3, 3});
+      add_random(scene, rng_, 3 + 2 * trial);
+      if (trial == 1) scene.outlines[0] = scene.outlines[3] = {};
+      if (trial == 2)  // many voxels off the images
+        for (Camera& camera : scene.cameras) camera.intrinsics.cx += 25;
+      scene.options.full_evidence = full;
+      const Difference found = compare(scene);
+      // Half floats round the distances of views that are not beside a voxel more.
+      EXPECT_LT(found.worst, std::max(full / 2, 1.0) * kDistanceBound) << full << " px, " << trial;
+      within_band += found.within_band;
+    }
+    EXPECT_GT(within_band, 5000) << full;
+  }
+}
+
+TEST_F(HullKernelTest, DistancesByTheEvidenceOfMoreViewsThanTheKernelLists) {
+  HullScene scene = empty_scene({2, 2, 2});
+  for (int i = 0; i < 75; ++i) {
+    const Camera camera = test::random_camera(rng_, scene.grid.bounds(), 64, 64);
+    add(scene, camera, test::rasterise(64, 64, [&](const glm::dvec2& p) {
+          return glm::length(p - glm::dvec2(32)) - 28;
+        }));
+  }
+  scene.options.full_evidence = 1.5;
+  const Difference found = compare(scene);
+  EXPECT_LT(found.worst, kDistanceBound);
+  EXPECT_GT(found.within_band, 500);
+}
+
 /// Counts of a classification against the reference's.
 struct Agreement {
   int wrong = 0;      ///< called outside or inside where the reference does not
@@ -320,6 +353,22 @@ TEST_F(ClassifyTest, IsConservativeWhereSomeViewsMayMiss) {
     }
   }
   EXPECT_GT(all.decided, 0.6 * all.decidable) << all.decidable;
+}
+
+TEST_F(ClassifyTest, IsConservativeWhereEvidenceIsAddedUp) {
+  Agreement all;
+  for (const double full : {0.5, 2.0})
+    for (int trial = 0; trial < 8; ++trial) {
+      HullScene scene = empty_scene({6, 5, 4});
+      add_random(scene, rng_, 3 + trial);
+      if (trial % 3 == 0) scene.outlines[0] = {};
+      scene.options.full_evidence = full;
+      const Agreement one = classify(scene);
+      EXPECT_EQ(one.wrong, 0) << full << " px, trial " << trial;
+      all.decided += one.decided;
+      all.decidable += one.decidable;
+    }
+  EXPECT_GT(all.decided, 0.5 * all.decidable) << all.decidable;
 }
 
 TEST_F(ClassifyTest, SignsOfAllVoxelsFollowTheNodes) {
