@@ -200,9 +200,11 @@ void add_reconstruct(CLI::App& app) {
   c->add_option("--threads", a->threads, "threads to use (0: one a core)")->capture_default_str();
   c->add_option("--tune", a->tune,
                 "NAME=VALUE: a parameter of the method changed, for experiments (repeatable)");
-  c->add_flag("--evidence", a->evidence,
-              "write evidence.ply too, the uniform mesh with what confidence is computed from, and "
-              "missing.png: where the model leaves the masks empty");
+  c->add_flag(
+      "--evidence", a->evidence,
+      "write evidence.ply too, the uniform mesh with what confidence is computed from, and "
+      "missing.png: where the model leaves the masks empty, or without masks explained.png: "
+      "what of a photograph it explains");
   c->add_flag("--fresh", a->fresh,
               "start anew: else an interrupted refinement of the same job goes on after the last "
               "level that it finished");

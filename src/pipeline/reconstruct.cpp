@@ -16,6 +16,7 @@
 #include "core/error.h"
 #include "io/image_file.h"
 #include "pipeline/checks.h"
+#include "pipeline/explained_picture.h"
 #include "pipeline/inputs.h"
 #include "pipeline/job_identity.h"
 #include "pipeline/missing_picture.h"
@@ -58,6 +59,7 @@ constexpr int kPhotometricVoxels = 160;   // along the box, of the hull that gai
 constexpr double kDetail = 1.5;           // pixels: what refinement resolves, by its patches
 constexpr std::size_t kFewestThinVoxels = 32;  // a hull of fewer, all of them thin, is none
 constexpr const char* kMissingPicture = "missing.png";
+constexpr const char* kExplainedPicture = "explained.png";
 constexpr double kMoreLikelyRight = 0.5;  // confidence is the chance to be right
 constexpr double kBoxSlack = 0.5;         // voxels that the surface may stand out of the box
 
@@ -77,7 +79,8 @@ class Job {
     clock_.run("scene", Weights::kScene, [&] { in_.load(); });
     // What can fail at once does so before the photographs are decoded.
     std::vector<std::string> names = {"volume.vdb", "mesh.ply", "preview.png", "report.json"};
-    if (options_.evidence) names.insert(names.end(), {"evidence.ply", kMissingPicture});
+    if (options_.evidence)
+      names.insert(names.end(), {"evidence.ply", kMissingPicture, kExplainedPicture});
     ResultFiles files(options_.output, std::move(names));
     report_.files = files.names();
     clock_.run("device", Weights::kDevice, [&] { open_device(); });
@@ -126,8 +129,10 @@ class Job {
     });
     images_.reset();
     context_->release_deleted();
+    // With silhouettes the whole surface is judged by them; without, what is delivered.
+    if (is_open() && !in_.any_mask()) open_unseen(mesh);
     clock_.run("verdict", Weights::kVerdict, [&] { judge(mesh, files); });
-    if (is_open()) open_unseen(mesh);
+    if (is_open() && in_.any_mask()) open_unseen(mesh);
     report_.uniform_triangles = std::int64_t(mesh.triangles.size());
     if (options_.mesh_error.value > 0)
       clock_.run("simplify", Weights::kSimplify, [&] { simplify(mesh); });
@@ -388,17 +393,20 @@ class Job {
     for (const View& view : in_.views) names.push_back(view.name);
     report_.verdict = assess::judge(signals, names);
     report_.verdict_json = to_json(report_.verdict, signals, in_.views);
-    if (options_.evidence) write_missing(draw_missing(result, fits), files);
+    if (!options_.evidence) return;
+    report_.missing_view = write_picture(kMissingPicture, draw_missing(result, fits), files);
+    report_.explained_view =
+        write_picture(kExplainedPicture, draw_explained(in_.views, signals.explained), files);
   }
 
-  /// A scene without masks has no such picture.
-  void write_missing(const MissingPicture& picture, ResultFiles& files) {
-    if (picture.rgb.empty()) {
-      std::erase(report_.files, kMissingPicture);
-      return;
-    }
-    report_.missing_view = picture.view;
-    io::write_png(files.open(kMissingPicture), picture.width, picture.height, 3, picture.rgb);
+  /// Scenes have one of the two pictures, by whether they have masks. Returns the view that it is
+  /// of.
+  std::string write_picture(const char* name, const MissingPicture& picture, ResultFiles& files) {
+    if (picture.rgb.empty())
+      std::erase(report_.files, name);
+    else
+      io::write_png(files.open(name), picture.width, picture.height, 3, picture.rgb);
+    return picture.view;
   }
 
   /// Without silhouettes knowledge ends where the photographs do.

@@ -59,6 +59,7 @@ std::string Report::to_json() const {
   j["masks"]["left_out"] = masks_left_out;
   for (const OutlineRoom& r : outline_room) j["masks"]["outline_room_pixels"][r.view] = r.pixels;
   if (!verdict_json.empty()) j["verdict"] = ordered_json::parse(verdict_json);
+  if (!explained_view.empty()) j["verdict"]["explained_png_shows"] = explained_view;
   j["stages"] = ordered_json::array();
   for (const StageReport& s : stages)
     j["stages"].push_back({{"name", s.name},

@@ -106,6 +106,7 @@ struct Report {
   std::vector<MaskReport> masks;  ///< of each view
   ThinReport thin;
   std::string missing_view;       ///< that missing.png shows; empty: there is none
+  std::string explained_view;     ///< that explained.png shows; empty: there is none
   std::string camera_refinement;  ///< JSON (pipeline/refine_cameras.h); empty: not asked for
   std::string photometric;        ///< JSON (pipeline/photometric.h); empty: not asked for
   std::string photometric_line;   ///< the same, for the screen
