@@ -35,6 +35,7 @@
 #include "volume/attributes.h"
 #include "volume/components.h"
 #include "volume/extract_mesh.h"
+#include "volume/remove_islands.h"
 #include "volume/remove_unseen.h"
 #include "volume/sharpen_edges.h"
 #include "volume/simplify_mesh.h"
@@ -351,7 +352,8 @@ class Job {
     photohull::bake_colour(
         *context_, in_.grid, *images_, in_.cameras, report_.noise_sigma,
         silhouettes ? render::Shaping::kSilhouettes : render::Shaping::kPhotographs, mesh,
-        progress_, nullptr, options_.evidence ? &evidence : nullptr);
+        progress_, nullptr, &evidence);
+    for (const render::PooledEvidence& e : evidence) views_that_see_.push_back(e.views);
     if (options_.evidence) write_evidence(mesh, evidence, files);
     const auto unseen = std::count(mesh.confidence.begin(), mesh.confidence.end(), 0.0f);
     report_.unseen_share = double(unseen) / double(mesh.confidence.size());
@@ -418,7 +420,14 @@ class Job {
 
   /// After colouring, which tells what is seen, and before simplification, which keeps the border.
   void open_unseen(TriMesh& mesh) {
-    mesh = remove_unseen(mesh, in_.any_mask() ? 0 : kMoreLikelyRight);
+    const bool by_photographs = !in_.any_mask();
+    mesh = remove_unseen(mesh, by_photographs ? kMoreLikelyRight : 0, &views_that_see_);
+    if (by_photographs) {
+      const RemovedIslands gone =
+          remove_islands(mesh, views_that_see_, {.voxel_size = in_.grid.voxel_size});
+      report_.islands = std::int64_t(gone.pieces);
+      report_.islands_area_share = gone.area_share;
+    }
     if (mesh.triangles.empty())
       throw Error(
           "no surface is left that a camera sees and that is more likely right than wrong; check "
@@ -490,6 +499,7 @@ class Job {
   std::unique_ptr<gpu::Context> context_;
   std::unique_ptr<projtex::ImageSet> images_;
   SharpenOptions sharpen_;
+  std::vector<float> views_that_see_;  ///< of the mesh's vertices
   std::int64_t hull_samples_ = 0, photo_samples_ = 0, refine_samples_ = 0;
 };
 

@@ -108,7 +108,9 @@ std::string Report::to_json() const {
                {"triangles", triangles},
                {"uniform_triangles", uniform_triangles},
                {"sharpened_vertices", sharpened_vertices},
-               {"unseen_share", unseen_share}};
+               {"unseen_share", unseen_share},
+               {"islands_removed", islands},
+               {"islands_area_share", islands_area_share}};
   if (mesh_error)
     j["mesh"]["error_voxels"] = {{"limit", mesh_error->limit},
                                  {"mean", mesh_error->mean},

@@ -129,7 +129,9 @@ struct Report {
   std::int64_t uniform_triangles = 0;   ///< before simplification
   std::int64_t sharpened_vertices = 0;  ///< moved onto sharp edges, or onto what meets there
   std::optional<MeshErrorReport> mesh_error;
-  double unseen_share = 0;  ///< of the mesh's vertices
+  std::int64_t islands = 0;       ///< pieces of the open mesh that too few photographs support
+  double islands_area_share = 0;  ///< of the open mesh's area, that went with them
+  double unseen_share = 0;        ///< of the mesh's vertices
   std::int64_t peak_memory_bytes = 0;
   double wall_seconds = 0, cpu_seconds = 0;
   std::vector<std::string> warnings;
