@@ -19,7 +19,7 @@ struct Arguments {
   SceneArguments scene;
   std::string out, quality = "normal", device = "auto", mesh_error = "0", unseen = "auto",
                    mask_offset = "auto", mask_holes = "mend", views_may_miss = "auto",
-                   photometric = "off", image_scale = "auto", max_memory = "auto";
+                   photometric = "auto", image_scale = "auto", max_memory = "auto";
   std::optional<std::string> method, refine_cameras, sampler, consistency, visibility;
   std::optional<int> resolution, supersample;
   std::optional<double> voxel_size, r_consistency, noise;
@@ -168,8 +168,9 @@ void add_reconstruct(CLI::App& app) {
                 "the photographs first (default: off for draft, else auto where masks' outlines "
                 "show that cameras are wrong)");
   c->add_option("--photometric", a->photometric,
-                "off, auto (where the photographs differ by more than their noise) or on: gains, "
-                "white balance and vignetting of the photographs made alike, for colours")
+                "off, auto (where gains differ by more than the noise of their estimate, and "
+                "correcting them pays) or on: gains, white balance and vignetting of the "
+                "photographs made alike, for colours and confidence")
       ->capture_default_str();
   c->add_option("--mask-offset", a->mask_offset,
                 "pixels by which the object's outline lies outside the masks' (negative: inside), "

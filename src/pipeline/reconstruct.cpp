@@ -57,6 +57,7 @@ constexpr double kDoubtfulRim = 2;
 constexpr double kLeastEvidence = 0.1;    // share of the surface below which a result is doubtful
 constexpr double kDebrisFraction = 5e-4;  // of the largest part's voxels
 constexpr int kPhotometricVoxels = 160;   // along the box, of the hull that gains are measured on
+constexpr int kCheckVoxels = 64;          // and of that on which is seen whether they differ
 constexpr double kDetail = 1.5;           // pixels: what refinement resolves, by its patches
 constexpr std::size_t kFewestThinVoxels = 32;  // a hull of fewer, all of them thin, is none
 constexpr const char* kMissingPicture = "missing.png";
@@ -119,6 +120,9 @@ class Job {
     TriMesh mesh = clock_.run("mesh", Weights::kMesh, [&] { return extract(volume); });
     if (photometric && !on_hull)
       clock_.run("photometric", Weights::kPhotometric, [&] {
+        if (options_.photometric == Photometric::kAuto &&
+            photographs_are_alike(mesh, in_.grid.voxel_size))
+          return;
         if (!correct_photometric(mesh, in_.grid.voxel_size)) return;
         images_.reset();
         context_->release_deleted();
@@ -154,9 +158,29 @@ class Job {
 
  private:
   void correct_photometric_on_hull() {
-    const double coarse = carving::voxel_size_for(*in_.scene.box, kPhotometricVoxels);
-    const GridSpec grid = carving::fit_grid(*in_.scene.box, std::max(coarse, in_.grid.voxel_size));
-    correct_photometric(extract_mesh(hull_at(grid)), grid.voxel_size);
+    const auto hull_of = [&](int voxels, auto&& work) {
+      const double coarse = carving::voxel_size_for(*in_.scene.box, voxels);
+      const GridSpec grid =
+          carving::fit_grid(*in_.scene.box, std::max(coarse, in_.grid.voxel_size));
+      return work(extract_mesh(hull_at(grid)), grid.voxel_size);
+    };
+    const auto alike = [&](const TriMesh& mesh, double voxel_size) {
+      return photographs_are_alike(mesh, voxel_size);
+    };
+    if (options_.photometric == Photometric::kAuto && hull_of(kCheckVoxels, alike)) return;
+    hull_of(kPhotometricVoxels, [&](const TriMesh& mesh, double voxel_size) {
+      return correct_photometric(mesh, voxel_size);
+    });
+  }
+
+  /// A quick look before gains are solved for.
+  bool photographs_are_alike(const TriMesh& mesh, double voxel_size) {
+    const auto alike =
+        find_alike(in_.scene, mesh, voxel_size, report_.noise_sigma, in_.views, progress_);
+    if (!alike) return false;
+    report_.photometric = alike->json;
+    report_.photometric_line = alike->line;
+    return true;
   }
 
   /// Whether the views' pixels changed.
