@@ -83,7 +83,7 @@ TEST_F(PhotometricCommand, LeavesPhotographsAloneThatAgree) {
   EXPECT_EQ(r["options"]["photometric"], "auto");
   const json checked = r["photometric"]["checked"];
   EXPECT_LT(checked["rms_gain"], 0.02);
-  EXPECT_EQ(checked["views"], kViews);
+  EXPECT_GE(checked["views"], 2);
   succeed(reconstruct({"--method", "hull", "--photometric", "on"}));
   EXPECT_TRUE(report()["photometric"]["used"]);
 }
