@@ -187,7 +187,8 @@ void add_reconstruct(CLI::App& app) {
   c->add_option("--noise", a->noise,
                 "standard deviation of the photographs' noise in 8-bit codes (default: measured)");
   c->add_flag("--keep-views", a->keep_views,
-              "use views whose silhouettes disagree with all others' too");
+              "use views whose silhouettes disagree with all others' and views that are strongly "
+              "blurred, too");
   c->add_option("--image-scale", a->image_scale,
                 "at which photographs are read: 1, 1/2, 1/4, 1/8 or any number up to 1, or auto: "
                 "what --resolution or --voxel-size needs, and --max-memory bears")

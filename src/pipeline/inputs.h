@@ -39,6 +39,8 @@ class Inputs {
   void measure_silhouettes();
   void correct_masks();
   void leave_out_wrong_views();
+  /// Tells the views how sharp they are beside the others, and leaves strongly blurred ones out.
+  void measure_sharpness();
   /// Gives silhouettes that are a little off as much room as they are off.
   void bear_disagreement();
   /// Gives stems and wires the room that voxels need; their width is known from `lines`.
@@ -80,6 +82,7 @@ class Inputs {
   void use_cameras(const CameraRefinement& found);
   void remember_right_cameras(const CameraRefinement& found, bool used);
   void leave_out(std::span<const int> wrong, const std::string& why);
+  void drop_view(int index);
 
   Scene full_;                           ///< the scene in the files' pixels, until they are decoded
   std::vector<double> scales_;           ///< of its views

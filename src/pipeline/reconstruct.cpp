@@ -95,6 +95,7 @@ class Job {
     const bool refining = options_.effective_method() == Method::kRefine;
     SparseVolume volume = clock_.run("hull", Weights::kHull, [&] {
       in_.measure_silhouettes();
+      in_.measure_sharpness();
       in_.correct_masks();
       in_.leave_out_wrong_views();
       in_.bear_disagreement();

@@ -56,6 +56,8 @@ std::string Report::to_json() const {
   if (!camera_refinement.empty()) j["camera_refinement"] = ordered_json::parse(camera_refinement);
   if (!photometric.empty()) j["photometric"] = ordered_json::parse(photometric);
   j["left_out"] = left_out;
+  for (const auto& [view, value] : sharpness)
+    j["sharpness"].push_back({{"name", view}, {"sharpness", value}});
   j["masks"]["left_out"] = masks_left_out;
   for (const OutlineRoom& r : outline_room) j["masks"]["outline_room_pixels"][r.view] = r.pixels;
   if (!verdict_json.empty()) j["verdict"] = ordered_json::parse(verdict_json);

@@ -323,6 +323,27 @@ TEST_F(Reconstruct, PhotographsOfOtherViewsAreNeverGood) {
   }
 }
 
+TEST_F(Reconstruct, StronglyBlurredViewsAreLeftOut) {
+  write_bytes(path("ball.json"), R"({"geometry": {"shape": "sphere"}, "truth_samples": 100,
+      "image": {"width": 160, "height": 120, "samples": 2, "maps": false},
+      "cameras": {"rings": [{"count": 16, "elevation": 10}]},
+      "degradations": {"motion_blur": 14, "motion_blur_views": 0.125}})");
+  succeed({"synthesize", path("ball.json"), "--out", path("ball")});
+  const auto run = [&](const Arguments& more) {
+    Arguments arguments = {"reconstruct", path("ball"), "--out",        out(),
+                           "--method",    "hull",       "--resolution", "32"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_photohull(arguments);
+  };
+  const Finished left = run({});
+  EXPECT_EQ(left.code, 0);
+  EXPECT_EQ(report()["left_out"].size(), 2u);
+  EXPECT_EQ(report()["sharpness"].size(), 16u);
+  EXPECT_THAT(report()["warnings"].dump(), HasSubstr("2 views are blurred beside the others"));
+  EXPECT_EQ(run({"--keep-views"}).code, 0);
+  EXPECT_EQ(report()["left_out"].size(), 0u);
+}
+
 TEST_F(Reconstruct, ViewsAndBoxSelect) {
   succeed(reconstruct(
       {"--method", "hull", "--views", "0-4,view6*", "--box", "0.1 -1.2 -0.7 1.1 0.8 1.3"}));
