@@ -61,8 +61,8 @@ PooledEvidence sum_up(const Pool& p, float views) {
   const double variance =
       (double(p.disagreement) / p.weight + kPriorPairs * kPriorDeviation * kPriorDeviation) / spare;
   const double fine = (double(p.fine_disagreement) / p.weight + kPriorPairs * energy) / spare;
-  return {true, views, p.scatter / p.weight, float(std::sqrt(variance)),
-          float((fine + kLeastFine) / (energy + 2 * kLeastFine))};
+  return {true, p.scatter / p.weight, float(std::sqrt(variance)),
+          float((fine + kLeastFine) / (energy + 2 * kLeastFine)), views};
 }
 
 }  // namespace

@@ -22,10 +22,10 @@ struct SurfaceEvidence {
 /// The same of a vertex and its surroundings, about two voxels wide.
 struct PooledEvidence {
   bool seen = false;
-  float views = 0;         ///< of the vertex itself: SurfaceEvidence::views
   float scatter = 0;       ///< mean
   float disagreement = 0;  ///< standard deviation between views, > 0
   float fine_share = 1;    ///< of fine detail that differs between views: 1 says nothing, 0 agrees
+  float views = 0;         ///< of the vertex itself: SurfaceEvidence::views
 };
 
 /// What shaped a surface.
