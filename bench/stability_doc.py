@@ -29,9 +29,9 @@ CURES = [
     ("noise known", "noise", "default", "noise unknown"),
     ("best pairs of views", "gloss", "default", "all pairs"),
     ("the same", "haze", "default", "all pairs"),
-    ("photometric gains", "exposure", "gains", "default"),
-    ("the same", "white-balance", "gains", "default"),
-    ("the same", "vignetting", "gains", "default"),
+    ("photometric gains", "exposure", "default", "colours as given"),
+    ("the same", "white-balance", "default", "colours as given"),
+    ("the same", "vignetting", "default", "colours as given"),
 ]
 
 THIN = {"stem-width", "mask-style", "views-off-1", "views-off-2", "view-shift"}  # axes, each scene's figures in full

@@ -19,7 +19,7 @@ struct Arguments {
   SceneArguments scene;
   std::string out, quality = "normal", device = "auto", mesh_error = "0", unseen = "auto",
                    mask_offset = "auto", mask_holes = "mend", views_may_miss = "auto",
-                   photometric = "off", image_scale = "auto", max_memory = "auto";
+                   photometric = "auto", image_scale = "auto", max_memory = "auto";
   std::optional<std::string> method, refine_cameras, sampler, consistency, visibility;
   std::optional<int> resolution, supersample;
   std::optional<double> voxel_size, r_consistency, noise;
@@ -168,8 +168,9 @@ void add_reconstruct(CLI::App& app) {
                 "the photographs first (default: off for draft, else auto where masks' outlines "
                 "show that cameras are wrong)");
   c->add_option("--photometric", a->photometric,
-                "off, auto (where the photographs differ by more than their noise) or on: gains, "
-                "white balance and vignetting of the photographs made alike, for colours")
+                "off, auto (where gains differ by more than the noise of their estimate, and "
+                "correcting them pays) or on: gains, white balance and vignetting of the "
+                "photographs made alike, for colours and confidence")
       ->capture_default_str();
   c->add_option("--mask-offset", a->mask_offset,
                 "pixels by which the object's outline lies outside the masks' (negative: inside), "
@@ -186,7 +187,8 @@ void add_reconstruct(CLI::App& app) {
   c->add_option("--noise", a->noise,
                 "standard deviation of the photographs' noise in 8-bit codes (default: measured)");
   c->add_flag("--keep-views", a->keep_views,
-              "use views whose silhouettes disagree with all others' too");
+              "use views whose silhouettes disagree with all others' and views that are strongly "
+              "blurred, too");
   c->add_option("--image-scale", a->image_scale,
                 "at which photographs are read: 1, 1/2, 1/4, 1/8 or any number up to 1, or auto: "
                 "what --resolution or --voxel-size needs, and --max-memory bears")
@@ -200,9 +202,11 @@ void add_reconstruct(CLI::App& app) {
   c->add_option("--threads", a->threads, "threads to use (0: one a core)")->capture_default_str();
   c->add_option("--tune", a->tune,
                 "NAME=VALUE: a parameter of the method changed, for experiments (repeatable)");
-  c->add_flag("--evidence", a->evidence,
-              "write evidence.ply too, the uniform mesh with what confidence is computed from, and "
-              "missing.png: where the model leaves the masks empty");
+  c->add_flag(
+      "--evidence", a->evidence,
+      "write evidence.ply too, the uniform mesh with what confidence is computed from, and "
+      "missing.png: where the model leaves the masks empty, or without masks explained.png: "
+      "what of a photograph it explains");
   c->add_flag("--fresh", a->fresh,
               "start anew: else an interrupted refinement of the same job goes on after the last "
               "level that it finished");

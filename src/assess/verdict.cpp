@@ -25,15 +25,28 @@ constexpr Limits kMissed{0.04, 0.3};          // of the silhouettes
 constexpr Limits kExcess{0.06, 0.3};          // of the surface's projection
 constexpr Limits kContradiction{0.02, 0.5};   // of the silhouettes' rays
 constexpr Limits kFewViews{0.45, INFINITY};   // of the surface, seen by fewer than three
-constexpr double kAlike = 0.6;                // of the views' movement, in common
-constexpr double kHullOff = 0.18;             // of a hull's matches that are far off
-constexpr double kHullUnconfirmed = 0.36;     // of a hull's textured surface
-constexpr double kEnoughMatched = 0.7;        // of the textured surface
-constexpr double kLeastTexture = 0.1;         // of the surface, for shares of it to mean anything
-constexpr double kPlainConfidence = 0.93;     // mean, where there is less texture than that
-constexpr double kOutlying = 3;               // times what is usual: a view's residual
-constexpr int kFewestMatches = 5;             // of a view, to accuse it
-constexpr int kFewestOfAll = 20;              // of all views, to accuse their cameras
+// Of what the photographs show without silhouettes, from runs with --masks none: scenes as they
+// are, and at 128 voxels with cameras turned by 1 to 20 pixels and with wrong boxes (the table in
+// docs/stability.md). Unexplained: at most 0.18 where F at 0.5 % is above 90, 0.27 to 0.34 at 54 to
+// 72, 0.39 to 0.55 at 42 to 49, 0.76 and more below 13. Cut: at most 0.04 in right boxes, 0.04 to
+// 0.10 in those of 0.7 of the size, 0.13 to 0.31 in those of half of it. Bare: at most 0.44 in
+// right boxes with right cameras, 0.84 and more where F is below 6.
+constexpr Limits kUnexplained{0.25, 0.7};  // of the places of which something is known
+constexpr Limits kCutOff{0.12, INFINITY};  // of these and those just outside the box
+constexpr Limits kBare{0.8, INFINITY};     // of all texture
+constexpr double kWorthNoting = 0.05;      // of any of them
+constexpr int kFewestPlaces = 30;          // told, for a share of them to mean anything
+constexpr double kWorse = 0.1;             // than the mean: views that are named
+constexpr std::size_t kMostNamed = 3;
+constexpr double kAlike = 0.6;             // of the views' movement, in common
+constexpr double kHullOff = 0.18;          // of a hull's matches that are far off
+constexpr double kHullUnconfirmed = 0.36;  // of a hull's textured surface
+constexpr double kEnoughMatched = 0.7;     // of the textured surface
+constexpr double kLeastTexture = 0.1;      // of the surface, for shares of it to mean anything
+constexpr double kPlainConfidence = 0.93;  // mean, where there is less texture than that
+constexpr double kOutlying = 3;            // times what is usual: a view's residual
+constexpr int kFewestMatches = 5;          // of a view, to accuse it
+constexpr int kFewestOfAll = 20;           // of all views, to accuse their cameras
 
 std::string percent(double share) { return concat(std::lround(100 * share), " %"); }
 
@@ -69,6 +82,7 @@ class Judge {
       surface();
     silhouettes();
     coverage();
+    photographs();
     return std::move(verdict_);
   }
 
@@ -195,6 +209,93 @@ class Judge {
           concat(percent(s_.at_box),
                  " of the surface lies on the box's sides: the box cuts the object off (make --box "
                  "larger), or nothing tells where it ends"));
+  }
+
+  /// The worst by explained share, of those that are clearly worse than all together.
+  std::string least_explained() const {
+    std::vector<std::pair<double, std::size_t>> worst;
+    for (std::size_t i = 0; i < s_.explained.views.size(); ++i) {
+      const ExplainedView& view = s_.explained.views[i];
+      const double share = view.explained();
+      if (view.told() >= kFewestPlaces && share < s_.explained.explained() - kWorse)
+        worst.emplace_back(share, i);
+    }
+    std::sort(worst.begin(), worst.end());
+    if (worst.size() > kMostNamed) worst.resize(kMostNamed);
+    std::string list;
+    for (const auto& [share, i] : worst)
+      list += concat(list.empty() ? "" : ", ", n_[i], " (", percent(share), ")");
+    return list;
+  }
+
+  /// What most of the unexplained is, and what helps.
+  std::string why_unexplained() const {
+    const Explained& e = s_.explained;
+    const int missed = e.count(Place::kMissed), differs = e.count(Place::kDisagreeing),
+              alone = e.count(Place::kAlone);
+    if (missed >= std::max(differs, alone))
+      return concat("on ", percent(e.share_told(Place::kMissed)),
+                    " there is surface that the model lacks: raise --resolution, add views between "
+                    "the present ones, or give masks");
+    if (differs >= alone)
+      return concat("on ", percent(e.share_told(Place::kDisagreeing)),
+                    " other views show something else at the surface: check the cameras (photohull "
+                    "info --cameras, --refine-cameras auto); gloss and what moved do the same");
+    return concat("on ", percent(e.share_told(Place::kAlone)),
+                  " no second view sees the same: add views beside these");
+  }
+
+  /// Without silhouettes: what of the photographs the model explains.
+  void photographs() {
+    const Explained& e = s_.explained;
+    if (e.looked_at() == 0) return;
+    const double plain = double(e.count(Place::kPlain)) / e.looked_at();
+    const double bare = e.share_textured(Place::kBare);
+    if (e.told() < kFewestPlaces && plain > 1 - kLeastTexture) {
+      weigh(1, {0, INFINITY},
+            concat(percent(plain),
+                   " of the photographs' area in the box is plain, which tells nothing without "
+                   "masks: paint or project a pattern, add light, or give masks"));
+      return;
+    }
+    const std::string worst = least_explained();
+    const std::string where = worst.empty() ? "" : concat("; least in ", worst);
+    const double unexplained = e.told() < kFewestPlaces ? 1 : 1 - e.explained();
+    // What one view alone sees is in doubt, and not wrong.
+    const double wrong = unexplained - (e.told() < kFewestPlaces ? 0 : e.share_told(Place::kAlone));
+    weigh(
+        unexplained, {kUnexplained.doubtful, wrong > kUnexplained.failed ? 0 : INFINITY},
+        e.told() < kFewestPlaces
+            ? concat("the model is nearly empty: it explains hardly any of the texture that the "
+                     "photographs show in the box; check the box (photohull info --picture) and "
+                     "the cameras (photohull info --cameras)")
+            : concat("the model explains ", percent(e.explained()),
+                     " of the texture that the photographs show in the box, as far as they tell: ",
+                     why_unexplained(), where));
+    const double cut = double(e.count(Place::kCut)) / std::max(1, e.count(Place::kCut) + e.told());
+    const std::string cut_off =
+        concat(percent(cut),
+               " of what the photographs show there stands just outside the box: make the box "
+               "larger (--box-scale) if it belongs to the object");
+    weigh(cut, kCutOff, cut_off);
+    weigh(
+        bare, kBare,
+        concat("on ", percent(bare),
+               " of the photographs' texture in the box no views agree on any depth: the box may "
+               "be in the wrong place (photohull info --picture), the cameras wrong, or the views "
+               "too far apart"));
+    if (unexplained <= kUnexplained.doubtful)
+      verdict_.notes.push_back(
+          concat("the model explains ", percent(e.explained()),
+                 " of the texture that the photographs show in the box, as far as they tell",
+                 unexplained > kWorthNoting ? concat(": ", why_unexplained()) : "", where));
+    if (plain > kWorthNoting || bare > kWorthNoting)
+      verdict_.notes.push_back(
+          concat("not judged: ", percent(plain),
+                 " of the photographs' area in the box is plain, and on ", percent(bare),
+                 " of the rest no views agree on any depth: background that few views share, or "
+                 "surface too glossy or too far from the views"));
+    if (cut > kWorthNoting && cut <= kCutOff.doubtful) verdict_.notes.push_back(cut_off);
   }
 
   const Signals& s_;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "assess/explained.h"
 #include "assess/match_probes.h"
 #include "core/error.h"
 
@@ -29,6 +30,7 @@ struct Signals {
   double few_views = 0;            ///< share of the surface that fewer than three views see
   double at_box = 0;               ///< share of the surface, seen, that lies on the box's sides
   MatchEvidence match;
+  Explained explained;  ///< without places unless no view has a silhouette
 };
 
 enum class Level { kGood, kDoubtful, kFailed };

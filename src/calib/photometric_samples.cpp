@@ -16,7 +16,6 @@
 namespace photohull {
 namespace {
 
-constexpr std::size_t kMostPoints = 4000;
 constexpr double kLeastCosine = 0.4;      // flatter views see gloss and mix neighbours
 constexpr int kLargestWindow = 6;         // pixels to each side
 constexpr int kMaskMargin = 2;            // pixels around the window
@@ -205,13 +204,14 @@ std::vector<int> shared_lenses(std::span<const PhotometricFrame> frames) {
 std::vector<PhotometricPoint> sample_photometric(const TriMesh& mesh, double patch,
                                                  std::span<const View> views,
                                                  std::span<const PhotometricFrame> frames,
-                                                 double noise_sigma, const Progress& progress) {
+                                                 double noise_sigma, const Progress& progress,
+                                                 std::size_t most) {
   PHOTOHULL_CHECK_OP(views.size(), ==, frames.size());
   PHOTOHULL_CHECK_OP(mesh.normals.size(), ==, mesh.positions.size());
   if (mesh.triangles.empty()) return {};
   const RayScene rays(mesh);
   const Extent extent = extent_of(mesh);
-  const std::size_t count = std::min(mesh.positions.size(), kMostPoints);
+  const std::size_t count = std::min(mesh.positions.size(), most);
   std::vector<PhotometricPoint> points(count);
   tbb::parallel_for(std::size_t(0), count, [&](std::size_t i) {
     progress.check_cancelled();

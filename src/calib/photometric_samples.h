@@ -27,8 +27,10 @@ std::vector<PhotometricFrame> frames_of(const Scene& scene);
 /// share one.
 std::vector<int> shared_lenses(std::span<const PhotometricFrame> frames);
 
-/// Colours of up to 4000 vertices, spread evenly over the list, in the views that see them. A view
-/// sees a vertex that faces it (cosine of 0.4 at least) where no triangle hides the point a
+constexpr std::size_t kMostPhotometricPoints = 4000;
+
+/// Colours of up to `most` vertices, spread evenly over the list, in the views that see them. A
+/// view sees a vertex that faces it (cosine of 0.4 at least) where no triangle hides the point a
 /// `patch` above it. Left out: windows (a square about as large as `patch` on each side, 1 to 6
 /// pixels) that reach off the image, to unknown pixels or within two pixels of what the mask leaves
 /// out, that hold saturated pixels, and points that are nearly black in a view. `patch` is in world
@@ -37,7 +39,8 @@ std::vector<int> shared_lenses(std::span<const PhotometricFrame> frames);
 std::vector<PhotometricPoint> sample_photometric(const TriMesh& mesh, double patch,
                                                  std::span<const View> views,
                                                  std::span<const PhotometricFrame> frames,
-                                                 double noise_sigma, const Progress& progress);
+                                                 double noise_sigma, const Progress& progress,
+                                                 std::size_t most = kMostPhotometricPoints);
 
 /// Divides the views' pixels by what calibration found, in linear light; what exceeds 1 in 8-bit
 /// images is clipped. Views that were not solved lose vignetting only.

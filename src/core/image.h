@@ -42,6 +42,8 @@ struct View {
   Camera camera;  ///< pinhole; intrinsics match the image's size
   ColourImage image;
   Mask mask;
+  /// Share of fine detail beside views of the same (calib/sharpness.h): 1 as sharp as they are.
+  double sharpness = 1;
 };
 
 /// sRGB transfer function (IEC 61966-2-1), encoded value in [0, 1] to linear light and back.

@@ -42,6 +42,8 @@ class Inputs {
   /// Of the masks as they are from here on: their lines, and the outlines' convex hulls.
   void trace_outlines();
   void leave_out_wrong_views();
+  /// Tells the views how sharp they are beside the others, and leaves strongly blurred ones out.
+  void measure_sharpness();
   /// Gives silhouettes that are a little off as much room as they are off, and finds out what one
   /// view's evidence is worth.
   void bear_disagreement();
@@ -85,6 +87,7 @@ class Inputs {
   void use_cameras(const CameraRefinement& found);
   void remember_right_cameras(const CameraRefinement& found, bool used);
   void leave_out(std::span<const int> wrong, const std::string& why);
+  void drop_view(int index);
 
   Scene full_;                           ///< the scene in the files' pixels, until they are decoded
   std::vector<double> scales_;           ///< of its views

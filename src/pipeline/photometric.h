@@ -1,6 +1,7 @@
 // Gains and vignetting of a scene's photographs, found from a surface, and what is reported.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,15 @@ struct PhotometricOutcome {
   std::string line;     ///< one line for the screen
   std::string warning;  ///< empty: none
 };
+
+/// A quick look (calib/photometric_check.h) whether the views' gains differ by more than the noise
+/// of their estimate, on some hundred points of the mesh, which may be coarse. Where they do not,
+/// the outcome says so and the photographs stay. Where they do, or where these points cannot tell,
+/// nothing is returned, and correct_photometric has to tell. Throws Error, Cancelled.
+std::optional<PhotometricOutcome> find_alike(const Scene& scene, const TriMesh& mesh,
+                                             double voxel_size, double noise_sigma,
+                                             const std::vector<View>& views,
+                                             const Progress& progress);
 
 /// Measures the views' gains on the mesh (`voxel_size` in world units: about its
 /// error; normals that it lacks come from its faces) and, where

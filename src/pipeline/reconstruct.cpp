@@ -16,6 +16,7 @@
 #include "core/error.h"
 #include "io/image_file.h"
 #include "pipeline/checks.h"
+#include "pipeline/explained_picture.h"
 #include "pipeline/inputs.h"
 #include "pipeline/job_identity.h"
 #include "pipeline/missing_picture.h"
@@ -34,6 +35,7 @@
 #include "volume/attributes.h"
 #include "volume/components.h"
 #include "volume/extract_mesh.h"
+#include "volume/remove_islands.h"
 #include "volume/remove_unseen.h"
 #include "volume/sharpen_edges.h"
 #include "volume/simplify_mesh.h"
@@ -55,9 +57,11 @@ constexpr double kDoubtfulRim = 2;
 constexpr double kLeastEvidence = 0.1;    // share of the surface below which a result is doubtful
 constexpr double kDebrisFraction = 5e-4;  // of the largest part's voxels
 constexpr int kPhotometricVoxels = 160;   // along the box, of the hull that gains are measured on
+constexpr int kCheckVoxels = 64;          // and of that on which is seen whether they differ
 constexpr double kDetail = 1.5;           // pixels: what refinement resolves, by its patches
 constexpr std::size_t kFewestThinVoxels = 32;  // a hull of fewer, all of them thin, is none
 constexpr const char* kMissingPicture = "missing.png";
+constexpr const char* kExplainedPicture = "explained.png";
 constexpr double kMoreLikelyRight = 0.5;  // confidence is the chance to be right
 constexpr double kBoxSlack = 0.5;         // voxels that the surface may stand out of the box
 
@@ -77,7 +81,8 @@ class Job {
     clock_.run("scene", Weights::kScene, [&] { in_.load(); });
     // What can fail at once does so before the photographs are decoded.
     std::vector<std::string> names = {"volume.vdb", "mesh.ply", "preview.png", "report.json"};
-    if (options_.evidence) names.insert(names.end(), {"evidence.ply", kMissingPicture});
+    if (options_.evidence)
+      names.insert(names.end(), {"evidence.ply", kMissingPicture, kExplainedPicture});
     ResultFiles files(options_.output, std::move(names));
     report_.files = files.names();
     clock_.run("device", Weights::kDevice, [&] { open_device(); });
@@ -90,6 +95,7 @@ class Job {
     const bool refining = options_.effective_method() == Method::kRefine;
     SparseVolume volume = clock_.run("hull", Weights::kHull, [&] {
       in_.measure_silhouettes();
+      in_.measure_sharpness();
       in_.correct_masks();
       in_.trace_outlines();
       in_.leave_out_wrong_views();
@@ -116,6 +122,9 @@ class Job {
     TriMesh mesh = clock_.run("mesh", Weights::kMesh, [&] { return extract(volume); });
     if (photometric && !on_hull)
       clock_.run("photometric", Weights::kPhotometric, [&] {
+        if (options_.photometric == Photometric::kAuto &&
+            photographs_are_alike(mesh, in_.grid.voxel_size))
+          return;
         if (!correct_photometric(mesh, in_.grid.voxel_size)) return;
         images_.reset();
         context_->release_deleted();
@@ -127,8 +136,10 @@ class Job {
     });
     images_.reset();
     context_->release_deleted();
+    // With silhouettes the whole surface is judged by them; without, what is delivered.
+    if (is_open() && !in_.any_mask()) open_unseen(mesh);
     clock_.run("verdict", Weights::kVerdict, [&] { judge(mesh, files); });
-    if (is_open()) open_unseen(mesh);
+    if (is_open() && in_.any_mask()) open_unseen(mesh);
     report_.uniform_triangles = std::int64_t(mesh.triangles.size());
     if (options_.mesh_error.value > 0)
       clock_.run("simplify", Weights::kSimplify, [&] { simplify(mesh); });
@@ -149,9 +160,29 @@ class Job {
 
  private:
   void correct_photometric_on_hull() {
-    const double coarse = carving::voxel_size_for(*in_.scene.box, kPhotometricVoxels);
-    const GridSpec grid = carving::fit_grid(*in_.scene.box, std::max(coarse, in_.grid.voxel_size));
-    correct_photometric(extract_mesh(hull_at(grid)), grid.voxel_size);
+    const auto hull_of = [&](int voxels, auto&& work) {
+      const double coarse = carving::voxel_size_for(*in_.scene.box, voxels);
+      const GridSpec grid =
+          carving::fit_grid(*in_.scene.box, std::max(coarse, in_.grid.voxel_size));
+      return work(extract_mesh(hull_at(grid)), grid.voxel_size);
+    };
+    const auto alike = [&](const TriMesh& mesh, double voxel_size) {
+      return photographs_are_alike(mesh, voxel_size);
+    };
+    if (options_.photometric == Photometric::kAuto && hull_of(kCheckVoxels, alike)) return;
+    hull_of(kPhotometricVoxels, [&](const TriMesh& mesh, double voxel_size) {
+      return correct_photometric(mesh, voxel_size);
+    });
+  }
+
+  /// A quick look before gains are solved for.
+  bool photographs_are_alike(const TriMesh& mesh, double voxel_size) {
+    const auto alike =
+        find_alike(in_.scene, mesh, voxel_size, report_.noise_sigma, in_.views, progress_);
+    if (!alike) return false;
+    report_.photometric = alike->json;
+    report_.photometric_line = alike->line;
+    return true;
   }
 
   /// Whether the views' pixels changed.
@@ -348,7 +379,8 @@ class Job {
     photohull::bake_colour(
         *context_, in_.grid, *images_, in_.cameras, report_.noise_sigma,
         silhouettes ? render::Shaping::kSilhouettes : render::Shaping::kPhotographs, mesh,
-        progress_, nullptr, options_.evidence ? &evidence : nullptr);
+        progress_, nullptr, &evidence);
+    for (const render::PooledEvidence& e : evidence) views_that_see_.push_back(e.views);
     if (options_.evidence) write_evidence(mesh, evidence, files);
     const auto unseen = std::count(mesh.confidence.begin(), mesh.confidence.end(), 0.0f);
     report_.unseen_share = double(unseen) / double(mesh.confidence.size());
@@ -390,17 +422,20 @@ class Job {
     for (const View& view : in_.views) names.push_back(view.name);
     report_.verdict = assess::judge(signals, names);
     report_.verdict_json = to_json(report_.verdict, signals, in_.views);
-    if (options_.evidence) write_missing(draw_missing(result, fits), files);
+    if (!options_.evidence) return;
+    report_.missing_view = write_picture(kMissingPicture, draw_missing(result, fits), files);
+    report_.explained_view =
+        write_picture(kExplainedPicture, draw_explained(in_.views, signals.explained), files);
   }
 
-  /// A scene without masks has no such picture.
-  void write_missing(const MissingPicture& picture, ResultFiles& files) {
-    if (picture.rgb.empty()) {
-      std::erase(report_.files, kMissingPicture);
-      return;
-    }
-    report_.missing_view = picture.view;
-    io::write_png(files.open(kMissingPicture), picture.width, picture.height, 3, picture.rgb);
+  /// Scenes have one of the two pictures, by whether they have masks. Returns the view that it is
+  /// of.
+  std::string write_picture(const char* name, const MissingPicture& picture, ResultFiles& files) {
+    if (picture.rgb.empty())
+      std::erase(report_.files, name);
+    else
+      io::write_png(files.open(name), picture.width, picture.height, 3, picture.rgb);
+    return picture.view;
   }
 
   /// Without silhouettes knowledge ends where the photographs do.
@@ -412,7 +447,14 @@ class Job {
 
   /// After colouring, which tells what is seen, and before simplification, which keeps the border.
   void open_unseen(TriMesh& mesh) {
-    mesh = remove_unseen(mesh, in_.any_mask() ? 0 : kMoreLikelyRight);
+    const bool by_photographs = !in_.any_mask();
+    mesh = remove_unseen(mesh, by_photographs ? kMoreLikelyRight : 0, &views_that_see_);
+    if (by_photographs) {
+      const RemovedIslands gone =
+          remove_islands(mesh, views_that_see_, {.voxel_size = in_.grid.voxel_size});
+      report_.islands = std::int64_t(gone.pieces);
+      report_.islands_area_share = gone.area_share;
+    }
     if (mesh.triangles.empty())
       throw Error(
           "no surface is left that a camera sees and that is more likely right than wrong; check "
@@ -484,6 +526,7 @@ class Job {
   std::unique_ptr<gpu::Context> context_;
   std::unique_ptr<projtex::ImageSet> images_;
   SharpenOptions sharpen_;
+  std::vector<float> views_that_see_;  ///< of the mesh's vertices
   std::int64_t hull_samples_ = 0, photo_samples_ = 0, refine_samples_ = 0;
 };
 

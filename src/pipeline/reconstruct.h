@@ -58,7 +58,7 @@ struct ReconstructOptions {
   std::optional<Method> method;  ///< default: hull for draft, refine otherwise
   /// Default: off for draft; else kAuto where masks' outlines disagree (calib/refine_cameras.h).
   std::optional<RefineCameras> refine_cameras;
-  Photometric photometric = Photometric::kOff;
+  Photometric photometric = Photometric::kAuto;
   /// Pixels by which outlines lie outside the masks'; nothing: measured (calib/mask_bias.h).
   std::optional<double> mask_offset;
   /// Silhouettes that may leave a point out and it stands all the same, 0 to

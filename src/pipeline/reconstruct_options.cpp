@@ -207,8 +207,7 @@ NamedValues named_options(const ReconstructOptions& options) {
   if (options.box.scale != 1) list.emplace_back("box_scale", number(options.box.scale));
   if (options.refine_cameras)
     list.emplace_back("refine_cameras", to_string(*options.refine_cameras));
-  if (options.photometric != Photometric::kOff)
-    list.emplace_back("photometric", to_string(options.photometric));
+  list.emplace_back("photometric", to_string(options.photometric));
   list.emplace_back("mesh_error",
                     number(options.mesh_error.value) + (options.mesh_error.world_units ? "u" : ""));
   list.emplace_back("unseen", to_string(options.unseen));

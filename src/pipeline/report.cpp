@@ -57,9 +57,12 @@ std::string Report::to_json() const {
   if (!camera_refinement.empty()) j["camera_refinement"] = ordered_json::parse(camera_refinement);
   if (!photometric.empty()) j["photometric"] = ordered_json::parse(photometric);
   j["left_out"] = left_out;
+  for (const auto& [view, value] : sharpness)
+    j["sharpness"].push_back({{"name", view}, {"sharpness", value}});
   j["masks"]["left_out"] = masks_left_out;
   for (const OutlineRoom& r : outline_room) j["masks"]["outline_room_pixels"][r.view] = r.pixels;
   if (!verdict_json.empty()) j["verdict"] = ordered_json::parse(verdict_json);
+  if (!explained_view.empty()) j["verdict"]["explained_png_shows"] = explained_view;
   j["stages"] = ordered_json::array();
   for (const StageReport& s : stages)
     j["stages"].push_back({{"name", s.name},
@@ -108,7 +111,9 @@ std::string Report::to_json() const {
                {"triangles", triangles},
                {"uniform_triangles", uniform_triangles},
                {"sharpened_vertices", sharpened_vertices},
-               {"unseen_share", unseen_share}};
+               {"unseen_share", unseen_share},
+               {"islands_removed", islands},
+               {"islands_area_share", islands_area_share}};
   if (mesh_error)
     j["mesh"]["error_voxels"] = {{"limit", mesh_error->limit},
                                  {"mean", mesh_error->mean},

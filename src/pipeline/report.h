@@ -108,12 +108,14 @@ struct Report {
   std::vector<MaskReport> masks;  ///< of each view
   ThinReport thin;
   std::string missing_view;       ///< that missing.png shows; empty: there is none
+  std::string explained_view;     ///< that explained.png shows; empty: there is none
   std::string camera_refinement;  ///< JSON (pipeline/refine_cameras.h); empty: not asked for
   std::string photometric;        ///< JSON (pipeline/photometric.h); empty: not asked for
   std::string photometric_line;   ///< the same, for the screen
   assess::Verdict verdict;
   std::string verdict_json;           ///< the same with what it rests on (pipeline/self_check.h)
   std::vector<std::string> left_out;  ///< views whose silhouettes contradict the others'
+  std::vector<std::pair<std::string, double>> sharpness;  ///< of each view (calib/sharpness.h)
   std::vector<std::string> masks_left_out;  ///< of views whose cameras are right
   double noise_sigma = 0;                   ///< square-root-encoded units of full scale
   GridSpec grid;
@@ -130,7 +132,9 @@ struct Report {
   std::int64_t uniform_triangles = 0;   ///< before simplification
   std::int64_t sharpened_vertices = 0;  ///< moved onto sharp edges, or onto what meets there
   std::optional<MeshErrorReport> mesh_error;
-  double unseen_share = 0;  ///< of the mesh's vertices
+  std::int64_t islands = 0;       ///< pieces of the open mesh that too few photographs support
+  double islands_area_share = 0;  ///< of the open mesh's area, that went with them
+  double unseen_share = 0;        ///< of the mesh's vertices
   std::int64_t peak_memory_bytes = 0;
   double wall_seconds = 0, cpu_seconds = 0;
   std::vector<std::string> warnings;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "assess/explained.h"
 #include "assess/silhouette_check.h"
 #include "assess/surface_probes.h"
 #include "calib/silhouette.h"
@@ -101,45 +102,76 @@ assess::Signals gather_signals(const CheckedResult& result,
     auto filled = compare_silhouettes(result, rays, cameras, s);
     if (fits) *fits = std::move(filled);
   }
+  const double noise = 255 * result.noise_sigma;  // square roots are close to sRGB
+  if (!s.masks && !s.hull && s.pixel_size > 0)
+    s.explained = assess::explain_photographs(mesh, rays, *result.box, result.views,
+                                              {result.voxel_size, s.pixel_size, noise});
   assess::MatchOptions options;
   options.near = result.voxel_size;
   options.far = s.far;
-  options.noise = 255 * result.noise_sigma;  // square roots are close to sRGB
+  options.noise = noise;
   s.match = assess::match_probes(probes, result.views, pointers(result.silhouettes), options);
   return s;
 }
 
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json explained_json(const assess::Explained& e, std::span<const View> views) {
+  using assess::Place;
+  ordered_json j = {{"places", e.looked_at()},
+                    {"plain", e.count(Place::kPlain) / std::max(1.0, double(e.looked_at()))},
+                    {"told", e.told()},
+                    {"explained", e.explained()},
+                    {"disagreeing", e.share_told(Place::kDisagreeing)},
+                    {"alone", e.share_told(Place::kAlone)},
+                    {"missed", e.share_told(Place::kMissed)},
+                    {"bare", e.share_textured(Place::kBare)},
+                    {"cut", e.share_textured(Place::kCut)},
+                    {"beyond", e.share_textured(Place::kBeyond)}};
+  for (std::size_t i = 0; i < views.size() && i < e.views.size(); ++i)
+    j["views"].push_back({{"name", views[i].name},
+                          {"told", e.views[i].told()},
+                          {"explained", e.views[i].explained()},
+                          {"bare", e.views[i].count(Place::kBare)}});
+  return j;
+}
+
+}  // namespace
+
 std::string to_json(const assess::Verdict& verdict, const assess::Signals& s,
                     std::span<const View> views) {
-  nlohmann::ordered_json j = {{"level", assess::to_string(verdict.level)},
-                              {"reasons", verdict.reasons},
-                              {"notes", verdict.notes},
-                              {"signals",
-                               {{"mean_confidence", s.mean_confidence},
-                                {"unsure", s.unsure},
-                                {"unseen", s.unseen},
-                                {"few_views", s.few_views},
-                                {"at_box", s.at_box},
-                                {"stems", s.stems},
-                                {"silhouettes_contradict", s.contradiction},
-                                {"silhouettes_missed", s.missed},
-                                {"silhouettes_excess", s.excess},
-                                {"pairs_seen", s.match.seen},
-                                {"textured", s.match.textured},
-                                {"matched", s.match.matched},
-                                {"offset", s.match.offset},
-                                {"offset_beyond_voxel", s.match.beyond_near},
-                                {"offset_beyond_half_percent", s.match.beyond_far},
-                                {"residual", s.match.residual},
-                                {"cameras_moved", s.cameras_moved},
-                                {"cameras_moved_alike", s.cameras_moved_alike},
-                                {"pixel_size", s.pixel_size},
-                                {"half_percent", s.far}}}};
+  ordered_json j = {{"level", assess::to_string(verdict.level)},
+                    {"reasons", verdict.reasons},
+                    {"notes", verdict.notes},
+                    {"signals",
+                     {{"mean_confidence", s.mean_confidence},
+                      {"unsure", s.unsure},
+                      {"unseen", s.unseen},
+                      {"few_views", s.few_views},
+                      {"at_box", s.at_box},
+                      {"stems", s.stems},
+                      {"silhouettes_contradict", s.contradiction},
+                      {"silhouettes_missed", s.missed},
+                      {"silhouettes_excess", s.excess},
+                      {"pairs_seen", s.match.seen},
+                      {"textured", s.match.textured},
+                      {"matched", s.match.matched},
+                      {"offset", s.match.offset},
+                      {"offset_beyond_voxel", s.match.beyond_near},
+                      {"offset_beyond_half_percent", s.match.beyond_far},
+                      {"residual", s.match.residual},
+                      {"cameras_moved", s.cameras_moved},
+                      {"cameras_moved_alike", s.cameras_moved_alike},
+                      {"pixel_size", s.pixel_size},
+                      {"half_percent", s.far}}}};
   for (std::size_t i = 0; i < views.size() && i < s.match.views.size(); ++i)
     j["views"].push_back({{"name", views[i].name},
                           {"residual", s.match.views[i].pixels},
                           {"matches", s.match.views[i].matches}});
-  return j.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  if (s.explained.looked_at() > 0) j["photographs"] = explained_json(s.explained, views);
+  return j.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
 }  // namespace photohull::pipeline

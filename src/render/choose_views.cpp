@@ -57,7 +57,7 @@ int choose_main_view(const TriMesh& mesh, std::span<const View> views) {
   int best = 0;
   double most = -1;
   for (std::size_t i = 0; i < views.size(); ++i) {
-    const double seen = share_covered(mesh, views[i].camera);
+    const double seen = std::min(views[i].sharpness, 1.0) * share_covered(mesh, views[i].camera);
     if (!(seen > most)) continue;
     most = seen;
     best = int(i);

@@ -10,7 +10,8 @@
 namespace photohull::render {
 
 /// The view that shows the mesh largest and whole: its covered share of the image, times the share
-/// of the mesh's vertices that lie on the image, squared.
+/// of the mesh's vertices that lie on the image, squared, times its sharpness where it is less
+/// sharp than others.
 int choose_main_view(const TriMesh& mesh, std::span<const View> views);
 
 /// Up to `count` further views, each as far in direction (seen from the mesh's centre) from those

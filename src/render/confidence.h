@@ -25,6 +25,7 @@ struct PooledEvidence {
   float scatter = 0;       ///< mean
   float disagreement = 0;  ///< standard deviation between views, > 0
   float fine_share = 1;    ///< of fine detail that differs between views: 1 says nothing, 0 agrees
+  float views = 0;         ///< of the vertex itself: SurfaceEvidence::views
 };
 
 /// What shaped a surface.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/error.h"
 #include "core/image.h"
@@ -13,7 +14,12 @@
 namespace photohull::synth {
 namespace {
 
-enum Stream : std::uint64_t { kGains = 0x6a105, kNoise = 0x20153, kCodeNoise = 0x20154 };
+enum Stream : std::uint64_t {
+  kGains = 0x6a105,
+  kNoise = 0x20153,
+  kCodeNoise = 0x20154,
+  kMotion = 0x20155
+};
 
 std::vector<float> gaussian(double sigma) {
   const int reach = std::max(1, int(std::ceil(4 * sigma)));
@@ -79,6 +85,35 @@ void blur(std::vector<glm::vec3>& image, int width, int height, double sigma) {
   pass(rows, image, false);
 }
 
+bool is_motion_blurred(const DegradationSpec& spec, std::size_t view) {
+  if (!(spec.motion_blur > 0)) return false;
+  const double share = spec.motion_blur_views;
+  return std::floor(double(view + 1) * share + 1e-9) > std::floor(double(view) * share + 1e-9);
+}
+
+void motion_blur(std::vector<glm::vec3>& image, int width, int height, double length,
+                 double angle) {
+  const int steps = int(std::ceil(2 * length));  // two samples a pixel
+  if (steps < 1) return;
+  const std::vector<glm::vec3> sharp = image;
+  const auto at = [&](int x, int y) {
+    return sharp[std::size_t(std::clamp(y, 0, height - 1)) * width + std::clamp(x, 0, width - 1)];
+  };
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      glm::vec3 sum(0);
+      for (int i = 0; i <= steps; ++i) {
+        const double along = (double(i) / steps - 0.5) * length;
+        const double u = x + along * std::cos(angle), v = y + along * std::sin(angle);
+        const int x0 = int(std::floor(u)), y0 = int(std::floor(v));
+        const float a = float(u - x0), b = float(v - y0);
+        sum += (1 - b) * ((1 - a) * at(x0, y0) + a * at(x0 + 1, y0)) +
+               b * ((1 - a) * at(x0, y0 + 1) + a * at(x0 + 1, y0 + 1));
+      }
+      image[std::size_t(y) * width + x] = sum / float(steps + 1);
+    }
+}
+
 std::vector<std::uint8_t> through_jpeg(std::span<const std::uint8_t> rgb, int width, int height,
                                        int quality) {
   const auto fail = [](const std::string& what) {
@@ -120,6 +155,9 @@ std::vector<glm::vec3> develop(const Picture& picture, const DegradationSpec& sp
   std::vector<glm::vec3> image = picture.colour;
   if (spec.vignetting > 0) vignette(image, picture.width, picture.height, spec.vignetting);
   blur(image, picture.width, picture.height, spec.blur);
+  if (is_motion_blurred(spec, view))
+    motion_blur(image, picture.width, picture.height, spec.motion_blur,
+                std::numbers::pi * Random(seed, kMotion, view).uniform());
   const glm::vec3 gain = view_gain(spec, seed, view);
   const bool noisy = spec.photon_noise > 0 || spec.read_noise > 0;
   for (std::size_t i = 0; i < image.size(); ++i) {

@@ -10,10 +10,10 @@
 namespace photohull::synth {
 
 /// From linear light to the 8-bit sRGB picture (3 bytes a pixel) that the camera stores, in the
-/// order of a real one: vignetting, blur, exposure and white balance, noise, clipping, sRGB, JPEG.
-/// Vignetting takes a share v r^2 of the light, r = 1 in the corners; the variance of the noise is
-/// read^2 + photon^2 * light; code_noise is added to the sRGB codes. `view` and the seed decide
-/// what differs between views; `again` is the same view with other noise.
+/// order of a real one: vignetting, blur, motion blur, exposure and white balance, noise, clipping,
+/// sRGB, JPEG. Vignetting takes a share v r^2 of the light, r = 1 in the corners; the variance of
+/// the noise is read^2 + photon^2 * light; code_noise is added to the sRGB codes. `view` and the
+/// seed decide what differs between views; `again` is the same view with other noise.
 std::vector<std::uint8_t> expose(const Picture& picture, const DegradationSpec& spec,
                                  std::uint64_t seed, std::size_t view, bool again = false);
 
@@ -26,6 +26,14 @@ glm::vec3 view_gain(const DegradationSpec& spec, std::uint64_t seed, std::size_t
 
 /// Convolves with a Gaussian of deviation `sigma` pixels; beyond the border its pixels repeat.
 void blur(std::vector<glm::vec3>& image, int width, int height, double sigma);
+
+/// Whether the camera moved while it took the view: the share motion_blur_views of all, evenly over
+/// their order.
+bool is_motion_blurred(const DegradationSpec& spec, std::size_t view);
+
+/// The mean along a line of `length` pixels through each pixel, at `angle` (radians); beyond the
+/// border its pixels repeat.
+void motion_blur(std::vector<glm::vec3>& image, int width, int height, double length, double angle);
 
 /// Encodes as baseline JPEG of quality 1 to 100 and decodes again.
 std::vector<std::uint8_t> through_jpeg(std::span<const std::uint8_t> rgb, int width, int height,

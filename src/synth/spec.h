@@ -111,6 +111,8 @@ struct DegradationSpec {
   double read_noise = 0;                  ///< deviation at black
   double code_noise = 0;                  ///< deviation of the sRGB codes, of 255
   double blur = 0;                        ///< Gaussian deviation in pixels
+  double motion_blur = 0;                 ///< length in pixels, of some views
+  double motion_blur_views = 0.25;        ///< share of the views, evenly over their order
   double exposure = 0;                    ///< deviation between views, stops
   double white_balance = 0;               ///< deviation of red and blue gain between views, stops
   double vignetting = 0;                  ///< share of light lost in the corners

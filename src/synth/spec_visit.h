@@ -80,6 +80,8 @@ void visit_degradations(Visitor& v, DegradationSpec& d) {
   v.number("read_noise", d.read_noise, 0, 1);
   v.number("code_noise", d.code_noise, 0, 255);
   v.number("blur", d.blur, 0, 50);
+  v.number("motion_blur", d.motion_blur, 0, 200);
+  v.number("motion_blur_views", d.motion_blur_views, 0, 1);
   v.number("exposure", d.exposure, 0, 5);
   v.number("white_balance", d.white_balance, 0, 3);
   v.number("vignetting", d.vignetting, 0, 1);

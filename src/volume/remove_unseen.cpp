@@ -81,7 +81,7 @@ void remove_ears(const std::vector<std::array<std::uint32_t, 3>>& across, Flags&
 
 }  // namespace
 
-TriMesh remove_unseen(const TriMesh& mesh, double least_confidence) {
+TriMesh remove_unseen(const TriMesh& mesh, double least_confidence, std::vector<float>* more) {
   TriMesh result = mesh;
   if (mesh.confidence.empty()) return result;
   const auto across = neighbours(mesh);
@@ -98,7 +98,7 @@ TriMesh remove_unseen(const TriMesh& mesh, double least_confidence) {
   result.triangles.clear();
   for (std::size_t t = 0; t < removed.size(); ++t)
     if (!removed[t]) result.triangles.push_back(mesh.triangles[t]);
-  keep_used_vertices(result);
+  keep_used_vertices(result, more);
   return result;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "core/mesh.h"
 
@@ -37,7 +38,8 @@ double mean_edge(const TriMesh& mesh);
 /// a mesh without triangles.
 TriMesh simplify_mesh(const TriMesh& mesh, double error);
 
-/// Drops vertices that no triangle uses, with their attributes.
-void keep_used_vertices(TriMesh& mesh);
+/// Drops vertices that no triangle uses, with their attributes; `more`, a number for each vertex,
+/// loses those of the dropped ones.
+void keep_used_vertices(TriMesh& mesh, std::vector<float>* more = nullptr);
 
 }  // namespace photohull

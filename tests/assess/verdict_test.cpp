@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
+
 namespace photohull::assess {
 namespace {
 
@@ -138,6 +140,69 @@ TEST(Verdict, SilhouettesDoNotCountWhereThereAreNone) {
   s.masks = false;
   s.missed = s.excess = s.contradiction = 1;
   EXPECT_EQ(judged(s).level, Level::kGood);
+}
+
+/// Twenty views without silhouettes, each with places of these kinds.
+Signals without_silhouettes(const std::map<Place, int>& places) {
+  Signals s = in_order();
+  s.masks = false;
+  for (int v = 0; v < 20; ++v) {
+    ExplainedView& view = s.explained.views.emplace_back();
+    for (const auto& [place, count] : places) {
+      s.explained.counts[std::size_t(place)] += count;
+      view.places.insert(view.places.end(), std::size_t(count), PlaceAt{0, 0, place});
+    }
+  }
+  return s;
+}
+
+TEST(Verdict, WithoutSilhouettesSaysWhatIsExplained) {
+  const Verdict v = judged(without_silhouettes({{Place::kExplained, 90},
+                                                {Place::kMissed, 4},
+                                                {Place::kDisagreeing, 6},
+                                                {Place::kBare, 100}}));
+  EXPECT_EQ(v.level, Level::kGood);
+  EXPECT_THAT(v.notes,
+              ElementsAre(HasSubstr("explains 90 % of the texture"), HasSubstr("on 50 %")));
+  EXPECT_THAT(v.notes[0], HasSubstr("on 6 % other views show something else"));
+}
+
+TEST(Verdict, WithoutSilhouettesWhatIsNotExplainedCounts) {
+  expect(judged(without_silhouettes({{Place::kExplained, 60}, {Place::kMissed, 40}})),
+         Level::kDoubtful, "on 40 % there is surface that the model lacks");
+  expect(judged(without_silhouettes({{Place::kExplained, 60}, {Place::kDisagreeing, 40}})),
+         Level::kDoubtful, "check the cameras");
+  expect(judged(without_silhouettes({{Place::kExplained, 60}, {Place::kAlone, 40}})),
+         Level::kDoubtful, "add views beside these");
+  expect(judged(without_silhouettes({{Place::kExplained, 20}, {Place::kMissed, 80}})),
+         Level::kFailed, "explains 20 %");
+  expect(judged(without_silhouettes({{Place::kExplained, 20}, {Place::kAlone, 80}})),
+         Level::kDoubtful, "explains 20 %");  // which need not be wrong
+  expect(judged(without_silhouettes({{Place::kExplained, 70}, {Place::kCut, 30}})),
+         Level::kDoubtful, "30 % of what the photographs show there stands just outside the box");
+  EXPECT_EQ(judged(without_silhouettes({{Place::kExplained, 70}, {Place::kBeyond, 70}})).level,
+            Level::kGood);
+}
+
+TEST(Verdict, AnEmptyModelOfTexturedPhotographsHasFailed) {
+  const Verdict v = judged(without_silhouettes({{Place::kBare, 100}, {Place::kBeyond, 10}}));
+  EXPECT_EQ(v.level, Level::kFailed);
+  EXPECT_THAT(v.reasons, ElementsAre(HasSubstr("nearly empty"), HasSubstr("on 91 %")));
+}
+
+TEST(Verdict, PlainPhotographsSayThatTheyTellNothing) {
+  expect(judged(without_silhouettes({{Place::kPlain, 100}, {Place::kExplained, 1}})),
+         Level::kDoubtful, "99 % of the photographs' area in the box is plain");
+}
+
+TEST(Verdict, NamesTheViewsThatAreExplainedLeast) {
+  Signals s = without_silhouettes({{Place::kExplained, 100}});
+  for (PlaceAt& p : s.explained.views[7].places) p.place = Place::kMissed;
+  s.explained.counts[std::size_t(Place::kExplained)] -= 100;
+  s.explained.counts[std::size_t(Place::kMissed)] += 100;
+  const Verdict v = judged(s);
+  EXPECT_EQ(v.level, Level::kGood);
+  EXPECT_THAT(v.notes, ElementsAre(HasSubstr("least in view7 (0 %)")));
 }
 
 /// A hull of an object that is concave in places.

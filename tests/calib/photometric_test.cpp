@@ -7,6 +7,7 @@
 #include <random>
 
 #include "calib/noise.h"
+#include "calib/photometric_check.h"
 #include "calib/photometric_samples.h"
 #include "calib/prepare_views.h"
 #include "core/error.h"
@@ -146,6 +147,75 @@ TEST(Photometric, RejectsOptionsOutOfRange) {
   EXPECT_THROW(o.validate(), UsageError);
   o = {};
   o.least_samples = 1;
+  EXPECT_THROW(o.validate(), UsageError);
+}
+
+PhotometricCheck check(const World& w, const PhotometricCheckOptions& options = {}) {
+  return check_photometric(w.points, int(w.gains.size()), options);
+}
+
+TEST(PhotometricCheck, GainsBeyondTheirNoiseDiffer) {
+  for (const double spread : {0.03, 0.3}) {
+    const World w = make_world(12, spread, 0, 600);
+    double squares = 0;
+    for (const glm::dvec3& g : w.gains) squares += glm::dot(glm::log(g), glm::log(g)) / 36;
+    const PhotometricCheck c = check(w);
+    EXPECT_TRUE(c.differ) << spread;
+    EXPECT_EQ(c.views, 12);
+    EXPECT_EQ(c.samples, 3600);
+    EXPECT_NEAR(c.rms_gain, std::sqrt(squares), 0.1 * spread);
+    EXPECT_LT(c.noise, 0.1 * spread);
+    EXPECT_GT(c.profit, 0.3);
+  }
+}
+
+TEST(PhotometricCheck, EqualPhotographsDoNot) {
+  const PhotometricCheck c = check(make_world(12, 0, 0, 600));
+  EXPECT_FALSE(c.differ);
+  EXPECT_LT(c.rms_gain, 3 * c.noise);
+  EXPECT_LT(std::abs(c.vignetting), 0.02);
+}
+
+// They would be found, and make no difference beside what colours differ in anyway.
+TEST(PhotometricCheck, GainsThatDoNotPayAreLeft) {
+  const World w = make_world(12, 0.002, 0, 20000);
+  const PhotometricCheck c = check(w);
+  EXPECT_GT(c.rms_gain, 3 * c.noise);
+  EXPECT_FALSE(c.differ);
+  PhotometricCheckOptions all;
+  all.least_profit = 0;
+  EXPECT_TRUE(check(w, all).differ);
+}
+
+TEST(PhotometricCheck, NoiseOfTheEstimateIsMeasured) {
+  const double noise = check(make_world(12, 0, 0, 600)).noise;
+  World w = make_world(12, 0, 0, 600);
+  for (PhotometricPoint& p : w.points)  // what a cluster has in common in a view is no gain
+    for (PhotometricSample& s : p.samples)
+      s.colour *= std::exp(0.1 * std::sin(37.0 * p.cluster + 11.0 * s.view));
+  const PhotometricCheck c = check(w);
+  EXPECT_GT(c.noise, 2 * noise);
+  EXPECT_FALSE(c.differ);
+}
+
+TEST(PhotometricCheck, VignettingCounts) {
+  const PhotometricCheck c = check(make_world(12, 0, 0.3, 600));
+  EXPECT_TRUE(c.differ);
+  EXPECT_NEAR(c.vignetting, 0.3, 0.06);
+}
+
+TEST(PhotometricCheck, TooFewSamplesSayNothing) {
+  const PhotometricCheck c = check(make_world(12, 0.3, 0, 20));
+  EXPECT_FALSE(c.differ);
+  EXPECT_LT(c.views, 2);
+}
+
+TEST(PhotometricCheck, RejectsOptionsOutOfRange) {
+  PhotometricCheckOptions o;
+  o.least_samples = 2;
+  EXPECT_THROW(o.validate(), UsageError);
+  o = {};
+  o.least_profit = 1;
   EXPECT_THROW(o.validate(), UsageError);
 }
 

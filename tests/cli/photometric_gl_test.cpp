@@ -76,10 +76,14 @@ TEST_F(PhotometricCommand, MakesTheColoursOfDimmedViewsAgree) {
 }
 
 TEST_F(PhotometricCommand, LeavesPhotographsAloneThatAgree) {
-  succeed(reconstruct({"--method", "hull", "--photometric", "auto"}));
+  const Finished left = succeed(reconstruct({"--method", "hull"}));  // auto is the default
+  EXPECT_THAT(left.out, HasSubstr("left as they are"));
   const json r = report();
   EXPECT_FALSE(r["photometric"]["used"]);
   EXPECT_EQ(r["options"]["photometric"], "auto");
+  const json checked = r["photometric"]["checked"];
+  EXPECT_LT(checked["rms_gain"], 0.02);
+  EXPECT_GE(checked["views"], 2);
   succeed(reconstruct({"--method", "hull", "--photometric", "on"}));
   EXPECT_TRUE(report()["photometric"]["used"]);
 }

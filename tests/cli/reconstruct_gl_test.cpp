@@ -297,6 +297,53 @@ TEST_F(Reconstruct, WithoutMasksPhotographsFindTheSurface) {
   EXPECT_EQ(open_edges(mesh()), 0u);
 }
 
+TEST_F(Reconstruct, WithoutMasksTheVerdictSaysWhatIsExplained) {
+  const Finished run = succeed(reconstruct({"--masks", "none", "--evidence"}));
+  EXPECT_THAT(run.out, HasSubstr("of the texture that the photographs show in the box"));
+  EXPECT_THAT(listing(out()), Contains("explained.png"));
+  EXPECT_THAT(listing(out()), testing::Not(Contains("missing.png")));
+  const json verdict = report()["verdict"], photographs = verdict["photographs"];
+  EXPECT_EQ(photographs["views"].size(), std::size_t(kViews));
+  EXPECT_GT(photographs["explained"], 0.5);
+  EXPECT_EQ(verdict["explained_png_shows"].get<std::string>().rfind("view", 0), 0u);
+  succeed(reconstruct({"--evidence"}));
+  EXPECT_FALSE(report()["verdict"].contains("photographs"));
+  EXPECT_THAT(listing(out()), Contains("missing.png"));
+}
+
+TEST_F(Reconstruct, PhotographsOfOtherViewsAreNeverGood) {
+  for (int i = 0; i < kViews / 2; ++i) {
+    const std::string bytes = read_bytes(image(i));
+    write_bytes(image(i), read_bytes(image(i + kViews / 2)));
+    write_bytes(image(i + kViews / 2), bytes);
+  }
+  const Finished run = run_photohull(reconstruct({"--masks", "none"}));
+  if (run.code == 0) {
+    EXPECT_NE(report()["verdict"]["level"], "good");
+  }
+}
+
+TEST_F(Reconstruct, StronglyBlurredViewsAreLeftOut) {
+  write_bytes(path("ball.json"), R"({"geometry": {"shape": "sphere"}, "truth_samples": 100,
+      "image": {"width": 160, "height": 120, "samples": 2, "maps": false},
+      "cameras": {"rings": [{"count": 16, "elevation": 10}]},
+      "degradations": {"motion_blur": 14, "motion_blur_views": 0.125}})");
+  succeed({"synthesize", path("ball.json"), "--out", path("ball")});
+  const auto run = [&](const Arguments& more) {
+    Arguments arguments = {"reconstruct", path("ball"), "--out",        out(),
+                           "--method",    "hull",       "--resolution", "32"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_photohull(arguments);
+  };
+  const Finished left = run({});
+  EXPECT_EQ(left.code, 0);
+  EXPECT_EQ(report()["left_out"].size(), 2u);
+  EXPECT_EQ(report()["sharpness"].size(), 16u);
+  EXPECT_THAT(report()["warnings"].dump(), HasSubstr("2 views are blurred beside the others"));
+  EXPECT_EQ(run({"--keep-views"}).code, 0);
+  EXPECT_EQ(report()["left_out"].size(), 0u);
+}
+
 TEST_F(Reconstruct, ViewsAndBoxSelect) {
   succeed(reconstruct(
       {"--method", "hull", "--views", "0-4,view6*", "--box", "0.1 -1.2 -0.7 1.1 0.8 1.3"}));

@@ -15,7 +15,7 @@ TEST(JobIdentity, DiffersByWhatRefinementRestsOn) {
       [](ReconstructOptions&, Scene&, GridSpec&) {},
       [](ReconstructOptions& o, Scene&, GridSpec&) { o.quality = Quality::kHigh; },
       [](ReconstructOptions& o, Scene&, GridSpec&) { o.load.masks = io::MaskSource::kNone; },
-      [](ReconstructOptions& o, Scene&, GridSpec&) { o.photometric = Photometric::kAuto; },
+      [](ReconstructOptions& o, Scene&, GridSpec&) { o.photometric = Photometric::kOn; },
       [](ReconstructOptions& o, Scene&, GridSpec&) { o.mask_offset = 0; },
       [](ReconstructOptions& o, Scene&, GridSpec&) { o.noise = 3; },
       [](ReconstructOptions& o, Scene&, GridSpec&) { o.keep_mask_holes = true; },

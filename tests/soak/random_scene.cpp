@@ -64,7 +64,7 @@ pipeline::ReconstructOptions random_job(std::uint64_t number, const std::filesys
   job.method = methods[draw.whole(0, 4)];
   if (draw.one_in(4)) job.mesh_error.value = 0.25;
   if (draw.one_in(4)) job.unseen = pipeline::Unseen::kOpen;
-  if (draw.one_in(4)) job.photometric = pipeline::Photometric::kAuto;
+  if (draw.one_in(4)) job.photometric = pipeline::Photometric::kOn;
   if (draw.one_in(6)) job.refine_cameras = pipeline::RefineCameras::kAuto;
   job.evidence = draw.one_in(6);
   return job;

@@ -383,5 +383,34 @@ TEST_F(CameraErrors, NoneLeavesThemAlone) {
   EXPECT_EQ(reprojection_error(cameras_, degrade_cameras(cameras_, {}, 3, points_), points_), 0);
 }
 
+TEST(MotionBlur, IsTheMeanAlongALine) {
+  std::vector<glm::vec3> image(41 * 41, glm::vec3(0));
+  image[20 * 41 + 20] = glm::vec3(1);
+  motion_blur(image, 41, 41, 8, 0);  // to the right and left
+  float sum = 0;
+  for (int y = 0; y < 41; ++y)
+    for (int x = 0; x < 41; ++x) {
+      const float v = image[std::size_t(y) * 41 + x].r;
+      sum += v;
+      if (y != 20 || std::abs(x - 20) > 5) {
+        EXPECT_EQ(v, 0) << x << " " << y;
+      }
+      if (y == 20 && std::abs(x - 20) < 4) {
+        EXPECT_NEAR(v, 1.0f / 8.5f, 0.01f);
+      }
+    }
+  EXPECT_NEAR(sum, 1, 1e-5);
+}
+
+TEST(MotionBlur, TakesItsShareOfTheViews) {
+  DegradationSpec spec;
+  int none = 0, quarter = 0;
+  for (std::size_t view = 0; view < 40; ++view) none += is_motion_blurred(spec, view);
+  spec.motion_blur = 5;
+  for (std::size_t view = 0; view < 40; ++view) quarter += is_motion_blurred(spec, view);
+  EXPECT_EQ(none, 0);
+  EXPECT_EQ(quarter, 10);
+}
+
 }  // namespace
 }  // namespace photohull::synth

@@ -34,7 +34,7 @@ TEST(Spec, WrittenOutItReadsBackEqual) {
     "light": {"point": [{"position": [1, 2, 3]}], "directional": []},
     "cameras": {"layout": "arc", "count": 7, "distances": [1, 2]},
     "degradations": {"mask_wrong": [1], "jpeg": 80, "k1": -0.1, "mask_style": "eroded",
-                     "mask_cut": 0.25, "view_shift": 1.5, "view_shift_views": 0.125}})";
+                     "mask_cut": 0.25, "view_shift": 1.5, "motion_blur": 7, "motion_blur_views": 0.5, "view_shift_views": 0.125}})";
   const std::string once = spec_text(parse_spec(text, "a", ""), R"({"views": ["0000"]})");
   const Spec again = parse_spec(once, "b", "");
   EXPECT_EQ(spec_text(again, R"({"views": ["0000"]})"), once);
@@ -47,6 +47,8 @@ TEST(Spec, WrittenOutItReadsBackEqual) {
   EXPECT_EQ(again.degradations.mask_style, "eroded");
   EXPECT_EQ(again.degradations.mask_cut, 0.25);
   EXPECT_EQ(again.degradations.view_shift, 1.5);
+  EXPECT_EQ(again.degradations.motion_blur, 7);
+  EXPECT_EQ(again.degradations.motion_blur_views, 0.5);
   EXPECT_EQ(again.degradations.view_shift_views, 0.125);
 }
 
