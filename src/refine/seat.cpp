@@ -33,14 +33,15 @@ std::vector<glm::vec3> face_normals(const TriMesh& mesh, std::span<const glm::ve
 
 /// What contacts ask of the vertices, as offsets from where they are.
 std::vector<Peak> asked(const SparseVolume& hull, std::span<const Contact> contacts,
-                        std::span<const glm::vec3> positions, double tight,
+                        std::span<const glm::vec3> positions, std::span<const float> tight,
                         const SeatOptions& options) {
-  std::vector<Peak> out(positions.size());                         // offset: the weighted sum
-  const double odds = (1 - tight) / std::max(tight, kLeastTight);  // that it is elsewhere
+  std::vector<Peak> out(positions.size());  // offset: the weighted sum
   for (const Contact& c : contacts) {
     const glm::vec3 at = (1 - c.along) * positions[c.a] + c.along * positions[c.b];
     // The ray touches the hull here, or other silhouettes keep the object from it.
     if (c.lack > -hull.interpolated(glm::dvec3(at)) + options.margin) continue;
+    const double chance = (1 - c.along) * tight[c.a] + c.along * tight[c.b];
+    const double odds = (1 - chance) / std::max(chance, kLeastTight);  // that it is elsewhere
     const double behind = double(c.lack) - double(c.least);
     const double outline = options.unsure * options.unsure;
     const auto weight =
@@ -74,8 +75,8 @@ std::vector<float> told_around(const VertexGraph& graph, std::span<const float> 
 void seat_outlines(const SparseVolume& hull, std::span<const Camera> cameras,
                    std::span<const carving::Silhouette> silhouettes, const TriMesh& mesh,
                    const VertexGraph& graph, std::span<const glm::vec3> positions,
-                   std::span<const float> told, double tight, const SeatOptions& options,
-                   std::vector<float>& moves) {
+                   std::span<const float> told, std::span<const float> tight,
+                   const SeatOptions& options, std::vector<float>& moves) {
   if (options.passes == 0) return;
   const std::size_t n = positions.size();
   const std::vector<float> photographs = moves, fair(n, 1);
@@ -101,7 +102,8 @@ void seat_outlines(const SparseVolume& hull, std::span<const Camera> cameras,
   for (std::size_t i = 0; i < n; ++i) {
     const double under = -hull.interpolated(glm::dvec3(positions[i])) - moves[i];
     const double known = options.unsure / std::sqrt(double(told[i]) + kHold);
-    if (under < std::min(options.margin, known)) moves[i] += float(options.margin);
+    if (under < std::min(options.margin * double(tight[i]), known))
+      moves[i] += float(options.margin);
   }
 }
 

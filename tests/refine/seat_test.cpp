@@ -33,7 +33,7 @@ Seated seated(const Surface& surface, const Distance& hull, float told, double t
   std::vector<float> moves(surface.positions.size(), 0);
   seat_outlines(sample_volume({4, 4, 4}, hull), views.cameras(), views.silhouettes(), surface.mesh,
                 make_graph(surface.mesh), surface.positions, std::vector<float>(moves.size(), told),
-                tight, options, moves);
+                std::vector<float>(moves.size(), float(tight)), options, moves);
   Seated out;
   int count = 0;
   for (std::size_t i = 0; i < moves.size(); ++i) {
