@@ -67,6 +67,13 @@ void check(const LookOptions& o) {
   require(o.least_lines >= 1, "look.least_lines must be at least 1");
 }
 
+void check(const SeatOptions& o) {
+  require(o.passes >= 0 && o.passes <= 100, "seat.passes must be 0 to 100");
+  require(o.reach >= 0 && o.reach < SparseVolume::kBand, "seat.reach must lie in [0, 3) voxels");
+  require(o.unsure > 0 && is_length(o.unsure), "seat.unsure must lie in (0, 1000] voxels");
+  require(o.margin >= 0 && o.margin <= 1, "seat.margin must lie in [0, 1] voxels");
+}
+
 void check(const SettleOptions& o) {
   require(is_length(o.least_pixels), "settle.least_pixels must lie in [0, 1000] pixels");
   require(o.least_texture >= 0 && o.least_texture <= 1, "settle.least_texture must lie in [0, 1]");
@@ -161,6 +168,7 @@ void RefineOptions::validate() const {
   check(unproven);
   check(label);
   check(look);
+  check(seat);
   check(settle);
   require(restore.least_views >= 1, "restore.least_views must be at least 1");
   require(restore.most_before >= 0, "restore.most_before must not be negative");

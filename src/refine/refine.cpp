@@ -73,6 +73,16 @@ std::vector<bool> seen_by_any(std::span<const shaders::MatchChoice> choices) {
   return seen;
 }
 
+/// What fitted peaks tell, whatever their taps' spacing.
+std::vector<float> weights_told(std::span<const Peak> peaks, std::span<const float> spacings) {
+  std::vector<float> out;
+  for (std::size_t i = 0; i < peaks.size(); ++i) {
+    const float square = spacings[i] * spacings[i];
+    out.push_back(peaks[i].weight * square * square);
+  }
+  return out;
+}
+
 class Refiner {
  public:
   Refiner(gpu::Context& context, const HullAt& hull_at,
@@ -292,20 +302,28 @@ class Refiner {
       if (!better) volume = std::move(before);
       if (!better || i == options_.photometric) break;
       best = held.before;
-      std::vector<Peak> peaks =
-          peaks_of(results, tap_spacings(volume.grid, positions, cameras_, choices, options_.fit),
-                   options_.fit);
+      const std::vector<float> spacings =
+          tap_spacings(volume.grid, positions, cameras_, choices, options_.fit);
+      std::vector<Peak> peaks = peaks_of(results, spacings, options_.fit);
       std::vector<float> trust =
           trust_thickness(volume, positions, mesh.normals, options_.peak.thick);
+      const std::vector<float> told = told_around(graph, weights_told(peaks, spacings));
+      std::vector<float> tight_at;
+      for (const float t : trust) tight_at.push_back(t * t);
       trust_outlines(volume.grid, positions, choices, cameras_, silhouettes_, options_.fit, trust);
       // What patches cannot be trusted with stays where it is.
       for (std::size_t k = 0; k < peaks.size(); ++k) peaks[k].offset *= trust[k];
-      if (any_silhouette(silhouettes_))
-        pull_to_hull(hull, graph, positions, matches.texture, trust, options_.rims, peaks);
+      const double tight =
+          any_silhouette(silhouettes_)
+              ? pull_to_hull(hull, graph, positions, matches.texture, trust, options_.rims, peaks)
+              : 0;
+      for (float& t : tight_at) t *= float(tight);
       RegularizeOptions smooth = options_.regularize;
       smooth.membrane = options_.fit.membrane, smooth.fairing = options_.fit.fairing;
-      const std::vector<float> moves =
-          regularize(graph, peaks, positions, mesh.normals, trust, smooth);
+      std::vector<float> moves = regularize(graph, peaks, positions, mesh.normals, trust, smooth);
+      if (any_silhouette(silhouettes_))
+        seat_outlines(hull, cameras_, silhouettes_, mesh, graph, positions, told, tight_at,
+                      options_.seat, moves);
       before = volume;
       move_surface(volume, mesh, moves);
       // Not measured anew: steps are short, and passing through the mesh costs more than they gain.

@@ -20,6 +20,7 @@
 #include "refine/match.h"
 #include "refine/restore.h"
 #include "refine/rims.h"
+#include "refine/seat.h"
 #include "refine/settle.h"
 #include "refine/thin_hull.h"
 #include "refine/unproven.h"
@@ -61,6 +62,7 @@ struct RefineOptions {
   UnprovenOptions unproven;
   MatchOptions match;
   LookOptions look;
+  SeatOptions seat;  ///< after fitting
   SettleOptions settle;
   int photometric = 1;  ///< iterations of fitting patches, at the end; fewer when they stop helping
   FitOptions fit;

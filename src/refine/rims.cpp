@@ -44,12 +44,13 @@ double tightness(const SparseVolume& hull, std::span<const glm::vec3> positions,
 
 }  // namespace
 
-void pull_to_hull(const SparseVolume& hull, const VertexGraph& graph,
-                  std::span<const glm::vec3> positions, std::span<const float> texture,
-                  std::span<const float> trust, const RimOptions& options,
-                  std::vector<Peak>& peaks) {
+double pull_to_hull(const SparseVolume& hull, const VertexGraph& graph,
+                    std::span<const glm::vec3> positions, std::span<const float> texture,
+                    std::span<const float> trust, const RimOptions& options,
+                    std::vector<Peak>& peaks) {
   const std::vector<float> told = evidence_around(graph, peaks);
-  const double strongest = options.weight * tightness(hull, positions, peaks, told, options.reach);
+  const double tight = tightness(hull, positions, peaks, told, options.reach);
+  const double strongest = options.weight * tight;
   tbb::parallel_for(std::size_t(0), peaks.size(), [&](std::size_t i) {
     const float under = float(-hull.interpolated(glm::dvec3(positions[i])));
     const float share = 1 - std::clamp(under, 0.0f, float(options.reach)) / float(options.reach);
@@ -61,6 +62,7 @@ void pull_to_hull(const SparseVolume& hull, const VertexGraph& graph,
     peak.offset = (peak.weight * peak.offset + weight * under) / (peak.weight + weight);
     peak.weight += weight;
   });
+  return tight;
 }
 
 }  // namespace photohull::refine

@@ -23,9 +23,10 @@ struct RimOptions {
 /// is not believed where they do not: the weight falls with the fourth power of the share of what
 /// they tell surely that lies on it. Nor is it at thin parts, which it makes too thick: the weight
 /// falls with the square of `trust` (trust_thickness). `positions` in voxels of the hull's grid.
-void pull_to_hull(const SparseVolume& hull, const VertexGraph& graph,
-                  std::span<const glm::vec3> positions, std::span<const float> texture,
-                  std::span<const float> trust, const RimOptions& options,
-                  std::vector<Peak>& peaks);
+/// Returns how far the hull can be believed, [0, 1].
+double pull_to_hull(const SparseVolume& hull, const VertexGraph& graph,
+                    std::span<const glm::vec3> positions, std::span<const float> texture,
+                    std::span<const float> trust, const RimOptions& options,
+                    std::vector<Peak>& peaks);
 
 }  // namespace photohull::refine

@@ -1,0 +1,43 @@
+// The surface seated on the outlines of silhouettes where photographs tell less.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "carving/hull.h"
+#include "core/camera.h"
+#include "core/grid.h"
+#include "core/mesh.h"
+#include "refine/surface.h"
+
+namespace photohull::refine {
+
+struct SeatOptions {
+  int passes = 2;       ///< of finding contacts and moving towards them; 0: nothing is seated
+  double reach = 1.5;   ///< voxels that the surface may be short of an outline
+  double unsure = 0.1;  ///< voxels: standard deviation of a contact at its ray
+  double margin = 0.4;  ///< voxels by which interpolated distances to a curved hull may be off
+};
+
+/// How surely photographs tell the offsets of surfels, as seat_outlines takes it: `weights` that
+/// are 1 at a standard deviation of `SeatOptions::unsure` (0: nothing told), averaged over the
+/// surface around such that single surfels with strong claims among many without any count little.
+std::vector<float> told_around(const VertexGraph& graph, std::span<const float> weights);
+
+/// Changes the displacements `moves` (voxels along the normals) of a mesh's vertices (`positions`
+/// in voxels of the hull's grid), such that the moved surface touches the rays through the
+/// silhouettes' outlines: least squares of what photographs tell (the moves as they come, by
+/// `told`, see told_around) and of what silhouettes tell. Each ray touches the object: the part of
+/// the surface that comes nearest to it is to, with options.unsure. Another part next to the ray
+/// may, the less the farther it stands behind the nearest, and the more the hull can be believed:
+/// `tight` in [0, 1] is the chance that surface lies on it, by vertex (pull_to_hull gives it; less
+/// at thin parts, which hulls make too thick). Surface that ends closer under the hull than
+/// photographs can tell, and than the hull's distances are exact, is moved on beyond the hull: the
+/// caller intersects both.
+void seat_outlines(const SparseVolume& hull, std::span<const Camera> cameras,
+                   std::span<const carving::Silhouette> silhouettes, const TriMesh& mesh,
+                   const VertexGraph& graph, std::span<const glm::vec3> positions,
+                   std::span<const float> told, std::span<const float> tight,
+                   const SeatOptions& options, std::vector<float>& moves);
+
+}  // namespace photohull::refine
