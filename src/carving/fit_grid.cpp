@@ -59,4 +59,12 @@ std::int64_t estimate_memory(const GridSpec& grid) {
   return std::int64_t(4.0 * double(grid.brick_count()) + faces * kBytesPerSurfaceBrick);
 }
 
+GridSpec coarser(const GridSpec& grid) {
+  GridSpec out;
+  out.voxel_size = 2 * grid.voxel_size;
+  out.bricks = (grid.bricks + 1) / 2;
+  out.origin = grid.origin + 0.5 * grid.voxel_size;
+  return out;
+}
+
 }  // namespace photohull::carving

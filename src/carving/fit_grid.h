@@ -26,4 +26,7 @@ double voxel_size_for(const Box& box, int resolution);
 /// the brick table, and bricks, mesh and files of a surface as large as the box's faces.
 std::int64_t estimate_memory(const GridSpec& grid);
 
+/// The grid with voxels twice as large over the same space.
+GridSpec coarser(const GridSpec& grid);
+
 }  // namespace photohull::carving

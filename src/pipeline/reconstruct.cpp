@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "assess/verdict.h"
+#include "carving/bounding.h"
 #include "carving/fit_grid.h"
 #include "carving/fit_stems.h"
 #include "carving/hull.h"
@@ -93,6 +94,7 @@ class Job {
     in_.fit_grid();
     in_.crop();
     const bool refining = options_.effective_method() == Method::kRefine;
+    bounded_ = in_.any_mask();
     SparseVolume volume = clock_.run("hull", Weights::kHull, [&] {
       in_.measure_silhouettes();
       in_.measure_sharpness();
@@ -136,10 +138,10 @@ class Job {
     });
     images_.reset();
     context_->release_deleted();
-    // With silhouettes the whole surface is judged by them; without, what is delivered.
-    if (is_open() && !in_.any_mask()) open_unseen(mesh);
+    // What silhouettes bound is judged by them as a whole; else what is delivered is.
+    if (is_open() && !bounded_) open_unseen(mesh);
     clock_.run("verdict", Weights::kVerdict, [&] { judge(mesh, files); });
-    if (is_open() && in_.any_mask()) open_unseen(mesh);
+    if (is_open() && bounded_) open_unseen(mesh);
     report_.uniform_triangles = std::int64_t(mesh.triangles.size());
     if (options_.mesh_error.value > 0)
       clock_.run("simplify", Weights::kSimplify, [&] { simplify(mesh); });
@@ -245,6 +247,7 @@ class Job {
       o.restore.least_inside = kDoubtfulRim;
     }
     tune(options_.tune, o, sharpen_);
+    o.bounded = bounded_ = find_bounded();
     const refine::CheckpointFile checkpoint{
         checkpoint_path(), job_identity(options_, in_.scene, in_.grid, report_.device)};
     if (options_.fresh) remove_checkpoint();
@@ -278,6 +281,24 @@ class Job {
                  " % of it only (too little texture, or too few cameras that see the same): the "
                  "rest is the hull's guess"));
     return volume;
+  }
+
+  /// Do silhouettes bound what is to be found?
+  bool find_bounded() {
+    if (!in_.any_mask()) return false;
+    GridSpec grid = in_.grid;
+    const auto longest = [](const glm::ivec3& n) { return std::max({n.x, n.y, n.z}); };
+    while (longest(grid.voxels()) > refine::RefineOptions::kCoarsestVoxels)
+      grid = carving::coarser(grid);
+    const bool bounded =
+        carving::silhouettes_bound(hull_at(grid), *in_.scene.box, in_.silhouettes_of_views());
+    if (!bounded)
+      in_.warn(
+          "the masks do not bound the object (fewer than half of the views have one, or the box "
+          "cuts "
+          "off most of what they show): what no photograph tells of is left open, as without "
+          "masks");
+    return bounded;
   }
 
   fs::path checkpoint_path() const { return options_.output / ".photohull-checkpoint"; }
@@ -440,14 +461,13 @@ class Job {
 
   /// Without silhouettes knowledge ends where the photographs do.
   bool is_open() const {
-    return options_.unseen == Unseen::kOpen ||
-           (options_.unseen == Unseen::kAuto && !in_.any_mask() &&
-            options_.effective_method() == Method::kRefine);
+    return options_.unseen == Unseen::kOpen || (options_.unseen == Unseen::kAuto && !bounded_ &&
+                                                options_.effective_method() == Method::kRefine);
   }
 
   /// After colouring, which tells what is seen, and before simplification, which keeps the border.
   void open_unseen(TriMesh& mesh) {
-    const bool by_photographs = !in_.any_mask();
+    const bool by_photographs = !bounded_;
     mesh = remove_unseen(mesh, by_photographs ? kMoreLikelyRight : 0, &views_that_see_);
     if (by_photographs) {
       const RemovedIslands gone =
@@ -526,6 +546,7 @@ class Job {
   std::unique_ptr<gpu::Context> context_;
   std::unique_ptr<projtex::ImageSet> images_;
   SharpenOptions sharpen_;
+  bool bounded_ = false;               // do silhouettes bound the space that they leave?
   std::vector<float> views_that_see_;  ///< of the mesh's vertices
   std::int64_t hull_samples_ = 0, photo_samples_ = 0, refine_samples_ = 0;
 };

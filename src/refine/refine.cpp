@@ -26,15 +26,6 @@ constexpr double kNearReach = kStillReach;  // voxels of exact distance that a s
 constexpr double kAnglePerSpacing = 2.0;  // reach of a view's partners, in spacings of the cameras
 constexpr double kFullReach = SparseVolume::kBand;
 
-/// The grid with voxels twice as large over the same space.
-GridSpec coarser(const GridSpec& grid) {
-  GridSpec out;
-  out.voxel_size = 2 * grid.voxel_size;
-  out.bricks = (grid.bricks + 1) / 2;
-  out.origin = grid.origin + 0.5 * grid.voxel_size;
-  return out;
-}
-
 bool any_silhouette(std::span<const carving::Silhouette> silhouettes) {
   return std::any_of(silhouettes.begin(), silhouettes.end(),
                      [](const carving::Silhouette& s) { return s.distance; });
@@ -136,7 +127,7 @@ class Refiner {
         progress.update((double(level) + double(i + 1) / iterations) / double(grids.size()));
       }
       if (last) fit(volume, hull, counts, progress, report);
-      if (last && any_silhouette(silhouettes_))
+      if (last && is_bounded())
         counts.restored += std::int64_t(fill_unproven(hull, proof_.positions, proof_.normals,
                                                       proof_.weights, options_.unproven, volume));
       if (last) keep_thin(volume, hull, counts);
@@ -168,7 +159,7 @@ class Refiner {
   }
 
   SparseVolume first_guess(const SparseVolume& hull) {
-    if (!any_silhouette(silhouettes_) && options_.voting && options_.label.iterations > 0)
+    if (!is_bounded() && options_.voting && options_.label.iterations > 0)
       return bounded(label_by_votes(context_, hull, images_, cameras_, options_.noise_sigma,
                                     vote_options(false), options_.label),
                      hull);
@@ -188,9 +179,12 @@ class Refiner {
       counts.restored += std::int64_t(keep_thin_hull(hull, options_.thin, volume));
   }
 
+  /// Is what silhouettes leave, and photographs do not tell of, solid?
+  bool is_bounded() const { return options_.bounded && any_silhouette(silhouettes_); }
+
   VoteOptions vote_options(bool last) const {
     VoteOptions options = options_.vote;
-    if (any_silhouette(silhouettes_)) return options;
+    if (is_bounded()) return options;
     options.distinct_by = options_.open.distinct_by;
     options.rounds = last ? options_.open.last_rounds : options_.open.rounds;
     options.bare_reach = last ? options_.open.last_reach : options_.open.reach;
@@ -221,7 +215,7 @@ class Refiner {
     const std::vector<glm::vec3> positions = voxel_positions(volume.grid, mesh);
     // The curvature of a guess that no silhouette shaped says nothing of the surface's.
     const std::vector<glm::vec3> bends =
-        first && !any_silhouette(silhouettes_)
+        first && !is_bounded()
             ? std::vector<glm::vec3>()
             : curvatures(graph, positions, mesh.normals, options_.match.most_bend);
     const OffsetRange range{-options_.step * (offsets / 2), options_.step, offsets};
@@ -248,11 +242,11 @@ class Refiner {
         trust_thickness(volume, positions, mesh.normals, options_.peak.thick);
     for (std::size_t i = 0; i < peaks.size(); ++i) peaks[i].weight *= trust[i];
     // Not at first: what no silhouette shows is still to be found under the hull.
-    if (!first && any_silhouette(silhouettes_))
+    if (!first && is_bounded())
       pull_to_hull(hull, graph, positions, matches.texture, trust, options_.rims, peaks);
     std::vector<float> moves =
         regularize(graph, peaks, positions, mesh.normals, trust, options_.regularize);
-    if (!any_silhouette(silhouettes_))  // plain background is no surface: nothing says where it is
+    if (!is_bounded())  // plain background is no surface: nothing says where it is
       for (std::size_t i = 0; i < seen.size(); ++i)
         seen[i] = seen[i] && matches.texture[i] >= options_.settle.least_texture;
     if (options_.closing) {
@@ -313,10 +307,9 @@ class Refiner {
       trust_outlines(volume.grid, positions, choices, cameras_, silhouettes_, options_.fit, trust);
       // What patches cannot be trusted with stays where it is.
       for (std::size_t k = 0; k < peaks.size(); ++k) peaks[k].offset *= trust[k];
-      const double tight =
-          any_silhouette(silhouettes_)
-              ? pull_to_hull(hull, graph, positions, matches.texture, trust, options_.rims, peaks)
-              : 0;
+      const double tight = is_bounded() ? pull_to_hull(hull, graph, positions, matches.texture,
+                                                       trust, options_.rims, peaks)
+                                        : 0;
       for (float& t : tight_at) t *= float(tight);
       RegularizeOptions smooth = options_.regularize;
       smooth.membrane = options_.fit.membrane, smooth.fairing = options_.fit.fairing;
@@ -389,7 +382,7 @@ SparseVolume refine_surface(gpu::Context& context, const GridSpec& finest, const
     return std::max({n.x, n.y, n.z});
   };
   // The votes' patches reach as far as voxels: where these hardly hold pixels, they hold nothing.
-  const double least = any_silhouette(silhouettes)
+  const double least = options.bounded && any_silhouette(silhouettes)
                            ? 0
                            : kLeastPixels * carving::pixel_footprint(finest.bounds(), cameras);
   const auto is_fine = [&](const GridSpec& grid) {
@@ -397,7 +390,7 @@ SparseVolume refine_surface(gpu::Context& context, const GridSpec& finest, const
            (grid.voxel_size < least && longest(grid) > RefineOptions::kFewestVoxels);
   };
   while (options.levels > 0 ? int(grids.size()) < options.levels : is_fine(grids.front()))
-    grids.insert(grids.begin(), coarser(grids.front()));
+    grids.insert(grids.begin(), carving::coarser(grids.front()));
   RefineReport counts;
   SparseVolume volume =
       Refiner(context, hull_at, silhouettes, images, cameras, finest.bounds().center(), options)

@@ -37,6 +37,8 @@ struct OpenVoteOptions {
 };
 
 struct RefineOptions {
+  /// Do the silhouettes, where there are any, bound what they show (carving::silhouettes_bound)?
+  bool bounded = true;
   /// Voxel sizes, each half the one before; the last is the result's. 0: as many as bring the first
   /// grid to kCoarsestVoxels along its longest side, and without silhouettes to voxels of some
   /// pixels, if that leaves more than kFewestVoxels.
