@@ -46,8 +46,20 @@ double noise_share() {
   return sum;
 }
 
-/// Share of fine in coarse energy in the direction with the least; 0 without texture.
-double detail_of(const View& view, double noise_variance) {
+struct Detail {
+  double share = 0;    ///< of fine in coarse energy in the direction with the least; 0: no texture
+  bool clear = false;  ///< is it more than what noise adds to it?
+};
+
+/// The smaller root of det(f - s c) = 0.
+double least_share(const Tensor& f, const Tensor& c) {
+  const double determinant = c.xx * c.yy - c.xy * c.xy;
+  const double b = f.xx * c.yy + f.yy * c.xx - 2 * f.xy * c.xy;
+  const double d = std::sqrt(std::max(0.0, b * b - 4 * determinant * (f.xx * f.yy - f.xy * f.xy)));
+  return (b - d) / (2 * determinant);
+}
+
+Detail detail_of(const View& view, double noise_variance) {
   const GreyImage grey = grey_image(view.image);
   const cv::Mat fine = blurred(grey, kFine), coarse = blurred(grey, kCoarse);
   Tensor f, c;
@@ -65,16 +77,15 @@ double detail_of(const View& view, double noise_variance) {
       add(fine, x, y, f), add(coarse, x, y, c);
       ++count;
     }
-  if (count < kFewestPixels) return 0;
+  if (count < kFewestPixels) return {};
   const double half = 0.5 * (c.xx + c.yy), determinant = c.xx * c.yy - c.xy * c.xy;
   if (half - std::sqrt(std::max(0.0, half * half - determinant)) <
       count * kLeastGradient * kLeastGradient)
-    return 0;
+    return {};
+  const double with_noise = least_share(f, c);
   f.xx -= count * noise_variance, f.yy -= count * noise_variance;
-  // The smaller root of det(f - s c) = 0.
-  const double b = f.xx * c.yy + f.yy * c.xx - 2 * f.xy * c.xy;
-  const double d = std::sqrt(std::max(0.0, b * b - 4 * determinant * (f.xx * f.yy - f.xy * f.xy)));
-  return std::max(1e-6, (b - d) / (2 * determinant));
+  const double share = std::max(1e-6, least_share(f, c));
+  return {share, share >= 0.5 * with_noise};
 }
 
 }  // namespace
@@ -82,7 +93,7 @@ double detail_of(const View& view, double noise_variance) {
 std::vector<double> relative_sharpness(std::span<const View> views, const Box& box,
                                        double noise_sigma) {
   const double noise = std::pow(255 * noise_sigma, 2) * noise_share();
-  std::vector<double> detail(views.size());
+  std::vector<Detail> detail(views.size());
   tbb::parallel_for(std::size_t(0), views.size(),
                     [&](std::size_t i) { detail[i] = detail_of(views[i], noise); });
   const glm::dvec3 middle = box.center();
@@ -95,21 +106,21 @@ std::vector<double> relative_sharpness(std::span<const View> views, const Box& b
   const double least_cosine = std::cos(kMostAngle * M_PI / 180);
   std::vector<double> sharpness(views.size(), 1);
   for (std::size_t i = 0; i < views.size(); ++i) {
-    if (!(detail[i] > 0)) continue;
+    if (!(detail[i].share > 0)) continue;
     std::vector<std::pair<double, double>> near;  // cosine, falling, and detail
     for (std::size_t j = 0; j < views.size(); ++j) {
       const double ratio = footprints[j] / footprints[i];
       const double cosine = glm::dot(ways[i], ways[j]);
-      if (j != i && detail[j] > 0 && ratio < kMostFootprint && ratio > 1 / kMostFootprint &&
+      if (j != i && detail[j].clear && ratio < kMostFootprint && ratio > 1 / kMostFootprint &&
           cosine > least_cosine)
-        near.emplace_back(-cosine, detail[j]);
+        near.emplace_back(-cosine, detail[j].share);
     }
     if (near.size() < kFewestNeighbours) continue;
     std::sort(near.begin(), near.end());
     if (near.size() > kNeighbours) near.resize(kNeighbours);
     std::vector<double> usual;
     for (const auto& [order, value] : near) usual.push_back(value);
-    sharpness[i] = std::sqrt(detail[i] / median(usual));
+    sharpness[i] = std::sqrt(detail[i].share / median(usual));
   }
   return sharpness;
 }

@@ -18,7 +18,8 @@ namespace photohull {
 /// that scale, so that contrast and the texture's direction fall out. Pixels that masks leave out
 /// do not count. Then its root relative to that of up to eight views, nearest in direction as seen
 /// from the box's middle, whose pixels are up to 1.5 times as large or small there. Views with
-/// fewer than three such neighbours, or without texture, have 1.
+/// fewer than three such neighbours, or without texture, have 1; neighbours in which noise is more
+/// of the fine detail than the image are none.
 ///
 /// `noise_sigma` as estimate_image_noise gives it. In parallel; the same for any number of threads.
 std::vector<double> relative_sharpness(std::span<const View> views, const Box& box,

@@ -426,6 +426,7 @@ class Job {
                                .box = &*in_.scene.box,
                                .voxel_size = in_.grid.voxel_size,
                                .hull = options_.effective_method() == Method::kHull,
+                               .bounded = bounded_,
                                .views = in_.views,
                                .silhouettes = in_.silhouettes,
                                .widened = in_.widened,

@@ -87,8 +87,7 @@ assess::Signals gather_signals(const CheckedResult& result,
   s.cameras_moved_alike = result.cameras_moved_alike;
   s.mask_confidence = result.mask_confidence;
   s.contradiction = result.contradiction;
-  s.masks = std::any_of(result.silhouettes.begin(), result.silhouettes.end(),
-                        [](const SilhouetteDistance& d) { return !d.pixels.empty(); });
+  s.masks = result.bounded;
   for (const assess::SurfaceProbe& p : probes)
     s.mean_confidence += double(p.confidence) / double(probes.size());
   s.unsure = share_of(probes, [](const auto& p) { return p.confidence < 0.5f; });

@@ -169,13 +169,15 @@ class Refiner {
                    hull);
   }
 
+  /// Not where silhouettes bound nothing: what they show of the surroundings would come back whole.
   void restore(SparseVolume& volume, const SparseVolume& hull, LevelReport& counts) {
+    if (!is_bounded()) return;
     counts.restored += std::int64_t(
         restore_silhouettes(context_, volume, hull, cameras_, silhouettes_, options_.restore));
   }
 
   void keep_thin(SparseVolume& volume, const SparseVolume& hull, LevelReport& counts) {
-    if (any_silhouette(silhouettes_))
+    if (is_bounded())
       counts.restored += std::int64_t(keep_thin_hull(hull, options_.thin, volume));
   }
 
@@ -268,12 +270,14 @@ class Refiner {
     counts.mean_move = sum / double(std::max<std::size_t>(moves.size(), 1));
   }
 
-  /// Fits the surface to the photographs while the views that were held out gain by it.
+  /// Fits the surface to the photographs while the views that were held out gain by it; then once
+  /// more, which gains on all development scenes, and seats it on the outlines.
   void fit(SparseVolume& volume, const SparseVolume& hull, LevelReport& counts, Progress& progress,
            RefineReport& report) {
     SparseVolume before;
     double best = -1;
-    for (int i = 0; i <= options_.photometric && options_.photometric > 0; ++i) {
+    for (int i = 0; i < options_.photometric; ++i) {
+      const bool last = i + 1 == options_.photometric;
       progress.check_cancelled();
       const auto start = std::chrono::steady_clock::now();
       const TriMesh mesh = extract_mesh(volume, settled_.coarse(volume.grid));
@@ -292,9 +296,13 @@ class Refiner {
       counts.samples += matches.samples + samples_of(choices, options_.fit);
       const HeldOut held = held_out(results);
       const bool better = held.before > best;
-      if (!report.fits.empty()) report.fits.back().kept = better;
-      if (!better) volume = std::move(before);
-      if (!better || i == options_.photometric) break;
+      if (best >= 0) report.fits.back().kept = better;
+      if (!better) {  // on to the last pass, from the surface before
+        volume = std::move(before);
+        best = -1;
+        i = options_.photometric - 2;
+        continue;
+      }
       best = held.before;
       const std::vector<float> spacings =
           tap_spacings(volume.grid, positions, cameras_, choices, options_.fit);
@@ -314,7 +322,7 @@ class Refiner {
       RegularizeOptions smooth = options_.regularize;
       smooth.membrane = options_.fit.membrane, smooth.fairing = options_.fit.fairing;
       std::vector<float> moves = regularize(graph, peaks, positions, mesh.normals, trust, smooth);
-      if (any_silhouette(silhouettes_))
+      if (last && any_silhouette(silhouettes_))
         seat_outlines(hull, cameras_, silhouettes_, mesh, graph, positions, told, tight_at,
                       options_.seat, moves);
       before = volume;
@@ -327,10 +335,7 @@ class Refiner {
       pass.seconds =
           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       report.fits.push_back(pass);
-      if (options_.photometric == 1) {  // one pass gains on all development scenes: not judged
-        report.fits.back().kept = true;
-        break;
-      }
+      if (last) report.fits.back().kept = true;
     }
   }
 

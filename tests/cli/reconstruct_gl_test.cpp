@@ -72,7 +72,7 @@ TEST_F(Reconstruct, ReportHasTheDocumentedFields) {
     "thin_parts": {"line_pixels": 1, "looked_at": 1, "unexplained": 1, "placed": 1, "stem_vertices": 1},
     "photo": {"sweeps": 1, "voxels_judged": 1, "voxels_carved": 1, "voxels_undecided": 1},
     "resumed_levels": 0, "refine": [], "refine_fits": [], "mesh": {"vertices": 1, "triangles": 1, "uniform_triangles": 1,
-    "sharpened_vertices": 1, "unseen_share": 0.1}})");
+    "sharpened_vertices": 1, "unseen_share": 0.1}, "photometric": {"used": true}, "sharpness": []})");
   const json fields = schema.flatten();
   for (const auto& [key, value] : fields.items()) {
     const json::json_pointer pointer(key);
@@ -91,8 +91,9 @@ TEST_F(Reconstruct, ReportHasTheDocumentedFields) {
   EXPECT_EQ(r["mesh"]["triangles"], mesh().triangles.size());
   std::vector<std::string> stages;
   for (const json& stage : r["stages"]) stages.push_back(stage["name"]);
-  EXPECT_THAT(stages, ElementsAre("scene", "device", "views", "cameras", "hull", "images", "refine",
-                                  "clean", "mesh", "colour", "verdict", "files", "preview"));
+  EXPECT_THAT(stages,
+              ElementsAre("scene", "device", "views", "cameras", "hull", "photometric", "images",
+                          "refine", "clean", "mesh", "colour", "verdict", "files", "preview"));
 }
 
 TEST_F(Reconstruct, MeshErrorLeavesFewerTriangles) {

@@ -9,8 +9,9 @@ namespace {
 
 TEST(TempleGolden, HullKeepsItsVolume) {
   const Reconstruction hull = reconstruct_temple(96, Method::kHull);
-  EXPECT_NEAR(double(hull.report.voxels_kept), 65488, 0.005 * 65488);
-  EXPECT_NEAR(double(hull.report.triangles), 44648, 0.02 * 44648);
+  // Outlines disagree by a quarter of a pixel here, so that no view carves alone.
+  EXPECT_NEAR(double(hull.report.voxels_kept), 68342, 0.005 * 68342);
+  EXPECT_NEAR(double(hull.report.triangles), 45812, 0.02 * 45812);
   EXPECT_EQ(hull.report.mask_source, "background model");
   EXPECT_NEAR(hull.report.mask_confidence, 0.52, 0.05);  // the least of the views'
 }
@@ -18,7 +19,7 @@ TEST(TempleGolden, HullKeepsItsVolume) {
 TEST(TempleGolden, SpaceCarvingTakesAFewPercentOfTheHullAndAddsNothing) {
   const Reconstruction hull = reconstruct_temple(96, Method::kHull);
   const Reconstruction carved = reconstruct_temple(96, Method::kSpaceCarving);
-  EXPECT_NEAR(double(carved.report.voxels_kept), 59899, 0.01 * 59899);
+  EXPECT_NEAR(double(carved.report.voxels_kept), 62440, 0.01 * 62440);
   // Specks that carving cuts off are dropped without being counted as carved.
   const auto accounted = double(carved.report.voxels_kept + carved.report.voxels_carved);
   EXPECT_LE(accounted, double(hull.report.voxels_kept));

@@ -114,6 +114,19 @@ TEST_F(RefineSurface, FittingThePhotographsBringsItNearer) {
   EXPECT_GT(report_.fits[0].mean_move, 0);
 }
 
+TEST_F(RefineSurface, TheLastPassSeatsItOnTheOutlinesWhateverTheOthersGained) {
+  options_.seat.passes = 0;
+  options_.photometric = 1;
+  const double fitted = test::mean_error(run(8));
+  options_.seat = {};
+  for (const int passes : {1, 3}) {
+    options_.photometric = passes;
+    EXPECT_LT(test::mean_error(run(8)), 0.95 * fitted) << passes;
+    ASSERT_FALSE(report_.fits.empty());
+    EXPECT_TRUE(report_.fits.back().kept);
+  }
+}
+
 TEST_F(RefineSurface, CanBeCancelled) {
   request_cancellation();
   EXPECT_THROW(run(4), Cancelled);
