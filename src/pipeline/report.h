@@ -116,8 +116,8 @@ struct Report {
   std::string verdict_json;           ///< the same with what it rests on (pipeline/self_check.h)
   std::vector<std::string> left_out;  ///< views whose silhouettes contradict the others'
   std::vector<std::pair<std::string, double>> sharpness;  ///< of each view (calib/sharpness.h)
-  std::vector<std::string> masks_left_out;  ///< of views whose cameras are right
-  double noise_sigma = 0;                   ///< square-root-encoded units of full scale
+  std::vector<std::string> masks_left_out;                ///< of views whose cameras are right
+  double noise_sigma = 0;  ///< square-root-encoded units of full scale
   GridSpec grid;
   std::vector<StageReport> stages;
   std::int64_t nodes_tested = 0, bricks_evaluated = 0;

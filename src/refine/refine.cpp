@@ -177,8 +177,7 @@ class Refiner {
   }
 
   void keep_thin(SparseVolume& volume, const SparseVolume& hull, LevelReport& counts) {
-    if (is_bounded())
-      counts.restored += std::int64_t(keep_thin_hull(hull, options_.thin, volume));
+    if (is_bounded()) counts.restored += std::int64_t(keep_thin_hull(hull, options_.thin, volume));
   }
 
   /// Is what silhouettes leave, and photographs do not tell of, solid?
@@ -298,7 +297,7 @@ class Refiner {
       const bool better = held.before > best;
       if (best >= 0) report.fits.back().kept = better;
       if (!better) {  // on to the last pass, from the surface before
-        volume = std::move(before);
+        volume = before;
         best = -1;
         i = options_.photometric - 2;
         continue;
