@@ -11,6 +11,8 @@ namespace {
 
 using nlohmann::json;
 using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
 
 class Refine : public SphereScene {
  protected:
@@ -55,6 +57,19 @@ TEST_F(Refine, WithoutMasksBetterThanTheHull) {
   succeed(reconstruct({"--method", "refine", "--masks", "none", "--unseen", "closed"}));
   EXPECT_EQ(report()["masks"]["source"], "none");
   EXPECT_LT(error(), 0.6 * hull);
+}
+
+TEST_F(Refine, MasksThatBoundNothingLeaveUnknownSpaceOpen) {
+  const std::string told = "the masks do not bound the object";
+  EXPECT_THAT(succeed(reconstruct({"--method", "refine"})).err, Not(HasSubstr(told)));
+  write_masks("white", 255, 255);
+  EXPECT_THAT(succeed(reconstruct({"--method", "refine", "--masks", path("white")})).err,
+              HasSubstr(told));
+  const auto triangles = [&] { return double(report()["mesh"]["triangles"]); };
+  const double white = triangles();
+  succeed(reconstruct({"--method", "refine", "--masks", "none"}));
+  EXPECT_NEAR(white, triangles(), 0.05 * triangles());
+  EXPECT_GT(open_edges(read_ply(path("out/mesh.ply"))), 0u);
 }
 
 TEST_F(Refine, ParametersCanBeTuned) {

@@ -61,8 +61,10 @@ TEST(Convergence, ErrorOfASphereFallsWithTheSquareOfTheVoxel) {
   EXPECT_GT(ratio[0], 3.0);
   EXPECT_GT(ratio[1], 2.8);
   EXPECT_GT(ratio[2], 1.2);
-  EXPECT_LT(refined[2], 0.00015);
-  EXPECT_LT(refined[3], 0.0001);
+  EXPECT_LT(refined[0], 0.002);
+  EXPECT_LT(refined[1], 0.0004);
+  EXPECT_LT(refined[2], 0.00013);
+  EXPECT_LT(refined[3], 0.00009);
 }
 
 }  // namespace
