@@ -2,12 +2,15 @@
 // [Montenegro03] proposes as the next step.
 #include "refine/refine.h"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 
 #include "carving/fit_grid.h"
 #include "core/error.h"
+#include "refine/bounding_hull.h"
 #include "refine/checkpoint.h"
 #include "refine/settle.h"
 #include "refine/surface.h"
@@ -102,7 +105,8 @@ class Refiner {
       const auto start = std::chrono::steady_clock::now();
       LevelReport counts;
       counts.voxel_size = grids[level].voxel_size;
-      const SparseVolume hull = hull_at_(grids[level]);
+      BoundingHull bounding(hull_at_(grids[level]));
+      const SparseVolume& hull = bounding.volume();
       volume =
           level == 0
               ? first_guess(hull)
@@ -111,22 +115,27 @@ class Refiner {
       restore(volume, hull, counts);
       const bool first = level == 0, last = level + 1 == grids.size();
       if (!first && options_.voting) vote(volume, hull, last, counts);
+      // From here on the hull of space that nothing bounds is only what the surface may meet.
+      if (!any_silhouette(silhouettes_)) bounding.drop_far_from(volume);
+      malloc_trim(0);
       const int iterations = last    ? options_.fine_iterations
                              : first ? options_.coarse_iterations
                                      : options_.middle_iterations;
       for (int i = 0; i < iterations; ++i) {
         progress.check_cancelled();
-        const SparseVolume before = volume;
-        step(volume, hull, first, counts);
-        const double reach = last && i + 1 == iterations ? kFullReach : kNearReach;
-        SparseVolume after = distance_from_mesh(extract_mesh(volume), volume, hull.grid, reach);
+        const bool is_final = last && i + 1 == iterations;
+        const NearDistances before(volume);
+        step(volume, hull, first, is_final, counts);
+        SparseVolume after = distance_from_mesh(extract_mesh(volume), volume, hull.grid,
+                                                is_final ? kFullReach : kNearReach);
         keep_still(before, volume, after);
-        volume = bounded(after, hull);
+        volume = {};
+        volume = bounded(after, bounding);
         keep_thin(volume, hull, counts);
-        if (last && i + 1 == iterations) restore(volume, hull, counts);
+        if (is_final) restore(volume, hull, counts);
         progress.update((double(level) + double(i + 1) / iterations) / double(grids.size()));
       }
-      if (last) fit(volume, hull, counts, progress, report);
+      if (last) fit(volume, bounding, counts, progress, report);
       if (last && is_bounded())
         counts.restored += std::int64_t(fill_unproven(hull, proof_.positions, proof_.normals,
                                                       proof_.weights, options_.unproven, volume));
@@ -208,14 +217,22 @@ class Refiner {
     return out;
   }
 
-  /// Moves the surface to where the photographs agree; `first`: at the first level.
-  void step(SparseVolume& volume, const SparseVolume& hull, bool first, LevelReport& counts) {
+  /// The same, with a hull that is looked up again should the volume reach where it was dropped.
+  SparseVolume bounded(const SparseVolume& volume, BoundingHull& hull) const {
+    if (!hull.bounds(volume)) hull = BoundingHull(hull_at_(volume.grid));
+    return bounded(volume, hull.volume());
+  }
+
+  /// Moves the surface to where the photographs agree; `first`: at the first level, `is_final`: the
+  /// last step of all.
+  void step(SparseVolume& volume, const SparseVolume& hull, bool first, bool is_final,
+            LevelReport& counts) {
     const int offsets = first ? options_.coarse_offsets : options_.fine_offsets;
     const TriMesh mesh = extract_mesh(volume, settled_.coarse(volume.grid));
     const VertexGraph graph = make_graph(mesh);
     const std::vector<glm::vec3> positions = voxel_positions(volume.grid, mesh);
     // The curvature of a guess that no silhouette shaped says nothing of the surface's.
-    const std::vector<glm::vec3> bends =
+    std::vector<glm::vec3> bends =
         first && !is_bounded()
             ? std::vector<glm::vec3>()
             : curvatures(graph, positions, mesh.normals, options_.match.most_bend);
@@ -233,12 +250,16 @@ class Refiner {
     std::vector<Peak> peaks = find_peaks(matches, options_.peak);
     next_settled_ = SettledBricks(volume.grid, positions, bends, matches, peaks, choices, cameras_,
                                   settled, options_.settle);
-    const KnownSurface known =
-        known_surface(positions, mesh.normals, peaks, choices, options_.look);
+    bends = {};
+    matches.scores = {};
+    KnownSurface known = known_surface(positions, mesh.normals, peaks, choices, options_.look);
+    choices = {};
     const std::vector<Sightline> sightlines =
         find_sightlines(context_, volume.grid, known, images_, cameras_, options_.noise_sigma,
                         options_.match, options_.look);
-    remember_proof(positions, mesh.normals, peaks, seen, settled);
+    const std::vector<glm::vec3> known_positions = std::move(known.positions);
+    known = {};
+    if (is_final && is_bounded()) remember_proof(positions, mesh.normals, peaks, seen, settled);
     const std::vector<float> trust =
         trust_thickness(volume, positions, mesh.normals, options_.peak.thick);
     for (std::size_t i = 0; i < peaks.size(); ++i) peaks[i].weight *= trust[i];
@@ -257,7 +278,7 @@ class Refiner {
     }
     move_surface(volume, mesh, moves);
     counts.freed +=
-        std::int64_t(free_sightlines(sightlines, known.positions, cameras_, options_.look, volume));
+        std::int64_t(free_sightlines(sightlines, known_positions, cameras_, options_.look, volume));
 
     counts.surfels = std::int64_t(moves.size());
     counts.samples += matches.samples;
@@ -271,8 +292,10 @@ class Refiner {
 
   /// Fits the surface to the photographs while the views that were held out gain by it; then once
   /// more, which gains on all development scenes, and seats it on the outlines.
-  void fit(SparseVolume& volume, const SparseVolume& hull, LevelReport& counts, Progress& progress,
+  void fit(SparseVolume& volume, BoundingHull& bounding, LevelReport& counts, Progress& progress,
            RefineReport& report) {
+    const SparseVolume& hull = bounding.volume();
+    const bool silhouettes = any_silhouette(silhouettes_);
     SparseVolume before;
     double best = -1;
     for (int i = 0; i < options_.photometric; ++i) {
@@ -287,11 +310,12 @@ class Refiner {
       const std::vector<Settled> settled = settled_.at(volume.grid, positions);
       for (std::size_t k = 0; k < choices.size(); ++k)
         if (is_settled(settled[k]) && settled[k] != Settled::kFlat) choices[k].second.w = 0;
-      const Matches matches =
+      Matches matches =
           match_patches(context_, volume.grid, render::to_voxels(volume.grid, mesh), {}, choices,
                         images_, cameras_, options_.noise_sigma, {}, options_.match);
-      const auto results = fit_patches(context_, volume.grid, mesh, graph, images_, cameras_,
-                                       choices, options_.noise_sigma, options_.fit);
+      matches.scores = {};
+      auto results = fit_patches(context_, volume.grid, mesh, graph, images_, cameras_, choices,
+                                 options_.noise_sigma, options_.fit);
       counts.samples += matches.samples + samples_of(choices, options_.fit);
       const HeldOut held = held_out(results);
       const bool better = held.before > best;
@@ -306,12 +330,15 @@ class Refiner {
       const std::vector<float> spacings =
           tap_spacings(volume.grid, positions, cameras_, choices, options_.fit);
       std::vector<Peak> peaks = peaks_of(results, spacings, options_.fit);
+      results = {};
       std::vector<float> trust =
           trust_thickness(volume, positions, mesh.normals, options_.peak.thick);
-      const std::vector<float> told = told_around(graph, weights_told(peaks, spacings));
+      std::vector<float> told;  // of seating alone
+      if (last && silhouettes) told = told_around(graph, weights_told(peaks, spacings));
       std::vector<float> tight_at;
       for (const float t : trust) tight_at.push_back(t * t);
       trust_outlines(volume.grid, positions, choices, cameras_, silhouettes_, options_.fit, trust);
+      choices = {};
       // What patches cannot be trusted with stays where it is.
       for (std::size_t k = 0; k < peaks.size(); ++k) peaks[k].offset *= trust[k];
       const double tight = is_bounded() ? pull_to_hull(hull, graph, positions, matches.texture,
@@ -321,13 +348,13 @@ class Refiner {
       RegularizeOptions smooth = options_.regularize;
       smooth.membrane = options_.fit.membrane, smooth.fairing = options_.fit.fairing;
       std::vector<float> moves = regularize(graph, peaks, positions, mesh.normals, trust, smooth);
-      if (last && any_silhouette(silhouettes_))
+      if (last && silhouettes)
         seat_outlines(hull, cameras_, silhouettes_, mesh, graph, positions, told, tight_at,
                       options_.seat, moves);
-      before = volume;
+      if (!last) before = volume;
       move_surface(volume, mesh, moves);
       // Not measured anew: steps are short, and passing through the mesh costs more than they gain.
-      volume = bounded(volume, hull);
+      volume = bounded(volume, bounding);
       FitReport pass;
       for (const float move : moves) pass.mean_move += std::abs(move) / double(moves.size());
       pass.held_before = held.before, pass.held_after = held.after;

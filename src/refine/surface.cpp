@@ -16,37 +16,64 @@ VertexGraph make_graph(const TriMesh& mesh) {
   VertexGraph graph;
   const std::size_t n = mesh.positions.size();
   // Every edge of a closed mesh belongs to two triangles, once in each direction.
-  std::vector<std::uint32_t> start(n + 1, 0);
+  std::vector<std::uint32_t> next(n + 1, 0);
   for (const auto& t : mesh.triangles)
-    for (const std::uint32_t v : t) start[v + 1] += 2;
-  for (std::size_t i = 0; i < n; ++i) start[i + 1] += start[i];
-  std::vector<std::uint32_t> all(start[n]), next(start.begin(), start.end() - 1);
+    for (const std::uint32_t v : t) next[v + 1] += 2;
+  for (std::size_t i = 0; i < n; ++i) next[i + 1] += next[i];
+  std::vector<std::uint32_t>& all = graph.neighbours;
+  all.resize(next[n]);
   for (const auto& [a, b, c] : mesh.triangles) {
     all[next[a]++] = b, all[next[a]++] = c;
     all[next[b]++] = c, all[next[b]++] = a;
     all[next[c]++] = a, all[next[c]++] = b;
   }
+  // Each vertex's list, which ends at next[i] now, becomes shorter and moves to the front.
   graph.first.resize(n + 1, 0);
-  graph.neighbours.reserve(all.size() / 2);
+  auto end = all.begin();
+  std::uint32_t start = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    const auto from = all.begin() + start[i], to = all.begin() + start[i + 1];
+    const auto from = all.begin() + start, to = all.begin() + next[i];
+    start = next[i];
     std::sort(from, to);
-    graph.neighbours.insert(graph.neighbours.end(), from, std::unique(from, to));
-    graph.first[i + 1] = std::uint32_t(graph.neighbours.size());
+    end = std::copy(from, std::unique(from, to), end);
+    graph.first[i + 1] = std::uint32_t(end - all.begin());
   }
+  all.erase(end, all.end());
+  all.shrink_to_fit();
   return graph;
 }
 
-void keep_still(const SparseVolume& before, const SparseVolume& moved, SparseVolume& volume) {
+NearDistances::NearDistances(const SparseVolume& volume)
+    : table_(volume.table), near_(volume.bricks.size()) {
+  constexpr float kNear = kStillReach + 2 * kStill;
+  const auto is_near = [&](std::size_t i) { return std::abs(volume.distance[i]) < kNear; };
+  for (std::size_t i = 0; i < volume.distance.size(); ++i)
+    if (is_near(i)) near_.mark(i);
+  near_.count();
+  values_.reserve(near_.marked());
+  for (std::size_t i = 0; i < volume.distance.size(); ++i)
+    if (is_near(i)) values_.push_back(volume.distance[i]);
+}
+
+std::optional<float> NearDistances::at(std::size_t brick, int v) const {
+  const std::uint32_t slot = table_[brick];
+  if (slot >= SparseVolume::kInside) return {};
+  const std::size_t voxel = std::size_t(slot) * kBrickVoxels + std::size_t(v);
+  if (!near_.has(voxel)) return {};
+  return values_[near_.rank(voxel)];
+}
+
+void keep_still(const NearDistances& before, const SparseVolume& moved, SparseVolume& volume) {
   tbb::parallel_for(std::size_t(0), volume.bricks.size(), [&](std::size_t slot) {
     const std::size_t index = volume.grid.brick_index(volume.bricks[slot]);
-    const std::uint32_t a = before.table[index], b = moved.table[index];
-    if (a >= SparseVolume::kInside || b >= SparseVolume::kInside) return;
-    for (std::size_t v = 0; v < kBrickVoxels; ++v) {
-      const float old = before.distance[a * kBrickVoxels + v];
-      const float now = moved.distance[b * kBrickVoxels + v];
-      if (std::abs(old - now) < kStill && std::abs(now) < kStillReach)
-        volume.distance[slot * kBrickVoxels + v] = now;
+    const std::uint32_t b = moved.table[index];
+    if (b >= SparseVolume::kInside) return;
+    for (int v = 0; v < kBrickVoxels; ++v) {
+      const float now = moved.distance[b * std::size_t(kBrickVoxels) + std::size_t(v)];
+      if (!(std::abs(now) < kStillReach)) continue;
+      const std::optional<float> old = before.at(index, v);
+      if (old && std::abs(*old - now) < kStill)
+        volume.distance[slot * kBrickVoxels + std::size_t(v)] = now;
     }
   });
 }

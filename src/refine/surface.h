@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "core/grid.h"
 #include "core/mesh.h"
+#include "core/voxel_mask.h"
 
 namespace photohull::refine {
 
@@ -27,9 +29,24 @@ VertexGraph make_graph(const TriMesh& mesh);
 
 inline constexpr float kStillReach = 2.25f;  ///< voxels from the surface
 
+/// The distances of a volume near its surface, while a step changes it: a third of its size.
+class NearDistances {
+ public:
+  explicit NearDistances(const SparseVolume& volume);
+
+  /// That of voxel `v` (voxel_offset) of a brick of the table, by its index there; nothing where it
+  /// was not stored, or farther from the surface than kStillReach and a little.
+  std::optional<float> at(std::size_t brick, int v) const;
+
+ private:
+  std::vector<std::uint32_t> table_;
+  VoxelMask near_;
+  std::vector<float> values_;  // by rank
+};
+
 /// Distances within kStillReach that a step left as they were: where `moved` is what it was
 /// `before`, `volume` takes the latter, for each passage through a mesh rounds thin parts off. All
 /// on one grid.
-void keep_still(const SparseVolume& before, const SparseVolume& moved, SparseVolume& volume);
+void keep_still(const NearDistances& before, const SparseVolume& moved, SparseVolume& volume);
 
 }  // namespace photohull::refine

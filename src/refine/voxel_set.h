@@ -13,7 +13,8 @@ namespace photohull::refine {
 /// Voxels by their place in the lattice, x fastest.
 class Lattice {
  public:
-  explicit Lattice(const GridSpec& grid) : n_(grid.voxels()) {}
+  explicit Lattice(const GridSpec& grid) : Lattice(grid.voxels()) {}
+  explicit Lattice(const glm::ivec3& voxels) : n_(voxels) {}
   bool contains(const glm::ivec3& v) const {
     return v.x >= 0 && v.y >= 0 && v.z >= 0 && v.x < n_.x && v.y < n_.y && v.z < n_.z;
   }

@@ -21,33 +21,33 @@ using gpu::Buffer;
 
 constexpr std::size_t kBatch = std::size_t(1) << 20;  // 32 MiB of vertices a dispatch
 
-/// Vertices on the device, in parts that a storage block holds.
+/// Some of the vertices on the device: as many as a storage block holds.
 struct Batch {
-  std::size_t first, count;
+  Batch(std::span<const shaders::BakeVertex> part, std::size_t views, double noise_sigma)
+      : parameters_of{{int(part.size()), int(views), 0, 0}, {float(noise_sigma), 0, 0, 0}},
+        parameters(sizeof parameters_of, &parameters_of),
+        vertices(part.size_bytes(), part.data()) {
+    parameters.bind_uniform(0);
+    vertices.bind_storage(1);
+  }
+  shaders::BakeParameters parameters_of;
   Buffer parameters, vertices;
 };
 
-std::vector<Batch> upload(const std::vector<shaders::BakeVertex>& vertices, std::size_t views,
-                          double noise_sigma) {
-  std::vector<Batch> out;
-  for (std::size_t first = 0; first < vertices.size(); first += kBatch) {
-    const std::size_t count = std::min(kBatch, vertices.size() - first);
-    const shaders::BakeParameters parameters{{int(count), int(views), 0, 0},
-                                             {float(noise_sigma), 0, 0, 0}};
-    out.push_back({first, count, Buffer(sizeof parameters, &parameters),
-                   Buffer(count * sizeof(shaders::BakeVertex), &vertices[first])});
-  }
-  return out;
+/// Calls visit(first, part) for the vertices in parts of at most kBatch.
+template <typename Visit>
+void for_batches(std::span<const shaders::BakeVertex> vertices, Visit&& visit) {
+  for (std::size_t first = 0; first < vertices.size(); first += kBatch)
+    visit(first, vertices.subspan(first, std::min(kBatch, vertices.size() - first)));
 }
 
-void splat(gpu::Context& context, const gpu::Program& program, const std::vector<Batch>& batches,
-           std::size_t views) {
-  for (const Batch& batch : batches) {
-    batch.parameters.bind_uniform(0);
-    batch.vertices.bind_storage(1);
+void splat(gpu::Context& context, const gpu::Program& program,
+           std::span<const shaders::BakeVertex> points, std::size_t views, double noise_sigma) {
+  for_batches(points, [&](std::size_t, std::span<const shaders::BakeVertex> part) {
+    const Batch batch(part, views, noise_sigma);
     program.dispatch(context, "render_splat_points",
-                     gpu::group_count(batch.count, 64 * shaders::kSplatRun), views);
-  }
+                     gpu::group_count(part.size(), 64 * shaders::kSplatRun), views);
+  });
 }
 
 }  // namespace
@@ -67,13 +67,11 @@ void bake_colour(gpu::Context& context, const GridSpec& grid, const projtex::Ima
   const visibility::DepthMaps maps = render::occluder_maps(cameras, grid);
   views.bind_storage(0);
   maps.bind();
-  const std::vector<shaders::BakeVertex> vertices = render::to_voxels(grid, mesh);
-  const std::vector<Batch> batches = upload(vertices, cameras.size(), noise_sigma);
+  std::vector<shaders::BakeVertex> vertices = render::to_voxels(grid, mesh);
   {
     const auto program = gpu::Program::compute("render_splat_points.comp.glsl");
-    const auto between = render::points_between(mesh, vertices);
-    splat(context, program, batches, cameras.size());
-    splat(context, program, upload(between, cameras.size(), noise_sigma), cameras.size());
+    splat(context, program, vertices, cameras.size(), noise_sigma);
+    splat(context, program, render::points_between(mesh, vertices), cameras.size(), noise_sigma);
   }
 
   const gpu::Program bake = gpu::Program::compute("render_bake_vertices.comp.glsl");
@@ -82,27 +80,27 @@ void bake_colour(gpu::Context& context, const GridSpec& grid, const projtex::Ima
   mesh.confidence.assign(total, 0);
   std::vector<render::SurfaceEvidence> said(total);
   images.texture().bind(0);
-  for (const Batch& batch : batches) {
+  for_batches(vertices, [&](std::size_t first, std::span<const shaders::BakeVertex> part) {
     progress.check_cancelled();
-    const Buffer lists = Buffer::of(
-        render::list_views(std::span(vertices).subspan(batch.first, batch.count), gpu_views));
-    const Buffer baked(batch.count * sizeof(shaders::BakeResult));
-    batch.parameters.bind_uniform(0);
-    batch.vertices.bind_storage(1);
+    const Batch batch(part, cameras.size(), noise_sigma);
+    const Buffer lists = Buffer::of(render::list_views(part, gpu_views));
+    const Buffer baked(part.size() * sizeof(shaders::BakeResult));
     baked.bind_storage(2);
     lists.bind_storage(3);
     bake.dispatch(context, "render_bake_vertices",
-                  gpu::group_count(batch.count, shaders::kBakeGroup));
-    const auto results = baked.download<shaders::BakeResult>(batch.count);
-    for (std::size_t i = 0; i < batch.count; ++i) {
+                  gpu::group_count(part.size(), shaders::kBakeGroup));
+    const auto results = baked.download<shaders::BakeResult>(part.size());
+    for (std::size_t i = 0; i < part.size(); ++i) {
       const glm::vec4& e = results[i].evidence;
-      mesh.colours[batch.first + i] = glm::vec3(results[i].colour);
-      said[batch.first + i] = {results[i].colour.w, e.x, e.y, e.z, e.w};
+      mesh.colours[first + i] = glm::vec3(results[i].colour);
+      said[first + i] = {results[i].colour.w, e.x, e.y, e.z, e.w};
     }
-    progress.update(double(batch.first + batch.count) / double(total));
-  }
+    progress.update(double(first + part.size()) / double(total));
+  });
+  vertices = {};
   std::vector<render::PooledEvidence> pooled = render::pool_evidence(mesh, said);
   BakeReport counts;
+  said = {};
   for (std::size_t i = 0; i < total; ++i) {
     mesh.confidence[i] = float(render::confidence_of(pooled[i], shaping));
     counts.seen += pooled[i].seen;

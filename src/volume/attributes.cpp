@@ -1,11 +1,11 @@
 #include "volume/attributes.h"
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "core/error.h"
 
@@ -33,33 +33,51 @@ struct Point {
   float confidence = 0;
 };
 
-/// The attributes under way: sums of values times weights, and the weights.
+/// The attributes under way: sums of values times weights, and the weights. They are kept for the
+/// voxels near the surface, and for those that points of the mesh reach.
 class Splatter {
  public:
   Splatter(const SparseVolume& volume, const TriMesh& mesh) : volume_(volume), mesh_(mesh) {
-    const std::size_t count = volume.distance.size();
-    weight_.assign(count, 0.0f);
-    if (!mesh.colours.empty()) sums_.colour.assign(count, glm::vec3(0));
-    if (!mesh.confidence.empty()) sums_.confidence.assign(count, 0.0f);
+    auto mask = std::make_shared<VoxelMask>(volume.bricks.size());
+    tbb::parallel_for(std::size_t(0), volume.bricks.size(), [&](std::size_t slot) {
+      for (std::size_t i = slot * kBrickVoxels; i < (slot + 1) * kBrickVoxels; ++i)
+        if (is_near_surface(i)) mask->mark(i);
+    });
+    for_points(
+        [&](const Point& p) { for_corners(p, [&](std::size_t i, float) { mask->mark(i); }); });
+    mask->count();
+    mask_ = mask;
+    weight_.assign(mask->marked(), 0.0f);
+    if (!mesh.colours.empty())
+      sums_.colour = {mask_, glm::vec3(0), glm::vec3(VolumeAttributes::kUnknown)};
+    if (!mesh.confidence.empty()) sums_.confidence = {mask_, 0.0f, VolumeAttributes::kUnknown};
   }
 
-  void splat_vertices();
-  void splat_large_triangles();
-  void fill_neighbours();
-  VolumeAttributes take();
+  VolumeAttributes run() {
+    for_points([&](const Point& p) { splat(p); });
+    fill_neighbours();
+    return take();
+  }
 
  private:
   Point point(std::size_t vertex) const;
+  template <typename F>
+  void for_points(F&& f) const;
+  template <typename F>
+  void for_corners(const Point& p, F&& f) const;
   void splat(const Point& point);
+  void fill_neighbours();
   void fill_from_neighbours(std::size_t index, const glm::ivec3& voxel);
+  VolumeAttributes take();
   bool is_near_surface(std::size_t index) const {
     return std::abs(volume_.distance[index]) < VolumeAttributes::kReach;
   }
 
   const SparseVolume& volume_;
   const TriMesh& mesh_;
+  std::shared_ptr<const VoxelMask> mask_;
   VolumeAttributes sums_;
-  std::vector<float> weight_;
+  std::vector<float> weight_;  // by the mask's rank
 };
 
 Point Splatter::point(std::size_t vertex) const {
@@ -70,29 +88,12 @@ Point Splatter::point(std::size_t vertex) const {
   return p;
 }
 
-void Splatter::splat(const Point& p) {
-  const glm::dvec3 cell = glm::floor(p.voxel);
-  const glm::vec3 at(p.voxel - cell);
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::ivec3 step(corner >> 2, (corner >> 1) & 1, corner & 1);
-    const std::size_t i = stored_index(volume_, glm::ivec3(cell) + step);
-    if (i == kNotStored) continue;
-    const glm::vec3 share = glm::mix(1.0f - at, at, glm::vec3(step));
-    const float weight = share.x * share.y * share.z;
-    if (weight < kLeastWeight) continue;
-    weight_[i] += weight;
-    if (!sums_.colour.empty()) sums_.colour[i] += weight * p.colour;
-    if (!sums_.confidence.empty()) sums_.confidence[i] += weight * p.confidence;
-  }
-}
-
-void Splatter::splat_vertices() {
-  for (std::size_t i = 0; i < mesh_.positions.size(); ++i) splat(point(i));
-}
-
-/// An adaptive mesh has triangles that span many voxels: they are sampled about once a voxel.
-void Splatter::splat_large_triangles() {
+/// The vertices; and, as an adaptive mesh has triangles that span many voxels, points of these
+/// about a voxel apart.
+template <typename F>
+void Splatter::for_points(F&& f) const {
   constexpr double kSpan = 2.0;  // voxels; smaller triangles are covered by their corners
+  for (std::size_t i = 0; i < mesh_.positions.size(); ++i) f(point(i));
   for (const auto& [a, b, c] : mesh_.triangles) {
     const glm::vec3 &pa = mesh_.positions[a], &pb = mesh_.positions[b], &pc = mesh_.positions[c];
     const double longest =
@@ -110,53 +111,85 @@ void Splatter::splat_large_triangles() {
                    float(w) * corners[2].colour;
         p.confidence = float(u * corners[0].confidence + v * corners[1].confidence +
                              w * corners[2].confidence);
-        splat(p);
+        f(p);
       }
   }
 }
 
+/// Calls f(voxel, weight) for the stored voxels around a point.
+template <typename F>
+void Splatter::for_corners(const Point& p, F&& f) const {
+  const glm::dvec3 cell = glm::floor(p.voxel);
+  const glm::vec3 at(p.voxel - cell);
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::ivec3 step(corner >> 2, (corner >> 1) & 1, corner & 1);
+    const std::size_t i = stored_index(volume_, glm::ivec3(cell) + step);
+    if (i == kNotStored) continue;
+    const glm::vec3 share = glm::mix(1.0f - at, at, glm::vec3(step));
+    const float weight = share.x * share.y * share.z;
+    if (!(weight < kLeastWeight)) f(i, weight);
+  }
+}
+
+void Splatter::splat(const Point& p) {
+  for_corners(p, [&](std::size_t i, float weight) {
+    const std::size_t rank = mask_->rank(i);
+    weight_[rank] += weight;
+    if (!sums_.colour.empty()) sums_.colour.ranked(rank) += weight * p.colour;
+    if (!sums_.confidence.empty()) sums_.confidence.ranked(rank) += weight * p.confidence;
+  });
+}
+
 /// Writes only to voxels without weight and reads only those with weight: order does not matter.
-void Splatter::fill_from_neighbours(std::size_t index, const glm::ivec3& voxel) {
+void Splatter::fill_from_neighbours(std::size_t rank, const glm::ivec3& voxel) {
   float weight = 0;
   glm::vec3 colour(0);
   float confidence = 0;
   for (int n = 0; n < 27; ++n) {
     const glm::ivec3 step(n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1);
     const std::size_t i = stored_index(volume_, voxel + step);
-    if (i == kNotStored || weight_[i] == 0) continue;
-    weight += weight_[i];
-    if (!sums_.colour.empty()) colour += sums_.colour[i];
-    if (!sums_.confidence.empty()) confidence += sums_.confidence[i];
+    if (i == kNotStored || !mask_->has(i)) continue;
+    const std::size_t other = mask_->rank(i);
+    if (weight_[other] == 0) continue;
+    weight += weight_[other];
+    if (!sums_.colour.empty()) colour += sums_.colour.ranked(other);
+    if (!sums_.confidence.empty()) confidence += sums_.confidence.ranked(other);
   }
   const bool known = weight > 0;
   if (!sums_.colour.empty())
-    sums_.colour[index] = known ? colour / weight : glm::vec3(VolumeAttributes::kUnknown);
+    sums_.colour.ranked(rank) = known ? colour / weight : glm::vec3(VolumeAttributes::kUnknown);
   if (!sums_.confidence.empty())
-    sums_.confidence[index] = known ? confidence / weight : VolumeAttributes::kUnknown;
+    sums_.confidence.ranked(rank) = known ? confidence / weight : VolumeAttributes::kUnknown;
 }
 
 void Splatter::fill_neighbours() {
   tbb::parallel_for(std::size_t(0), volume_.bricks.size(), [&](std::size_t slot) {
     const glm::ivec3 corner = volume_.bricks[slot] * kBrickEdge;
     for (int offset = 0; offset < kBrickVoxels; ++offset) {
-      const std::size_t i = slot * kBrickVoxels + offset;
-      if (weight_[i] == 0 && is_near_surface(i))
-        fill_from_neighbours(i, corner + glm::ivec3(offset >> 6, (offset >> 3) & 7, offset & 7));
+      const std::size_t i = slot * kBrickVoxels + std::size_t(offset);
+      if (!is_near_surface(i)) continue;
+      const std::size_t rank = mask_->rank(i);
+      if (weight_[rank] == 0)
+        fill_from_neighbours(rank, corner + glm::ivec3(offset >> 6, (offset >> 3) & 7, offset & 7));
     }
   });
 }
 
 VolumeAttributes Splatter::take() {
-  const tbb::blocked_range<std::size_t> voxels(0, weight_.size(), 1 << 16);
-  tbb::parallel_for(voxels, [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+  tbb::parallel_for(std::size_t(0), volume_.bricks.size(), [&](std::size_t slot) {
+    for (std::size_t i = slot * kBrickVoxels; i < (slot + 1) * kBrickVoxels; ++i) {
+      if (!mask_->has(i)) continue;
+      const std::size_t rank = mask_->rank(i);
       const bool near = is_near_surface(i);
-      if (near && weight_[i] == 0) continue;  // Filled from its neighbours, or unknown.
-      if (!sums_.colour.empty())
-        sums_.colour[i] =
-            near ? sums_.colour[i] / weight_[i] : glm::vec3(VolumeAttributes::kUnknown);
-      if (!sums_.confidence.empty())
-        sums_.confidence[i] = near ? sums_.confidence[i] / weight_[i] : VolumeAttributes::kUnknown;
+      if (near && weight_[rank] == 0) continue;  // Filled from its neighbours, or unknown.
+      if (!sums_.colour.empty()) {
+        glm::vec3& colour = sums_.colour.ranked(rank);
+        colour = near ? colour / weight_[rank] : glm::vec3(VolumeAttributes::kUnknown);
+      }
+      if (!sums_.confidence.empty()) {
+        float& confidence = sums_.confidence.ranked(rank);
+        confidence = near ? confidence / weight_[rank] : VolumeAttributes::kUnknown;
+      }
     }
   });
   return std::move(sums_);
@@ -169,11 +202,7 @@ VolumeAttributes attributes_from_mesh(const SparseVolume& volume, const TriMesh&
   PHOTOHULL_CHECK(mesh.colours.empty() || mesh.colours.size() == vertices);
   PHOTOHULL_CHECK(mesh.confidence.empty() || mesh.confidence.size() == vertices);
   if (mesh.colours.empty() && mesh.confidence.empty()) return {};
-  Splatter splatter(volume, mesh);
-  splatter.splat_vertices();
-  splatter.splat_large_triangles();
-  splatter.fill_neighbours();
-  return splatter.take();
+  return Splatter(volume, mesh).run();
 }
 
 }  // namespace photohull

@@ -1,5 +1,7 @@
 #include "volume/combine.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 
 #include "core/error.h"
@@ -16,11 +18,7 @@ SparseVolume combine(const SparseVolume& a, const SparseVolume& b, std::uint32_t
   SparseVolume out;
   out.grid = a.grid;
   out.table.resize(a.table.size());
-  const auto copy = [&](const SparseVolume& from, std::size_t index) {
-    const float* values = from.distance.data() + std::size_t(from.table[index]) * kBrickVoxels;
-    out.distance.insert(out.distance.end(), values, values + kBrickVoxels);
-    out.bricks.push_back(from.bricks[from.table[index]]);
-  };
+  std::vector<std::size_t> stored;  // where in the table
   for (std::size_t i = 0; i < out.table.size(); ++i) {
     const std::uint32_t s = a.table[i], t = b.table[i];
     if (s == winner || t == winner) {
@@ -28,14 +26,23 @@ SparseVolume combine(const SparseVolume& a, const SparseVolume& b, std::uint32_t
     } else if (s == neutral && t == neutral) {
       out.table[i] = neutral;
     } else {
-      out.table[i] = std::uint32_t(out.bricks.size());
-      copy(t == neutral ? a : b, i);
-      if (s == neutral || t == neutral) continue;
-      float* values = out.distance.data() + std::size_t(out.table[i]) * kBrickVoxels;
-      const float* other = a.distance.data() + std::size_t(s) * kBrickVoxels;
-      for (int v = 0; v < kBrickVoxels; ++v) values[v] = choose(values[v], other[v]);
+      out.table[i] = std::uint32_t(stored.size());
+      stored.push_back(i);
     }
   }
+  out.bricks.resize(stored.size());
+  out.distance.resize(stored.size() * kBrickVoxels);
+  tbb::parallel_for(std::size_t(0), stored.size(), [&](std::size_t slot) {
+    const std::uint32_t s = a.table[stored[slot]], t = b.table[stored[slot]];
+    const SparseVolume& from = t == neutral ? a : b;
+    const std::size_t first = std::size_t(t == neutral ? s : t) * kBrickVoxels;
+    float* values = out.distance.data() + slot * kBrickVoxels;
+    std::copy_n(from.distance.data() + first, kBrickVoxels, values);
+    out.bricks[slot] = from.bricks[first / kBrickVoxels];
+    if (s == neutral || t == neutral) return;
+    const float* other = a.distance.data() + std::size_t(s) * kBrickVoxels;
+    for (int v = 0; v < kBrickVoxels; ++v) values[v] = choose(values[v], other[v]);
+  });
   return out;
 }
 

@@ -38,6 +38,7 @@ class Sharpener {
  public:
   Sharpener(const SharpenOptions& options, double voxel_size, double detail, TriMesh& mesh)
       : options_(options), unit_(detail), voxels_(detail / voxel_size), mesh_(mesh) {
+    positions_.reserve(mesh.positions.size());
     for (const glm::vec3& p : mesh.positions) positions_.push_back(dvec3(p) / unit_);
     m_.positions = positions_, m_.normals = mesh.normals, m_.triangles = mesh.triangles;
     list_faces();
@@ -107,7 +108,6 @@ class Sharpener {
 
   /// Looks for creases at bent vertices some voxels apart.
   void find_creases() {
-    creases_.resize(list_.size());
     Flags covered(list_.size(), 0);
     std::vector<Index> seeds, ring, next;
     for (Index k = 0; k < list_.size(); ++k) {
@@ -126,10 +126,13 @@ class Sharpener {
         ring.swap(next);
       }
     }
+    creases_.resize(seeds.size());
+    crease_at_.assign(list_.size(), kNone);
+    for (Index s = 0; s < seeds.size(); ++s) crease_at_[seeds[s]] = s;
     tbb::enumerable_thread_specific<CreaseScratch> scratch;
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, seeds.size(), 64), [&](const auto& r) {
       for (std::size_t s = r.begin(); s < r.end(); ++s)
-        creases_[seeds[s]] = find_crease(m_, list_[seeds[s]], options_, scratch.local());
+        creases_[s] = find_crease(m_, list_[seeds[s]], options_, scratch.local());
     });
   }
 
@@ -139,8 +142,8 @@ class Sharpener {
     const std::size_t n = list_.size();
     std::vector<glm::vec2> pool(n), next(n);  // found; known
     for (std::size_t k = 0; k < n; ++k)
-      pool[k] = {creases_[k].finding == Crease::Finding::kFound,
-                 creases_[k].finding != Crease::Finding::kUnknown};
+      pool[k] = {crease_at(k).finding == Crease::Finding::kFound,
+                 crease_at(k).finding != Crease::Finding::kUnknown};
     for (int round = int(std::lround(kPool * voxels_)); round > 0; --round) {
       tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, 4096), [&](const auto& r) {
         for (std::size_t k = r.begin(); k < r.end(); ++k) {
@@ -188,7 +191,7 @@ class Sharpener {
   void spread() {
     host_.assign(list_.size(), kNone);
     for (Index k = 0; k < list_.size(); ++k)
-      if (sharp_[k] && creases_[k].flanks) host_[k] = k;
+      if (sharp_[k] && crease_at(k).flanks) host_[k] = k;
     for (int round = 3 + 2 * rings(kSpacing); round > 0; --round) {
       std::vector<Index> next = host_;
       for (Index k = 0; k < list_.size(); ++k) {
@@ -209,6 +212,12 @@ class Sharpener {
     }
   }
 
+  /// Nothing is known where none was looked for.
+  const Crease& crease_at(std::size_t rank) const {
+    static const Crease kUnknown;
+    return crease_at_[rank] == kNone ? kUnknown : creases_[crease_at_[rank]];
+  }
+
   Index host_of(Index vertex) const {
     return rank_[vertex] == kNone ? kNone : host_[rank_[vertex]];
   }
@@ -221,7 +230,7 @@ class Sharpener {
   /// The flank that each triangle near a crease belongs to, by its place and how it faces, as its
   /// normal there.
   void assign_triangles() {
-    flank_.assign(m_.triangles.size(), dvec3(0));
+    flank_at_.assign(m_.triangles.size(), kNone);
     std::vector<Index> assigned;
     for (Index f = 0; f < m_.triangles.size(); ++f) {
       const Corners p = corners_of(positions_, f);
@@ -237,20 +246,23 @@ class Sharpener {
       if (host == kNone) continue;
       const dvec3 at = middle - positions_[list_[host]];
       double best = std::numeric_limits<double>::max();
-      for (int k = 0; k < creases_[host].flanks; ++k) {
-        const Flank& flank = creases_[host].flank[k];
+      dvec3 chosen(0);
+      for (int k = 0; k < crease_at(host).flanks; ++k) {
+        const Flank& flank = crease_at(host).flank[k];
         const double distance = flank.distance(at);
         const dvec3 normal = flank.normal(at);
         const double cost = distance * distance + kTurned * (1 - glm::dot(facing, normal));
-        if (cost < best) best = cost, flank_[f] = normal;
+        if (cost < best) best = cost, chosen = normal;
       }
       assigned.push_back(f);
+      if (chosen != dvec3(0)) set_flank(f, chosen);
     }
     for (int pass = 0; pass < 3; ++pass)
       for (const Index f : assigned) join_neighbours(f);
   }
 
-  bool assigned(Index face) const { return flank_[face] != dvec3(0); }
+  bool assigned(Index face) const { return flank_at_[face] != kNone; }
+  const dvec3& flank(Index face) const { return flanks_[flank_at_[face]]; }
 
   Index across(Index face, int side) const {
     const Index a = m_.triangles[face][side], b = m_.triangles[face][(side + 1) % 3];
@@ -259,19 +271,27 @@ class Sharpener {
     return kNone;
   }
 
+  void set_flank(Index face, const dvec3& normal) {
+    if (!assigned(face)) {
+      flank_at_[face] = Index(flanks_.size());
+      flanks_.emplace_back();
+    }
+    flanks_[flank_at_[face]] = normal;
+  }
+
   /// A triangle with two neighbours of another flank joins them: the crease would double back.
   void join_neighbours(Index face) {
     std::array<Index, 3> others{};
     int count = 0;
+    const dvec3 own = assigned(face) ? flank(face) : dvec3(0);
     for (int side = 0; side < 3; ++side) {
       const Index f = across(face, side);
-      if (f != kNone && assigned(f) && glm::dot(flank_[f], flank_[face]) < kSameFlank)
-        others[count++] = f;
+      if (f != kNone && assigned(f) && glm::dot(flank(f), own) < kSameFlank) others[count++] = f;
     }
     for (int i = 1; i < count; ++i)
       for (int j = 0; j < i; ++j)
-        if (glm::dot(flank_[others[i]], flank_[others[j]]) > kSameFlank) {
-          flank_[face] = flank_[others[j]];
+        if (glm::dot(flank(others[i]), flank(others[j])) > kSameFlank) {
+          set_flank(face, flank(others[j]));
           return;
         }
   }
@@ -281,7 +301,7 @@ class Sharpener {
     placed_ = positions_;
     for (Index k = 0; k < list_.size(); ++k) {
       if (host_[k] == kNone) continue;
-      const Crease& crease = creases_[host_[k]];
+      const Crease& crease = crease_at(host_[k]);
       const Index vertex = list_[k];
       std::array<const Flank*, 3> flanks{};
       int count = 0;
@@ -300,8 +320,8 @@ class Sharpener {
       if (!assigned(f)) continue;
       int best = 0;
       for (int k = 1; k < crease.flanks; ++k)
-        if (glm::dot(flank_[f], crease.flank[k].normal(at)) >
-            glm::dot(flank_[f], crease.flank[best].normal(at)))
+        if (glm::dot(flank(f), crease.flank[k].normal(at)) >
+            glm::dot(flank(f), crease.flank[best].normal(at)))
           best = k;
       if (best == s) return true;
     }
@@ -312,7 +332,7 @@ class Sharpener {
   bool is_bad(Index face) const {
     const Corners p = corners_of(placed_, face);
     const dvec3 normal = unit_normal(p);
-    const dvec3 wanted = assigned(face) ? flank_[face] : unit_normal(corners_of(positions_, face));
+    const dvec3 wanted = assigned(face) ? flank(face) : unit_normal(corners_of(positions_, face));
     if (relative_height(p) < kFlat || glm::dot(normal, wanted) < kFacing) return true;
     for (int side = 0; side < 3; ++side) {
       const Index f = across(face, side);
@@ -374,12 +394,14 @@ class Sharpener {
   TriMesh& mesh_;
   std::vector<dvec3> positions_, placed_;
   CreaseMesh m_;
-  Flags bent_, sharp_;           // vertices; ranks
-  std::vector<Index> list_;      // the rounded vertices
-  std::vector<Index> rank_;      // of a vertex in the list
-  std::vector<Crease> creases_;  // at ranks
-  std::vector<Index> host_;      // rank of the crease that holds at a rank
-  std::vector<dvec3> flank_;     // the normal of the flank that a triangle belongs to, or 0
+  Flags bent_, sharp_;            // vertices; ranks
+  std::vector<Index> list_;       // the rounded vertices
+  std::vector<Index> rank_;       // of a vertex in the list
+  std::vector<Crease> creases_;   // where they were looked for
+  std::vector<Index> crease_at_;  // a rank's
+  std::vector<Index> host_;       // rank of the crease that holds at a rank
+  std::vector<Index> flank_at_;   // of the flank that a triangle belongs to, if any
+  std::vector<dvec3> flanks_;     // their normals
 };
 
 void check(bool good, const char* name, double value, const char* range) {

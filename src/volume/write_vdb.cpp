@@ -5,6 +5,7 @@
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -94,7 +95,7 @@ typename Grid::Ptr attribute_grid(const SparseVolume& volume, Known known, Value
   return grid;
 }
 
-Vec3fGrid::Ptr colour_grid(const SparseVolume& volume, const std::vector<glm::vec3>& colour) {
+Vec3fGrid::Ptr colour_grid(const SparseVolume& volume, const MaskedValues<glm::vec3>& colour) {
   auto grid = attribute_grid<Vec3fGrid>(
       volume, [&](std::size_t i) { return colour[i].r >= 0; },
       [&](std::size_t i) { return to_vdb(colour[i]); });
@@ -103,7 +104,7 @@ Vec3fGrid::Ptr colour_grid(const SparseVolume& volume, const std::vector<glm::ve
   return grid;
 }
 
-FloatGrid::Ptr confidence_grid(const SparseVolume& volume, const std::vector<float>& confidence) {
+FloatGrid::Ptr confidence_grid(const SparseVolume& volume, const MaskedValues<float>& confidence) {
   auto grid = attribute_grid<FloatGrid>(
       volume, [&](std::size_t i) { return confidence[i] >= 0; },
       [&](std::size_t i) { return confidence[i]; });
@@ -118,9 +119,23 @@ class ContentHash {
   void add(const std::vector<T>& values) {
     add_bytes(values.data(), values.size() * sizeof(T));
   }
+  /// As of a vector of all of them.
+  template <typename T>
+  void add(const MaskedValues<T>& values) {
+    static_assert(kBrickVoxels * sizeof(T) % 8 == 0);
+    std::array<T, kBrickVoxels> brick;
+    mix(values.size() * sizeof(T));
+    for (std::size_t first = 0; first < values.size(); first += kBrickVoxels) {
+      for (std::size_t i = 0; i < brick.size(); ++i) brick[i] = values[first + i];
+      mix_bytes(brick.data(), sizeof brick);
+    }
+  }
   void add_bytes(const void* data, std::size_t size) {
-    const auto* bytes = static_cast<const unsigned char*>(data);
     mix(size);
+    mix_bytes(data, size);
+  }
+  void mix_bytes(const void* data, std::size_t size) {
+    const auto* bytes = static_cast<const unsigned char*>(data);
     for (std::size_t i = 0; i < size; i += 8) {
       std::uint64_t word = 0;
       std::memcpy(&word, bytes + i, std::min<std::size_t>(8, size - i));

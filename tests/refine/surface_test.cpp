@@ -58,5 +58,43 @@ TEST(MakeGraph, EmptyMesh) {
   EXPECT_EQ(VertexGraph{}.vertices(), 0u);
 }
 
+TEST(NearDistances, AreThoseOfTheVolumeNearItsSurface) {
+  const SparseVolume volume = sample_volume({3, 3, 3}, torus(glm::dvec3(11.5), 7, 2.5));
+  const NearDistances near(volume);
+  std::size_t known = 0;
+  for (std::size_t brick = 0; brick < volume.table.size(); ++brick)
+    for (int v = 0; v < kBrickVoxels; ++v) {
+      const std::uint32_t slot = volume.table[brick];
+      const std::optional<float> found = near.at(brick, v);
+      if (slot >= SparseVolume::kInside) {
+        EXPECT_FALSE(found);
+        continue;
+      }
+      const float distance = volume.distance[slot * std::size_t(kBrickVoxels) + std::size_t(v)];
+      if (std::abs(distance) < kStillReach) {
+        ASSERT_TRUE(found);
+      }
+      if (found) {
+        EXPECT_EQ(*found, distance);
+      }
+      known += bool(found);
+    }
+  EXPECT_LT(known, volume.distance.size());
+}
+
+TEST(KeepStill, TakesWhatDidNotMove) {
+  const SparseVolume before = sample_volume({3, 3, 3}, torus(glm::dvec3(11.5), 7, 2.5));
+  SparseVolume moved = before, again = before;
+  for (std::size_t i = 0; i < moved.distance.size(); ++i) {
+    if (i % 2) moved.distance[i] += 0.25f;  // the others stay
+    again.distance[i] = -9;
+  }
+  keep_still(NearDistances(before), moved, again);
+  for (std::size_t i = 0; i < moved.distance.size(); ++i) {
+    const bool still = i % 2 == 0 && std::abs(moved.distance[i]) < kStillReach;
+    EXPECT_EQ(again.distance[i], still ? moved.distance[i] : -9);
+  }
+}
+
 }  // namespace
 }  // namespace photohull::refine

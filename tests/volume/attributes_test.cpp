@@ -29,8 +29,8 @@ std::size_t count_unknown(const SparseVolume& volume, const VolumeAttributes& at
   EXPECT_EQ(attributes.confidence.size(), volume.distance.size());
   std::size_t unknown = 0;
   for (std::size_t index = 0; index < volume.distance.size(); ++index) {
-    const glm::vec3 colour = attributes.colour.at(index);
-    const float confidence = attributes.confidence.at(index);
+    const glm::vec3 colour = attributes.colour[index];
+    const float confidence = attributes.confidence[index];
     const bool near = std::abs(volume.distance[index]) < VolumeAttributes::kReach;
     EXPECT_EQ(colour.r == VolumeAttributes::kUnknown, confidence == VolumeAttributes::kUnknown);
     if (confidence == VolumeAttributes::kUnknown) {

@@ -209,5 +209,25 @@ TEST(MoveSurface, OnlyWhereItIsTold) {
   EXPECT_NEAR(volume.at({16, 16, 25}), before.at({16, 16, 25}) - 1, 0.05);
 }
 
+TEST(DistanceFromMesh, SlabsChangeNothing) {
+  const SparseVolume volume = sample_volume({4, 5, 6}, torus({16, 20, 24}, 11, 4.5));
+  const TriMesh mesh = extract_mesh(volume);
+  std::vector<float> moves;
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+    moves.push_back(float(std::sin(double(i))));
+  const SparseVolume whole = distance_from_mesh(mesh, volume, volume.grid, 2.25);
+  SparseVolume moved = volume;
+  move_surface(moved, mesh, moves);
+  for (const std::size_t at_once : {std::size_t(1), std::size_t(100), mesh.positions.size() / 2}) {
+    const SparseVolume parts = distance_from_mesh(mesh, volume, volume.grid, 2.25, at_once);
+    EXPECT_EQ(parts.table, whole.table);
+    EXPECT_EQ(parts.bricks, whole.bricks);
+    EXPECT_EQ(parts.distance, whole.distance);
+    SparseVolume moved_in_parts = volume;
+    move_surface(moved_in_parts, mesh, moves, at_once);
+    EXPECT_EQ(moved_in_parts.distance, moved.distance);
+  }
+}
+
 }  // namespace
 }  // namespace photohull

@@ -23,10 +23,15 @@ SparseVolume ball() {
 }
 
 VolumeAttributes paint(const SparseVolume& volume) {
+  const auto all = std::make_shared<VoxelMask>(volume.bricks.size());
+  for (std::size_t i = 0; i < volume.distance.size(); ++i) all->mark(i);
+  all->count();
   VolumeAttributes attributes;
+  attributes.colour = {all, glm::vec3(0), glm::vec3(VolumeAttributes::kUnknown)};
+  attributes.confidence = {all, 0.0f, VolumeAttributes::kUnknown};
   for (std::size_t i = 0; i < volume.distance.size(); ++i) {
-    attributes.colour.emplace_back(0.25f, float(i % 100) / 100, 0.5f);
-    attributes.confidence.push_back(i % 2 ? 0.75f : VolumeAttributes::kUnknown);
+    attributes.colour.ranked(i) = {0.25f, float(i % 100) / 100, 0.5f};
+    attributes.confidence.ranked(i) = i % 2 ? 0.75f : VolumeAttributes::kUnknown;
   }
   return attributes;
 }
