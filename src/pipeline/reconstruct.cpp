@@ -376,6 +376,7 @@ class Job {
           sharpen_, in_.grid.voxel_size, std::max(detail, in_.grid.voxel_size), mesh));
     }
     fit_stems(mesh);
+    context_->release_deleted();  // stages to come need large pieces, and this one left small ones
     return mesh;
   }
 

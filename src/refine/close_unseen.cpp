@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
+#include <compare>
+#include <cstdint>
 
 namespace photohull::refine {
 namespace {
@@ -13,8 +14,11 @@ using glm::vec3;
 constexpr float kOver = 1.6f;       // over-relaxation
 constexpr float kOpposite = -0.3f;  // cosine between the normals of a wall's two sides
 
-std::int64_t key(const ivec3& cell) {
-  return (std::int64_t(cell.x) << 42) ^ (std::int64_t(cell.y) << 21) ^ std::int64_t(cell.z);
+/// Rises with z, then y, then x; cells lie within a million of the origin.
+std::uint64_t key(const ivec3& cell) {
+  constexpr int kMiddle = 1 << 20, kBits = 21;
+  const auto part = [](int c) { return std::uint64_t(std::uint32_t(c + kMiddle)) & 0x1fffffu; };
+  return part(cell.x) << (2 * kBits) | part(cell.y) << kBits | part(cell.z);
 }
 
 /// Seen vertices by the voxel that they lie in.
@@ -23,29 +27,36 @@ class SeenCells {
   SeenCells(const std::vector<vec3>& positions, const std::vector<vec3>& normals,
             const std::vector<bool>& seen)
       : positions_(positions), normals_(normals) {
+    cells_.reserve(std::size_t(std::count(seen.begin(), seen.end(), true)));
     for (std::size_t i = 0; i < positions.size(); ++i)
-      if (seen[i]) cells_[key(ivec3(glm::floor(positions[i])))].push_back(std::uint32_t(i));
+      if (seen[i]) cells_.push_back({key(ivec3(glm::floor(positions[i]))), std::uint32_t(i)});
+    std::sort(cells_.begin(), cells_.end());
   }
   /// Does seen surface that looks away from `normal` pass within a voxel of a point?
   bool wall_at(const vec3& point, const vec3& normal) const {
     const ivec3 cell(glm::floor(point));
     for (int x = -1; x <= 1; ++x)
-      for (int y = -1; y <= 1; ++y)
-        for (int z = -1; z <= 1; ++z) {
-          const auto found = cells_.find(key(cell + ivec3(x, y, z)));
-          if (found == cells_.end()) continue;
-          for (const std::uint32_t i : found->second)
-            if (glm::dot(normals_[i], normal) < kOpposite &&
-                glm::distance(positions_[i], point) < 1)
-              return true;
-        }
+      for (int y = -1; y <= 1; ++y) {
+        const std::uint64_t last = key(cell + ivec3(x, y, 1));
+        auto at =
+            std::lower_bound(cells_.begin(), cells_.end(), Entry{key(cell + ivec3(x, y, -1)), 0});
+        for (; at != cells_.end() && at->cell <= last; ++at)
+          if (glm::dot(normals_[at->vertex], normal) < kOpposite &&
+              glm::distance(positions_[at->vertex], point) < 1)
+            return true;
+      }
     return false;
   }
 
  private:
   const std::vector<vec3>& positions_;
   const std::vector<vec3>& normals_;
-  std::unordered_map<std::int64_t, std::vector<std::uint32_t>> cells_;
+  struct Entry {
+    std::uint64_t cell;
+    std::uint32_t vertex;
+    auto operator<=>(const Entry&) const = default;
+  };
+  std::vector<Entry> cells_;  // sorted
 };
 
 /// Grows the marked set by one ring of neighbours.
@@ -74,28 +85,28 @@ std::vector<float> close_unseen(const GridSpec& grid, const TriMesh& mesh, const
                                 const std::vector<bool>& seen, const CloseOptions& options) {
   const float scale = float(1 / grid.voxel_size);
   const vec3 offset((mesh.origin - grid.origin) / grid.voxel_size);
-  std::vector<vec3> start(mesh.positions.size());
+  const auto start = [&](std::size_t i) { return scale * mesh.positions[i] + offset; };
+  std::vector<vec3> p(mesh.positions.size());
   std::vector<std::uint32_t> unseen;
   const std::vector<bool> wide = wide_patches(graph, seen, options);
-  for (std::size_t i = 0; i < start.size(); ++i) {
-    start[i] = scale * mesh.positions[i] + offset;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    p[i] = start(i);
     if (wide[i] && !graph.of(i).empty()) unseen.push_back(std::uint32_t(i));
   }
-  std::vector<vec3> p = start;
   for (int iteration = 0; iteration < options.iterations; ++iteration)
     for (const std::uint32_t i : unseen) {
       vec3 sum(0);
       for (const std::uint32_t j : graph.of(i)) sum += p[j];
       p[i] += kOver * (sum / float(graph.of(i).size()) - p[i]);
     }
-  const SeenCells cells(start, mesh.normals, seen);
-  std::vector<float> d(start.size(), 0.0f);
+  const SeenCells cells(p, mesh.normals, seen);  // what is seen has not moved
+  std::vector<float> d(p.size(), 0.0f);
   const float longest = float(options.longest), thickness = float(options.thickness);
   for (const std::uint32_t i : unseen) {
     const vec3 n = mesh.normals[i];
-    float move = std::clamp(glm::dot(p[i] - start[i], n), -longest, longest);
+    float move = std::clamp(glm::dot(p[i] - start(i), n), -longest, longest);
     for (float t = 0.5f; t <= thickness - move; t += 0.5f)
-      if (cells.wall_at(start[i] - t * n, n)) {
+      if (cells.wall_at(start(i) - t * n, n)) {
         move = std::max(move, std::min(thickness - t, 0.0f));
         break;
       }

@@ -52,6 +52,33 @@ glm::dmat3 curvature_tensor(const VertexGraph& graph, std::span<const glm::vec3>
          k.y * (glm::outerProduct(u, v) + glm::outerProduct(v, u));
 }
 
+/// As render::to_voxels has them.
+std::vector<glm::vec3> positions_in_voxels(const GridSpec& grid, const TriMesh& mesh) {
+  constexpr std::size_t kPart = 4096;
+  std::vector<glm::vec3> out;
+  out.reserve(mesh.positions.size());
+  for (std::size_t first = 0; first < mesh.positions.size(); first += kPart)
+    for (const shaders::BakeVertex& surfel :
+         render::to_voxels(grid, mesh, first, std::min(kPart, mesh.positions.size() - first)))
+      out.emplace_back(surfel.position);
+  return out;
+}
+
+/// A symmetric matrix of floats: diagonal, and xy, xz, yz.
+struct Symmetric {
+  glm::vec3 diagonal{0}, beside{0};
+
+  Symmetric() = default;
+  explicit Symmetric(const glm::dmat3& m)
+      : diagonal(m[0][0], m[1][1], m[2][2]), beside(m[0][1], m[0][2], m[1][2]) {}
+  void operator+=(const Symmetric& o) { diagonal += o.diagonal, beside += o.beside; }
+  void operator/=(float divisor) { diagonal /= divisor, beside /= divisor; }
+  glm::dmat3 whole() const {
+    const glm::dvec3 d(diagonal), b(beside);
+    return {d.x, b.x, b.y, b.x, d.y, b.z, b.y, b.z, d.z};
+  }
+};
+
 shaders::FitParameters parameters_of(double noise_sigma, const FitOptions& o) {
   shaders::FitParameters p{};
   p.counts = {0, 0, o.steps, 0};
@@ -83,9 +110,9 @@ TangentAxes tangent_axes(const glm::dvec3& normal) {
 std::vector<glm::vec3> curvatures(const VertexGraph& graph, std::span<const glm::vec3> positions,
                                   std::span<const glm::vec3> normals, double most) {
   const std::size_t n = graph.vertices();
-  std::vector<glm::mat3> tensor(n), next(n);
+  std::vector<Symmetric> tensor(n), next(n);
   for_vertices(n, [&](std::size_t i) {
-    tensor[i] = glm::mat3(curvature_tensor(graph, positions, normals, i));
+    tensor[i] = Symmetric(curvature_tensor(graph, positions, normals, i));
   });
   for (int pass = 0; pass < kSmoothings; ++pass) {
     for_vertices(n, [&](std::size_t i) {
@@ -103,7 +130,7 @@ std::vector<glm::vec3> curvatures(const VertexGraph& graph, std::span<const glm:
   std::vector<glm::vec3> out(n);
   for_vertices(n, [&](std::size_t i) {
     const auto [u, v] = tangent_axes(glm::dvec3(normals[i]));
-    const glm::dmat3 k(tensor[i]);
+    const glm::dmat3 k = tensor[i].whole();
     const glm::dvec3 c(glm::dot(u, k * u), glm::dot(u, k * v), glm::dot(v, k * v));
     const double size = std::sqrt(c.x * c.x + 2 * c.y * c.y + c.z * c.z);
     if (std::isfinite(size)) out[i] = glm::vec3(c * std::min(1.0, most / std::max(size, 1e-9)));
@@ -118,14 +145,9 @@ std::vector<shaders::FitResult> fit_patches(gpu::Context& context, const GridSpe
                                             std::span<const shaders::MatchChoice> choices,
                                             double noise_sigma, const FitOptions& options) {
   PHOTOHULL_CHECK_OP(choices.size(), ==, mesh.positions.size());
-  const std::vector<shaders::BakeVertex> surfels = render::to_voxels(grid, mesh);
-  std::vector<glm::vec3> positions;
-  for (const shaders::BakeVertex& surfel : surfels) positions.emplace_back(surfel.position);
+  const std::vector<glm::vec3> positions = positions_in_voxels(grid, mesh);
   const std::vector<glm::vec3> bends =
       curvatures(graph, positions, mesh.normals, options.most_bend);
-  std::vector<shaders::FitShape> shapes(surfels.size());
-  for (std::size_t i = 0; i < shapes.size(); ++i)
-    shapes[i].curvature = glm::vec4(bends[i], holds_out(positions[i], options.hold_out));
 
   const glm::ivec2 size(images.texture().width(), images.texture().height());
   std::vector<shaders::GpuView> gpu_views;
@@ -134,7 +156,7 @@ std::vector<shaders::FitResult> fit_patches(gpu::Context& context, const GridSpe
   const Buffer views = Buffer::of(gpu_views);
   const auto program = gpu::Program::compute("refine_fit_patches.comp.glsl");
   shaders::FitParameters parameters = parameters_of(noise_sigma, options);
-  std::vector<shaders::FitResult> out(surfels.size());
+  std::vector<shaders::FitResult> out(positions.size());
   for (std::size_t i = 0; i < out.size(); ++i)
     out[i] = {glm::vec4(mesh.normals[i], 0),
               glm::vec4(0, shaders::kNoScore, shaders::kNoScore, shaders::kNoScore)};
@@ -144,9 +166,15 @@ std::vector<shaders::FitResult> fit_patches(gpu::Context& context, const GridSpe
         first, std::min(kBatch, fitted.size() - first));
     parameters.counts.x = int(part.size());
     const Buffer uniforms(sizeof parameters, &parameters);
-    const Buffer points = Buffer::of(pick(std::span<const shaders::BakeVertex>(surfels), part));
+    std::vector<shaders::BakeVertex> surfels;
+    std::vector<shaders::FitShape> shapes;
+    for (const std::uint32_t i : part) {
+      surfels.push_back({glm::vec4(positions[i], 0), glm::vec4(mesh.normals[i], 0)});
+      shapes.push_back({glm::vec4(bends[i], holds_out(positions[i], options.hold_out))});
+    }
+    const Buffer points = Buffer::of(surfels);
     const Buffer chosen = Buffer::of(pick(choices, part));
-    const Buffer shape = Buffer::of(pick(std::span<const shaders::FitShape>(shapes), part));
+    const Buffer shape = Buffer::of(shapes);
     const Buffer results(part.size() * sizeof(shaders::FitResult));
     uniforms.bind_uniform(0);
     views.bind_storage(0);

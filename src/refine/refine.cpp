@@ -28,6 +28,14 @@ constexpr double kLeastPixels = 3;  // that a voxel of the first level is wide, 
 constexpr double kNearReach = kStillReach;  // voxels of exact distance that a step needs
 constexpr double kAnglePerSpacing = 2.0;  // reach of a view's partners, in spacings of the cameras
 constexpr double kFullReach = SparseVolume::kBand;
+constexpr std::size_t kPart = std::size_t(1) << 19;  // surfels that are matched at once
+constexpr std::size_t kManySurfels = std::size_t(1) << 18;
+
+/// What was freed goes back to the system, where it is worth the time: the trees that meshes are
+/// extracted from leave holes all over.
+void give_back(const TriMesh& mesh) {
+  if (mesh.positions.size() >= kManySurfels) malloc_trim(0);
+}
 
 bool any_silhouette(std::span<const carving::Silhouette> silhouettes) {
   return std::any_of(silhouettes.begin(), silhouettes.end(),
@@ -37,6 +45,7 @@ bool any_silhouette(std::span<const carving::Silhouette> silhouettes) {
 std::vector<glm::vec3> voxel_positions(const GridSpec& grid, const TriMesh& mesh) {
   const glm::dvec3 offset = (mesh.origin - grid.origin) / grid.voxel_size;
   std::vector<glm::vec3> out;
+  out.reserve(mesh.positions.size());
   for (const glm::vec3& p : mesh.positions)
     out.emplace_back(glm::dvec3(p) / grid.voxel_size + offset);
   return out;
@@ -126,8 +135,11 @@ class Refiner {
         const bool is_final = last && i + 1 == iterations;
         const NearDistances before(volume);
         step(volume, hull, first, is_final, counts);
-        SparseVolume after = distance_from_mesh(extract_mesh(volume), volume, hull.grid,
-                                                is_final ? kFullReach : kNearReach);
+        const double reach = is_final ? kFullReach : kNearReach;
+        TriMesh mesh = extract_mesh(volume);
+        give_back(mesh);
+        SparseVolume after = distance_from_mesh(mesh, volume, hull.grid, reach);
+        mesh = {};
         keep_still(before, volume, after);
         volume = {};
         volume = bounded(after, bounding);
@@ -223,14 +235,37 @@ class Refiner {
     return bounded(volume, hull.volume());
   }
 
+  /// As match_patches does, some of the mesh's vertices after the other.
+  Matches match_in_parts(const GridSpec& grid, const TriMesh& mesh,
+                         std::span<const glm::vec3> bends,
+                         std::span<const shaders::MatchChoice> choices, const OffsetRange& range) {
+    const std::size_t total = mesh.positions.size();
+    Matches all;
+    all.range = range;
+    all.scores.reserve(total * std::size_t(range.count));
+    all.texture.reserve(total);
+    for (std::size_t first = 0; first < total; first += kPart) {
+      const std::size_t count = std::min(kPart, total - first);
+      const Matches part = match_patches(
+          context_, grid, render::to_voxels(grid, mesh, first, count),
+          bends.empty() ? bends : bends.subspan(first, count), choices.subspan(first, count),
+          images_, cameras_, options_.noise_sigma, range, options_.match);
+      all.scores.insert(all.scores.end(), part.scores.begin(), part.scores.end());
+      all.texture.insert(all.texture.end(), part.texture.begin(), part.texture.end());
+      all.samples += part.samples;
+    }
+    return all;
+  }
+
   /// Moves the surface to where the photographs agree; `first`: at the first level, `is_final`: the
   /// last step of all.
   void step(SparseVolume& volume, const SparseVolume& hull, bool first, bool is_final,
             LevelReport& counts) {
     const int offsets = first ? options_.coarse_offsets : options_.fine_offsets;
     const TriMesh mesh = extract_mesh(volume, settled_.coarse(volume.grid));
-    const VertexGraph graph = make_graph(mesh);
+    VertexGraph graph = make_graph(mesh);
     const std::vector<glm::vec3> positions = voxel_positions(volume.grid, mesh);
+    give_back(mesh);
     // The curvature of a guess that no silhouette shaped says nothing of the surface's.
     std::vector<glm::vec3> bends =
         first && !is_bounded()
@@ -243,9 +278,7 @@ class Refiner {
     const std::vector<Settled> settled = settled_.at(volume.grid, positions);
     for (std::size_t i = 0; i < choices.size(); ++i)
       if (is_settled(settled[i])) choices[i].second.w = 0;
-    Matches matches =
-        match_patches(context_, volume.grid, render::to_voxels(volume.grid, mesh), bends, choices,
-                      images_, cameras_, options_.noise_sigma, range, options_.match);
+    Matches matches = match_in_parts(volume.grid, mesh, bends, choices, range);
     aggregate(graph, options_.aggregations, matches);
     std::vector<Peak> peaks = find_peaks(matches, options_.peak);
     next_settled_ = SettledBricks(volume.grid, positions, bends, matches, peaks, choices, cameras_,
@@ -254,6 +287,7 @@ class Refiner {
     matches.scores = {};
     KnownSurface known = known_surface(positions, mesh.normals, peaks, choices, options_.look);
     choices = {};
+    give_back(mesh);
     const std::vector<Sightline> sightlines =
         find_sightlines(context_, volume.grid, known, images_, cameras_, options_.noise_sigma,
                         options_.match, options_.look);
@@ -268,6 +302,10 @@ class Refiner {
       pull_to_hull(hull, graph, positions, matches.texture, trust, options_.rims, peaks);
     std::vector<float> moves =
         regularize(graph, peaks, positions, mesh.normals, trust, options_.regularize);
+    const auto told =
+        std::count_if(peaks.begin(), peaks.end(), [](const Peak& peak) { return peak.weight > 0; });
+    counts.evidence = double(told) / double(std::max<std::size_t>(peaks.size(), 1));
+    peaks = {};
     if (!is_bounded())  // plain background is no surface: nothing says where it is
       for (std::size_t i = 0; i < seen.size(); ++i)
         seen[i] = seen[i] && matches.texture[i] >= options_.settle.least_texture;
@@ -276,6 +314,7 @@ class Refiner {
       for (std::size_t i = 0; i < moves.size(); ++i)
         if (closing[i] != 0) moves[i] = closing[i];
     }
+    graph = {};
     move_surface(volume, mesh, moves);
     counts.freed +=
         std::int64_t(free_sightlines(sightlines, known_positions, cameras_, options_.look, volume));
@@ -284,9 +323,6 @@ class Refiner {
     counts.samples += matches.samples;
     double sum = 0;
     for (const float move : moves) sum += std::abs(move);
-    const auto told =
-        std::count_if(peaks.begin(), peaks.end(), [](const Peak& peak) { return peak.weight > 0; });
-    counts.evidence = double(told) / double(std::max<std::size_t>(peaks.size(), 1));
     counts.mean_move = sum / double(std::max<std::size_t>(moves.size(), 1));
   }
 
@@ -302,17 +338,16 @@ class Refiner {
       const bool last = i + 1 == options_.photometric;
       progress.check_cancelled();
       const auto start = std::chrono::steady_clock::now();
-      const TriMesh mesh = extract_mesh(volume, settled_.coarse(volume.grid));
-      const VertexGraph graph = make_graph(mesh);
-      const std::vector<glm::vec3> positions = voxel_positions(volume.grid, mesh);
+      TriMesh mesh = extract_mesh(volume, settled_.coarse(volume.grid));
+      VertexGraph graph = make_graph(mesh);
+      std::vector<glm::vec3> positions = voxel_positions(volume.grid, mesh);
+      give_back(mesh);
       std::vector<shaders::MatchChoice> choices =
           choose_views(context_, volume.grid, mesh, images_, cameras_, options_.match);
       const std::vector<Settled> settled = settled_.at(volume.grid, positions);
       for (std::size_t k = 0; k < choices.size(); ++k)
         if (is_settled(settled[k]) && settled[k] != Settled::kFlat) choices[k].second.w = 0;
-      Matches matches =
-          match_patches(context_, volume.grid, render::to_voxels(volume.grid, mesh), {}, choices,
-                        images_, cameras_, options_.noise_sigma, {}, options_.match);
+      Matches matches = match_in_parts(volume.grid, mesh, {}, choices, {});
       matches.scores = {};
       auto results = fit_patches(context_, volume.grid, mesh, graph, images_, cameras_, choices,
                                  options_.noise_sigma, options_.fit);
@@ -352,7 +387,10 @@ class Refiner {
         seat_outlines(hull, cameras_, silhouettes_, mesh, graph, positions, told, tight_at,
                       options_.seat, moves);
       if (!last) before = volume;
+      graph = {};
+      positions = {};
       move_surface(volume, mesh, moves);
+      mesh = {};
       // Not measured anew: steps are short, and passing through the mesh costs more than they gain.
       volume = bounded(volume, bounding);
       FitReport pass;

@@ -4,81 +4,93 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 
 namespace photohull::refine {
 namespace {
 
-/// The voxels nearest to points, by their slices across z; what touches the lattice or lies in it.
-class SlicedPoints {
+/// Voxels as bits of bricks. The lattice has a brick more on every side, for what lies beside it.
+class BitBricks {
  public:
-  SlicedPoints(std::span<const glm::vec3> points, const glm::ivec3& n)
-      : first_(std::size_t(n.z) + 3) {
-    const auto visit = [&](auto&& f) {
-      for (const glm::vec3& point : points) {
-        const glm::ivec3 middle = nearest_voxel(glm::dvec3(point));
-        if (glm::all(glm::greaterThanEqual(middle, glm::ivec3(-1))) &&
-            glm::all(glm::lessThanEqual(middle, n)))
-          f(std::size_t(middle.z + 1), glm::ivec2(middle));
-      }
-    };
-    visit([&](std::size_t slice, const glm::ivec2&) { ++first_[slice + 1]; });
-    for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
-    places_.resize(first_.back());
-    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-    visit([&](std::size_t slice, const glm::ivec2& place) { places_[next[slice]++] = place; });
+  explicit BitBricks(const GridSpec& grid)
+      : n_(grid.bricks + 2),
+        slot_of_(std::size_t(n_.x) * std::size_t(n_.y) * std::size_t(n_.z), kNone) {}
+
+  /// The voxel nearest to a point, if that touches the lattice.
+  void mark(const glm::vec3& point) {
+    const glm::ivec3 voxel = nearest_voxel(glm::dvec3(point)) + kBrickEdge;
+    if (glm::any(glm::lessThan(voxel, glm::ivec3(kBrickEdge - 1))) ||
+        glm::any(glm::greaterThan(voxel, kBrickEdge * (n_ - 1))))
+      return;
+    std::uint32_t& slot = slot_of_[index(voxel / kBrickEdge)];
+    if (slot == kNone) {
+      slot = std::uint32_t(bits_.size());
+      bits_.emplace_back();
+    }
+    bits_[slot][std::size_t(voxel.z & 7)] |= std::uint64_t(1)
+                                             << (8 * (voxel.y & 7) + (voxel.x & 7));
   }
 
-  /// z from -1 to the number of slices.
-  std::span<const glm::ivec2> of(int z) const {
-    const auto slice = std::size_t(z + 1);
-    return std::span(places_).subspan(first_[slice], first_[slice + 1] - first_[slice]);
+  /// The eight voxels along x of a row of a brick; y and z of the larger lattice.
+  std::uint8_t row(int brick_x, int y, int z) const {
+    const std::uint32_t slot = slot_of_[index({brick_x, y / kBrickEdge, z / kBrickEdge})];
+    return slot == kNone ? 0 : std::uint8_t(bits_[slot][std::size_t(z & 7)] >> (8 * (y & 7)));
   }
+
+  /// Is there anything in the bricks about this one along y and z?
+  bool is_empty_about(const glm::ivec3& brick) const {
+    for (int z = -1; z <= 1; ++z)
+      for (int y = -1; y <= 1; ++y)
+        if (slot_of_[index(brick + glm::ivec3(0, y, z))] != kNone) return false;
+    return true;
+  }
+
+  glm::ivec3 bricks() const { return n_; }
 
  private:
-  std::vector<std::size_t> first_;
-  std::vector<glm::ivec2> places_;
-};
+  static constexpr std::uint32_t kNone = 0xffffffffu;
 
-/// A set of voxels of one slice, as bits.
-class Slice {
- public:
-  explicit Slice(const glm::ivec3& n)
-      : n_(n), words_((n.x + 63) / 64), row_used_(std::size_t(n.y)) {
-    bits_.resize(std::size_t(words_) * std::size_t(n.y));
+  std::size_t index(const glm::ivec3& b) const {
+    return (std::size_t(b.z) * std::size_t(n_.y) + std::size_t(b.y)) * std::size_t(n_.x) +
+           std::size_t(b.x);
   }
-
-  void mark_around(const glm::ivec2& middle) {
-    const glm::ivec2 low = glm::max(middle - 1, 0);
-    const glm::ivec2 high = glm::min(middle + 1, glm::ivec2(n_) - 1);
-    for (int y = low.y; y <= high.y; ++y) {
-      row_used_[std::size_t(y)] = 1;
-      for (int x = low.x; x <= high.x; ++x) row(y)[x / 64] |= std::uint64_t(1) << (x % 64);
-    }
-  }
-
-  /// Appends what is marked, and forgets it.
-  void take(int z, VoxelSet& out) {
-    const Lattice lattice(n_);
-    for (int y = 0; y < n_.y; ++y) {
-      if (!row_used_[std::size_t(y)]) continue;
-      for (int w = 0; w < words_; ++w) {
-        for (std::uint64_t left = row(y)[w]; left != 0; left &= left - 1)
-          out.push_back(lattice.index({64 * w + std::countr_zero(left), y, z}));
-        row(y)[w] = 0;
-      }
-      row_used_[std::size_t(y)] = 0;
-    }
-  }
-
- private:
-  std::uint64_t* row(int y) { return bits_.data() + std::size_t(y) * std::size_t(words_); }
 
   glm::ivec3 n_;
-  int words_;
-  std::vector<std::uint64_t> bits_;
-  std::vector<std::uint8_t> row_used_;
+  std::vector<std::uint32_t> slot_of_;
+  std::vector<std::array<std::uint64_t, kBrickEdge>> bits_;  // by z; y * 8 + x in each
 };
+
+/// Appends the voxels of a slice that are marked or beside marked ones; z of the lattice.
+void take_slice(const BitBricks& marks, const Lattice& lattice, int z, VoxelSet& out) {
+  const glm::ivec3 n = marks.bricks();
+  std::vector<std::uint32_t> wide(
+      static_cast<std::size_t>(n.x));  // a byte a brick, and its neighbours' bits
+  for (int brick_y = 1; brick_y + 1 < n.y; ++brick_y) {
+    std::vector<int> used;
+    for (int x = 0; x < n.x; ++x)
+      if (!marks.is_empty_about({x, brick_y, z / kBrickEdge + 1})) used.push_back(x);
+    if (used.empty()) continue;
+    for (int y = kBrickEdge * brick_y; y < kBrickEdge * (brick_y + 1); ++y) {
+      std::fill(wide.begin(), wide.end(), 0u);
+      for (const int x : used) {
+        std::uint32_t bits = 0;
+        for (int k = 0; k <= 2; ++k)
+          for (int j = -1; j <= 1; ++j) bits |= marks.row(x, y + j, z + kBrickEdge - 1 + k);
+        bits = bits << 1 | bits << 2 | bits;  // bit i + 1 is voxel i of the brick
+        wide[std::size_t(x)] |= bits;
+      }
+      for (int x = 1; x + 1 < n.x; ++x) {
+        std::uint32_t bits = wide[std::size_t(x)] >> 1 & 0xffu;
+        bits |= wide[std::size_t(x - 1)] >> 9 & 1u;
+        bits |= (wide[std::size_t(x + 1)] & 1u) << 7;
+        for (; bits != 0; bits &= bits - 1)
+          out.push_back(
+              lattice.index({kBrickEdge * (x - 1) + std::countr_zero(bits), y - kBrickEdge, z}));
+      }
+    }
+  }
+}
 
 }  // namespace
 
@@ -89,28 +101,29 @@ VoxelSet sorted(const std::vector<VoxelSet>& parts) {
   return all;
 }
 
-VoxelSet around(std::span<const glm::vec3> points, const GridSpec& grid) {
-  const glm::ivec3 n = grid.voxels();
-  const SlicedPoints sliced(points, n);
-  constexpr int kSlices = 8;  // that a task takes
-  std::vector<VoxelSet> parts(std::size_t((n.z + kSlices - 1) / kSlices));
-  tbb::parallel_for(std::size_t(0), parts.size(), [&](std::size_t part) {
-    Slice slice(n);
-    const int end = std::min(n.z, int(part + 1) * kSlices);
-    for (int z = int(part) * kSlices; z < end; ++z) {
-      for (int beside = z - 1; beside <= z + 1; ++beside)
-        for (const glm::ivec2& middle : sliced.of(beside)) slice.mark_around(middle);
-      slice.take(z, parts[part]);
-    }
-  });
-  std::size_t size = 0;
-  for (const VoxelSet& part : parts) size += part.size();
-  VoxelSet out;
-  out.reserve(size);
-  for (VoxelSet& part : parts) {
-    out.insert(out.end(), part.begin(), part.end());
-    VoxelSet().swap(part);
+void for_around(std::span<const std::span<const glm::vec3>> points, const GridSpec& grid,
+                const std::function<void(const VoxelSet&)>& take) {
+  constexpr int kLayers = 4;  // of bricks, at once
+  BitBricks marks(grid);
+  for (const std::span<const glm::vec3> part : points)
+    for (const glm::vec3& point : part) marks.mark(point);
+  const Lattice lattice(grid);
+  for (int layer = 0; layer < grid.bricks.z; layer += kLayers) {
+    const int first = kBrickEdge * layer;
+    std::vector<VoxelSet> slices(
+        std::size_t(kBrickEdge * std::min(kLayers, grid.bricks.z - layer)));
+    tbb::parallel_for(std::size_t(0), slices.size(), [&](std::size_t i) {
+      take_slice(marks, lattice, first + int(i), slices[i]);
+    });
+    for (const VoxelSet& slice : slices)
+      if (!slice.empty()) take(slice);
   }
+}
+
+VoxelSet around(std::span<const glm::vec3> points, const GridSpec& grid) {
+  VoxelSet out;
+  for_around(std::span(&points, 1), grid,
+             [&](const VoxelSet& part) { out.insert(out.end(), part.begin(), part.end()); });
   return out;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -40,6 +41,10 @@ VoxelSet sorted(const std::vector<VoxelSet>& parts);
 
 /// The voxels nearest to the points, with their 26 neighbours, each once.
 VoxelSet around(std::span<const glm::vec3> points, const GridSpec& grid);
+/// The same of points in several lists, some at a time: calls take(part) for parts that follow each
+/// other.
+void for_around(std::span<const std::span<const glm::vec3>> points, const GridSpec& grid,
+                const std::function<void(const VoxelSet&)>& take);
 
 bool contains(const VoxelSet& set, std::uint64_t index);
 

@@ -24,12 +24,17 @@ void subdivide(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, int s
 }  // namespace
 
 std::vector<shaders::BakeVertex> to_voxels(const GridSpec& grid, const TriMesh& mesh) {
-  std::vector<shaders::BakeVertex> out(mesh.positions.size());
+  return to_voxels(grid, mesh, 0, mesh.positions.size());
+}
+
+std::vector<shaders::BakeVertex> to_voxels(const GridSpec& grid, const TriMesh& mesh,
+                                           std::size_t first, std::size_t count) {
+  std::vector<shaders::BakeVertex> out(count);
   const glm::dvec3 offset = (mesh.origin - grid.origin) / grid.voxel_size;
   const double scale = 1.0 / grid.voxel_size;
   for (std::size_t i = 0; i < out.size(); ++i) {
-    const glm::vec3 voxel(scale * glm::dvec3(mesh.positions[i]) + offset);
-    out[i] = {glm::vec4(voxel, 0), glm::vec4(mesh.normals[i], 0)};
+    const glm::vec3 voxel(scale * glm::dvec3(mesh.positions[first + i]) + offset);
+    out[i] = {glm::vec4(voxel, 0), glm::vec4(mesh.normals[first + i], 0)};
   }
   return out;
 }

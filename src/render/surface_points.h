@@ -15,6 +15,9 @@ inline constexpr double kPointSpacing = 2.0;  ///< voxels; a quad's diagonal ins
 
 /// The mesh's vertices in voxel coordinates, as the kernels take them.
 std::vector<shaders::BakeVertex> to_voxels(const GridSpec& grid, const TriMesh& mesh);
+/// Of `count` vertices from `first` on.
+std::vector<shaders::BakeVertex> to_voxels(const GridSpec& grid, const TriMesh& mesh,
+                                           std::size_t first, std::size_t count);
 
 /// Points on the triangles that have an edge longer than kPointSpacing, a voxel apart or less, with
 /// the triangles' own normals; the corners are left out.
