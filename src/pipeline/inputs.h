@@ -88,6 +88,10 @@ class Inputs {
   void remember_right_cameras(const CameraRefinement& found, bool used);
   void leave_out(std::span<const int> wrong, const std::string& why);
   void drop_view(int index);
+  /// Puts thin parts that masks have lost, by `eaten` pixels around every outline, back into them.
+  void restore_eaten(double eaten);
+  /// Are the masks too small, as the photographs tell?
+  bool masks_are_eaten() const;
 
   Scene full_;                           ///< the scene in the files' pixels, until they are decoded
   std::vector<double> scales_;           ///< of its views

@@ -46,6 +46,7 @@ std::string Report::to_json() const {
                      {"looked_at", thin.looked_at},
                      {"unexplained", thin.unexplained},
                      {"placed", thin.placed},
+                     {"restored_pixels", thin.restored_pixels},
                      {"stem_vertices", thin.stem_vertices}};
   if (!missing_view.empty()) j["thin_parts"]["missing_png_shows"] = missing_view;
   if (!thin.worst_view.empty()) j["thin_parts"]["worst_view"] = thin.worst_view;
