@@ -93,8 +93,8 @@ void restore_lines(const std::vector<LinePoint>& lines, std::span<const dvec2> p
   const cv::Mat alone = (pixels_of_mask > kClear) & (marks == 0);
   const cv::Mat share = matte(pixels, palette_of(pixels, distance), marks, alone);
   for (std::size_t i = 0; i < view.mask.coverage.size(); ++i)
-    view.mask.coverage[i] = std::max(
-        view.mask.coverage[i], std::uint8_t(std::lround(255 * share.ptr<float>()[i])));
+    view.mask.coverage[i] =
+        std::max(view.mask.coverage[i], std::uint8_t(std::lround(255 * share.ptr<float>()[i])));
   std::vector<LinePoint> rest;
   for (const LinePoint& p : lines) {
     double found = 0;

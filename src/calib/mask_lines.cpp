@@ -23,10 +23,10 @@ constexpr double kNarrowest = 0.1;          // pixels
 constexpr double kLeastBend = 0.4 * kNarrowest * 0.5;  // of the smoothed coverage across a line
 // Of a line's smoothed profile: the Gaussian's, and that of a pixel's area.
 constexpr double kProfileVariance = 1 + 1.0 / 12;
-constexpr double kWithin = 0.55;   // pixels: a line's point belongs to the pixel that holds it
-constexpr double kStep = 0.25;     // pixels, of the profile across a line
-constexpr int kSteps = 14;         // to either side
-constexpr double kFoot = 0.5;      // of the middle's coverage: what lies beside a line has less
+constexpr double kWithin = 0.55;  // pixels: a line's point belongs to the pixel that holds it
+constexpr double kStep = 0.25;    // pixels, of the profile across a line
+constexpr int kSteps = 14;        // to either side
+constexpr double kFoot = 0.5;     // of the middle's coverage: what lies beside a line has less
 constexpr std::uint32_t kFewestPoints = 6;  // of a line
 constexpr std::uint8_t kSolid = 128;        // of 255, of a dash
 constexpr std::size_t kLargestDash = 48;    // pixels

@@ -33,9 +33,9 @@ constexpr double kSigmas = 5;     // of the noise, that a line must bend by
 constexpr double kBendNoise = 0.244, kChannelNoise = 1.5;
 constexpr double kStep = 0.5;                       // pixels, of the profile across a line
 constexpr double kNearestSide = 1.5, kReach = 4.5;  // pixels to the background beside a line
-constexpr double kClear = 0.5;    // pixels from the mask: its own edge is no background
-constexpr double kAlike = 0.5;    // of a line's contrast: difference of its two sides
-constexpr double kPlateau = 0.3;  // of the contrast: what belongs to the side
+constexpr double kClear = 0.5;              // pixels from the mask: its own edge is no background
+constexpr double kAlike = 0.5;              // of a line's contrast: difference of its two sides
+constexpr double kPlateau = 0.3;            // of the contrast: what belongs to the side
 constexpr double kNarrowest = 0.1;          // pixels
 constexpr double kUnknownWidth = 1;         // pixels, where the object shows no such colour
 constexpr std::uint32_t kFewestPoints = 6;  // of a line
@@ -119,7 +119,8 @@ class Measure {
     const double contrast = 0.5 * (one->level + other->level) - middle;
     if (!(contrast > kSigmas * noise_)) return std::nullopt;
     if (std::abs(one->level - other->level) > kAlike * contrast) return std::nullopt;
-    const dvec3 right = colour(ridge, *one, 1, contrast), left = colour(ridge, *other, -1, contrast);
+    const dvec3 right = colour(ridge, *one, 1, contrast),
+                left = colour(ridge, *other, -1, contrast);
     dvec3 total(0);
     for (double s = -other->reach; s <= one->reach; s += kStep) {
       const double t = (s + other->reach) / (one->reach + other->reach);
@@ -146,7 +147,8 @@ class Measure {
   bool is_background(const dvec2& p) const {
     const int x = int(std::lround(p.x)), y = int(std::lround(p.y));
     return x >= 0 && y >= 0 && x < distance_.width && y < distance_.height &&
-           distance_.pixels[std::size_t(y) * std::size_t(distance_.width) + std::size_t(x)] > kClear;
+           distance_.pixels[std::size_t(y) * std::size_t(distance_.width) + std::size_t(x)] >
+               kClear;
   }
 
   std::optional<Side> side(const Ridge& ridge, double sign) const {

@@ -52,8 +52,7 @@ dvec3 Pixels::bilinear(const cv::Mat& from, const dvec2& p) {
     const cv::Vec3f& c = from.at<cv::Vec3f>(y + j, x + i);
     return dvec3(c[0], c[1], c[2]);
   };
-  return (1 - v) * ((1 - u) * at(0, 0) + u * at(1, 0)) +
-         v * ((1 - u) * at(0, 1) + u * at(1, 1));
+  return (1 - v) * ((1 - u) * at(0, 0) + u * at(1, 0)) + v * ((1 - u) * at(0, 1) + u * at(1, 1));
 }
 
 std::vector<dvec3> palette_of(const Pixels& pixels, const SilhouetteDistance& distance) {

@@ -20,18 +20,20 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 
-constexpr double kStep = 0.35;         // pixels between points of a ray
-constexpr double kCoarse = 4;          // pixels of a ray that are given up as one
-constexpr double kSafety = 0.8;        // of the distance to an outline that a ray may skip
-constexpr double kBorne = 0.35;        // pixels beside an outline that are no disagreement
-constexpr double kFullMiss = 2;        // pixels beside an outline that are a full one
-constexpr double kNear = 1.5;          // pixels from a line that passes through a place
+constexpr double kStep = 0.35;          // pixels between points of a ray
+constexpr double kCoarse = 4;           // pixels of a ray that are given up as one
+constexpr double kSafety = 0.8;         // of the distance to an outline that a ray may skip
+constexpr double kBorne = 0.35;         // pixels beside an outline that are no disagreement
+constexpr double kFullMiss = 2;         // pixels beside an outline that are a full one
+constexpr double kNear = 1.5;           // pixels from a line that passes through a place
 constexpr double kSameDirection = 0.3;  // sine of the angle between a direction and a line's plane
-constexpr double kTwoPlanes = 0.15;    // sine of the angle between planes that meet in a direction
+constexpr double kTwoPlanes = 0.15;     // sine of the angle between planes that meet in a direction
+constexpr double kForeshortened = 0.3;  // least sine between a direction and the line of sight
 constexpr int kFewestViews = 4;
 constexpr std::size_t kStride = 4;
 constexpr double kNeighbour = 6;  // pixels
 constexpr int kHintSteps = 8;
+constexpr int kMostSteps = 64;
 constexpr double kLink = 2.5;    // pixels between neighbours on a line
 constexpr double kAlong = 0.87;  // cosine of the angle between these
 constexpr int kMostRounds = 6;
@@ -206,9 +208,20 @@ class Round {
         t = end;
       else
         for (double skip = 0; t < end && t < part->second; t += std::max(kStep * pixel, skip))
-          if (stands(ray, t, skip)) return t;
+          if (stands(ray, t, skip)) return middle(ray, t, part->second);
     }
     return 0;
+  }
+
+  /// Of the part of the ray from `from` on, up to `end`, where the candidate stands.
+  double middle(const Ray& ray, double from, double end) const {
+    const double step = kStep * from / cameras_[ray.view].intrinsics.fx;
+    double skip, last = from;
+    for (int i = 1; i <= kMostSteps && from + i * step < end; ++i) {
+      if (!stands(ray, from + i * step, skip)) break;
+      last = from + i * step;
+    }
+    return 0.5 * (from + last);
   }
 
   /// Normal of the plane through the camera and the line, world axes.
@@ -269,16 +282,17 @@ class Round {
     }
     if (seen < kFewestViews || missing > options_.most_missing * seen) return false;
     if (ray.continues) return true;
-    const double least =
-        std::max(double(options_.least_support), options_.support_share * seen);
+    const double least = std::max(double(options_.least_support), options_.support_share * seen);
     if (1 + double(planes.size()) < least) return false;
     // The direction in which most of the planes meet this line's.
+    const dvec3 sight = glm::normalize(ray.direction);
     int agree = 0;
     for (const dvec3& other : planes) {
       const dvec3 cross = glm::cross(ray.plane, other);
       const double length = glm::length(cross);
       if (length < kTwoPlanes) continue;
       const dvec3 direction = cross / length;
+      if (glm::length(glm::cross(direction, sight)) < kForeshortened) continue;
       const auto along = std::count_if(planes.begin(), planes.end(), [&](const dvec3& n) {
         return std::abs(glm::dot(n, direction)) < kSameDirection;
       });
@@ -299,12 +313,14 @@ class Round {
 
 }  // namespace
 
-ConfirmedLines confirm_lines(
-    const Box& box, std::span<const Camera> cameras, std::span<const Silhouette> silhouettes,
-    std::vector<std::vector<LinePoint>> candidates, const ConfirmOptions& options,
-    Progress* progress) {
+ConfirmedLines confirm_lines(const Box& box, std::span<const Camera> cameras,
+                             std::span<const Silhouette> silhouettes,
+                             std::vector<std::vector<LinePoint>> candidates,
+                             const ConfirmOptions& options, Progress* progress) {
   PHOTOHULL_CHECK_OP(cameras.size(), ==, silhouettes.size());
   PHOTOHULL_CHECK_OP(cameras.size(), ==, candidates.size());
+  for (std::size_t v = 0; v < candidates.size(); ++v)
+    if (!silhouettes[v].distance) candidates[v].clear();
   std::vector<dvec3> places;
   for (int round = 0; round < kMostRounds; ++round) {
     if (progress) progress->check_cancelled();

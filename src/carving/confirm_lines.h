@@ -32,9 +32,9 @@ struct ConfirmedLines {
 /// the point's ray, in the box, at which most of the views that see it have foreground or a
 /// candidate, and enough of them a candidate that runs along the same direction in space. Views
 /// without a distance say nothing. Throws Cancelled when `progress` was asked to stop.
-ConfirmedLines confirm_lines(
-    const Box& box, std::span<const Camera> cameras, std::span<const Silhouette> silhouettes,
-    std::vector<std::vector<LinePoint>> candidates, const ConfirmOptions& options,
-    Progress* progress = nullptr);
+ConfirmedLines confirm_lines(const Box& box, std::span<const Camera> cameras,
+                             std::span<const Silhouette> silhouettes,
+                             std::vector<std::vector<LinePoint>> candidates,
+                             const ConfirmOptions& options, Progress* progress = nullptr);
 
 }  // namespace photohull::carving

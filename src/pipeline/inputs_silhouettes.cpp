@@ -186,8 +186,8 @@ std::vector<carving::Silhouette> Inputs::silhouettes_of_views() const {
     if (mask.empty())
       out.push_back({&mask});
     else
-      out.push_back({i >= widened.size() || widened[i].empty() ? &mask : &widened[i], &silhouettes[i], &lines[i],
-                     made_masks_.contains(views[i].name)});
+      out.push_back({i >= widened.size() || widened[i].empty() ? &mask : &widened[i],
+                     &silhouettes[i], &lines[i], made_masks_.contains(views[i].name)});
   }
   return out;
 }
