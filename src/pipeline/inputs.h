@@ -97,6 +97,7 @@ class Inputs {
   std::vector<double> scales_;           ///< of its views
   std::vector<Outline> outlines_;        ///< of the masks, one a view
   std::vector<double> room_;             ///< pixels around each view's outline, for what it is off
+  bool restored_ = false;                ///< were eaten stems put back into the masks?
   std::set<std::string> right_cameras_;  ///< names of views
   std::set<std::string> made_masks_;     ///< names of views whose masks come from the background
 

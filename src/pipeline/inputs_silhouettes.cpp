@@ -31,6 +31,7 @@ constexpr double kBlurred = 0.75, kBlurredWithoutMasks = 0.69;
 constexpr std::size_t kMostNamed = 5;
 constexpr double kUnexplained = 0.02;  // of the foreground: more is told
 constexpr double kPartialPixel = 1;    // eaten together with the whole ones
+constexpr std::size_t kRestored = 6;   // pixels a view: a line, as photo_lines.h counts them
 constexpr double kFarOff = 0.005;      // of the image's longer side: this view is wrong
 
 /// Views whose outlines' tangents are far from all others', who agree; none where these are more
@@ -98,9 +99,11 @@ void Inputs::restore_eaten(double eaten) {
       *scene.box, cameras, silhouettes_of_views(), std::move(found), confirm, &progress_);
   report_.thin.restored_pixels = std::int64_t(confirmed.places.size());
   if (confirmed.places.empty()) return;
-  warn(concat("the masks lack thin parts that the photographs show (", confirmed.places.size(),
-              " px of them in all views): they were put back (--mask-offset 0 takes the masks as "
-              "they are)"));
+  restored_ = confirmed.places.size() >= kRestored * views.size();
+  if (restored_)
+    warn(concat("the masks lack thin parts that the photographs show (", confirmed.places.size(),
+                " px of them in all views): they were put back (--mask-offset 0 takes the masks as "
+                "they are)"));
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
     if (views[i].mask.empty() || made_masks_.contains(views[i].name)) return;
     std::vector<glm::dvec2> places;
@@ -144,7 +147,7 @@ void Inputs::bear_disagreement() {
   room_.assign(views.size(), 0);
   if (options_.views_may_miss || !any_mask()) return;
   // What was taken from the tips of thin parts is no error of a view as a whole.
-  if (report_.thin.restored_pixels == 0) room_ = outlines_off(fit_silhouettes(cameras, outlines_));
+  if (!restored_) room_ = outlines_off(fit_silhouettes(cameras, outlines_));
   const double usual = tangent_disagreement(cameras, outlines_);
   if (usual > kSuspiciousTangents) report_.full_evidence = full_evidence = usual;
   for (std::size_t i = 0; i < room_.size(); ++i)
