@@ -30,8 +30,10 @@ struct ConfirmedLines {
 
 /// Of each view's candidates (calib/photo_lines.h) those that views confirm: there is a place on
 /// the point's ray, in the box, at which most of the views that see it have foreground or a
-/// candidate, and enough of them a candidate that runs along the same direction in space. Views
-/// without a distance say nothing. Throws Cancelled when `progress` was asked to stop.
+/// candidate, and enough of them a candidate that runs along the same direction in space. Lines are
+/// then followed as far as most views have anything there. Views without a distance say nothing,
+/// and their candidates are dropped. `silhouettes`: mask and distance of each camera's view; lines
+/// are not used. Throws Cancelled when `progress` was asked to stop.
 ConfirmedLines confirm_lines(const Box& box, std::span<const Camera> cameras,
                              std::span<const Silhouette> silhouettes,
                              std::vector<std::vector<LinePoint>> candidates,
