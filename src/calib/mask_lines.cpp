@@ -9,8 +9,8 @@
 #include <cstdint>
 #include <cstring>
 #include <numbers>
-#include <unordered_map>
 
+#include "calib/line_chains.h"
 #include "core/error.h"
 
 namespace photohull {
@@ -23,12 +23,10 @@ constexpr double kNarrowest = 0.1;          // pixels
 constexpr double kLeastBend = 0.4 * kNarrowest * 0.5;  // of the smoothed coverage across a line
 // Of a line's smoothed profile: the Gaussian's, and that of a pixel's area.
 constexpr double kProfileVariance = 1 + 1.0 / 12;
-constexpr double kWithin = 0.55;   // pixels: a line's point belongs to the pixel that holds it
-constexpr double kStep = 0.25;     // pixels, of the profile across a line
-constexpr int kSteps = 14;         // to either side
-constexpr double kFoot = 0.5;      // of the middle's coverage: what lies beside a line has less
-constexpr double kLink = 2.0;      // pixels between neighbours on a line, at most
-constexpr double kMostBend = 0.5;  // sine of the angle between a line and the next point
+constexpr double kWithin = 0.55;  // pixels: a line's point belongs to the pixel that holds it
+constexpr double kStep = 0.25;    // pixels, of the profile across a line
+constexpr int kSteps = 14;        // to either side
+constexpr double kFoot = 0.5;     // of the middle's coverage: what lies beside a line has less
 constexpr std::uint32_t kFewestPoints = 6;  // of a line
 constexpr std::uint8_t kSolid = 128;        // of 255, of a dash
 constexpr std::size_t kLargestDash = 48;    // pixels
@@ -192,15 +190,6 @@ bool measure(const Coverage& coverage, LinePoint& p) {
   return one >= 0 && other >= 0 && p.width >= kNarrowest && p.width < kWidestLine;
 }
 
-/// Are these two neighbours on one line?
-bool follows(const LinePoint& a, const LinePoint& b) {
-  const double dx = b.x - a.x, dy = b.y - a.y, length = std::hypot(dx, dy);
-  const auto bends = [&](const LinePoint& p) {
-    return std::abs(dx * p.normal_x + dy * p.normal_y) > kMostBend * length;
-  };
-  return length <= kLink && !bends(a) && !bends(b);
-}
-
 /// Is the piece of foreground around the pixel nothing but a line: a dash of a stem that a hard
 /// mask shows here and there? It is small, and no pixel of it is surrounded by others.
 bool is_dash(const Mask& mask, int x, int y) {
@@ -226,29 +215,12 @@ bool is_dash(const Mask& mask, int x, int y) {
 /// Drops the points of short lines that hang on something thicker: the unevenness of an outline has
 /// ridges, too.
 std::vector<LinePoint> without_short_lines(const Mask& mask, const std::vector<LinePoint>& points) {
-  const auto key = [&](int x, int y) { return std::int64_t(y) * (mask.width + 4) + x; };
-  std::unordered_multimap<std::int64_t, std::uint32_t> at;
-  at.reserve(points.size());
-  std::vector<std::uint32_t> parent(points.size()), count(points.size(), 0);
-  const auto root = [&](std::uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
-  for (std::uint32_t i = 0; i < points.size(); ++i) {
-    parent[i] = i;
-    const int x = int(std::lround(points[i].x)), y = int(std::lround(points[i].y));
-    for (int dy = -2; dy <= 2; ++dy)
-      for (int dx = -2; dx <= 2; ++dx) {
-        const auto [from, to] = at.equal_range(key(x + dx, y + dy));
-        for (auto other = from; other != to; ++other)
-          if (follows(points[i], points[other->second])) parent[root(i)] = root(other->second);
-      }
-    at.emplace(key(x, y), i);
-  }
-  for (std::uint32_t i = 0; i < points.size(); ++i) ++count[root(i)];
+  const std::vector<std::uint32_t> line = lines_of(points);
+  std::vector<std::uint32_t> count(points.size(), 0);
+  for (const std::uint32_t i : line) ++count[i];
   std::vector<LinePoint> kept, rest;
-  for (std::uint32_t i = 0; i < points.size(); ++i)
-    (count[root(i)] >= kFewestPoints ? kept : rest).push_back(points[i]);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    (count[line[i]] >= kFewestPoints ? kept : rest).push_back(points[i]);
   for (const LinePoint& p : rest)
     if (is_dash(mask, std::clamp(int(std::lround(p.x)), 0, mask.width - 1),
                 std::clamp(int(std::lround(p.y)), 0, mask.height - 1)))

@@ -88,11 +88,16 @@ class Inputs {
   void remember_right_cameras(const CameraRefinement& found, bool used);
   void leave_out(std::span<const int> wrong, const std::string& why);
   void drop_view(int index);
+  /// Puts thin parts that masks have lost, by `eaten` pixels around every outline, back into them.
+  void restore_eaten(double eaten);
+  /// Are the masks too small, as the photographs tell?
+  bool masks_are_eaten() const;
 
   Scene full_;                           ///< the scene in the files' pixels, until they are decoded
   std::vector<double> scales_;           ///< of its views
   std::vector<Outline> outlines_;        ///< of the masks, one a view
   std::vector<double> room_;             ///< pixels around each view's outline, for what it is off
+  bool restored_ = false;                ///< were eaten stems put back into the masks?
   std::set<std::string> right_cameras_;  ///< names of views
   std::set<std::string> made_masks_;     ///< names of views whose masks come from the background
 

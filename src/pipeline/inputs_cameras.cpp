@@ -1,10 +1,13 @@
 // Inputs: cameras that the photographs correct.
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "calib/diagnose.h"
 #include "calib/feature_tracks.h"
+#include "calib/mask_bias.h"
 #include "calib/refine_cameras.h"
 #include "core/error.h"
 #include "pipeline/inputs.h"
@@ -75,7 +78,9 @@ void Inputs::refine_cameras() {
   o.box = scene.box;
   const CameraRefinement found = photohull::refine_cameras(views, o, progress_);
   const bool always = asked && options_.refine_cameras != RefineCameras::kAuto;
-  const bool use = found.changed && (always || pays(found));
+  // Outlines alone say nothing of cameras where the masks' maker took the tips of thin parts.
+  const bool trusted = asked || found.all.observations > 0 || !masks_are_eaten();
+  const bool use = found.changed && (always || (pays(found) && trusted));
   report_.camera_refinement = to_json(found, scene, use);
   remember_right_cameras(found, use);
   if (!use) return;
@@ -91,6 +96,15 @@ void Inputs::refine_cameras() {
   cameras_moved = found.moved;
   cameras_moved_alike = found.moved_alike;
   use_cameras(found);
+}
+
+bool Inputs::masks_are_eaten() const {
+  std::vector<SilhouetteDistance> distances(views.size());
+  tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
+    if (!views[i].mask.empty()) distances[i] = silhouette_distance(views[i].mask);
+  });
+  const MaskBias bias = measure_mask_bias(views, distances);
+  return bias.counts() && bias.pixels > 0;
 }
 
 /// Features of a view whose camera is right lie where those of other views say, whatever its mask.

@@ -8,8 +8,10 @@
 #include "calib/diagnose.h"
 #include "calib/mask_bias.h"
 #include "calib/mask_lines.h"
+#include "calib/photo_lines.h"
 #include "calib/refine_cameras.h"
 #include "calib/sharpness.h"
+#include "carving/confirm_lines.h"
 #include "carving/missing_parts.h"
 #include "core/error.h"
 #include "core/left_out.h"
@@ -28,6 +30,8 @@ namespace {
 constexpr double kBlurred = 0.75, kBlurredWithoutMasks = 0.69;
 constexpr std::size_t kMostNamed = 5;
 constexpr double kUnexplained = 0.02;  // of the foreground: more is told
+constexpr double kPartialPixel = 1;    // eaten together with the whole ones
+constexpr std::size_t kRestored = 6;   // pixels a view: a line, as photo_lines.h counts them
 constexpr double kFarOff = 0.005;      // of the image's longer side: this view is wrong
 
 /// Views whose outlines' tangents are far from all others', who agree; none where these are more
@@ -75,6 +79,40 @@ void Inputs::correct_masks() {
                 "takes the masks as they are)"));
   for (std::size_t i = 0; i < views.size(); ++i)
     if (!views[i].mask.empty()) move_outline(offset, views[i].mask, silhouettes[i]);
+  if (offset > 0) restore_eaten(offset);
+}
+
+/// Parts twice as wide as what was taken from every outline are not in the masks any more.
+void Inputs::restore_eaten(double eaten) {
+  PhotoLineOptions options;
+  options.noise_sigma = report_.noise_sigma;
+  options.widest = std::min(2 * eaten + kPartialPixel, PhotoLineOptions::kWidest);
+  std::vector<std::vector<LinePoint>> found(views.size());
+  tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
+    if (!views[i].mask.empty() && !made_masks_.contains(views[i].name))
+      found[i] = find_photo_lines(views[i], silhouettes[i], options);
+  });
+  carving::ConfirmOptions confirm;
+  confirm.continues_mask = options.widest;
+  lines.assign(views.size(), {});
+  const carving::ConfirmedLines confirmed = carving::confirm_lines(
+      *scene.box, cameras, silhouettes_of_views(), std::move(found), confirm, &progress_);
+  report_.thin.restored_pixels = std::int64_t(confirmed.places.size());
+  if (confirmed.places.empty()) return;
+  restored_ = confirmed.places.size() >= kRestored * views.size();
+  if (restored_)
+    warn(concat("the masks lack thin parts that the photographs show (", confirmed.places.size(),
+                " px of them in all views): they were put back (--mask-offset 0 takes the masks as "
+                "they are)"));
+  tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
+    if (views[i].mask.empty() || made_masks_.contains(views[i].name)) return;
+    std::vector<glm::dvec2> places;
+    for (const glm::dvec3& p : confirmed.places)
+      if (const auto pixel = cameras[i].project(p); pixel && cameras[i].on_image(*pixel))
+        places.push_back(*pixel);
+    restore_lines(confirmed.lines[i], places, silhouettes[i], views[i]);
+    silhouettes[i] = silhouette_distance(views[i].mask);
+  });
 }
 
 void Inputs::trace_outlines() {
@@ -108,7 +146,8 @@ void Inputs::leave_out_wrong_views() {
 void Inputs::bear_disagreement() {
   room_.assign(views.size(), 0);
   if (options_.views_may_miss || !any_mask()) return;
-  room_ = outlines_off(fit_silhouettes(cameras, outlines_));
+  // What was taken from the tips of thin parts is no error of a view as a whole.
+  if (!restored_) room_ = outlines_off(fit_silhouettes(cameras, outlines_));
   const double usual = tangent_disagreement(cameras, outlines_);
   if (usual > kSuspiciousTangents) report_.full_evidence = full_evidence = usual;
   for (std::size_t i = 0; i < room_.size(); ++i)
@@ -150,8 +189,8 @@ std::vector<carving::Silhouette> Inputs::silhouettes_of_views() const {
     if (mask.empty())
       out.push_back({&mask});
     else
-      out.push_back({widened[i].empty() ? &mask : &widened[i], &silhouettes[i], &lines[i],
-                     made_masks_.contains(views[i].name)});
+      out.push_back({i >= widened.size() || widened[i].empty() ? &mask : &widened[i],
+                     &silhouettes[i], &lines[i], made_masks_.contains(views[i].name)});
   }
   return out;
 }

@@ -42,11 +42,10 @@ std::string Report::to_json() const {
   for (const MaskReport& m : masks)
     j["masks"]["views"].push_back(
         {{"name", m.view}, {"source", m.source}, {"confidence", m.confidence}});
-  j["thin_parts"] = {{"line_pixels", thin.line_pixels},
-                     {"looked_at", thin.looked_at},
-                     {"unexplained", thin.unexplained},
-                     {"placed", thin.placed},
-                     {"stem_vertices", thin.stem_vertices}};
+  j["thin_parts"] = {
+      {"line_pixels", thin.line_pixels},         {"looked_at", thin.looked_at},
+      {"unexplained", thin.unexplained},         {"placed", thin.placed},
+      {"restored_pixels", thin.restored_pixels}, {"stem_vertices", thin.stem_vertices}};
   if (!missing_view.empty()) j["thin_parts"]["missing_png_shows"] = missing_view;
   if (!thin.worst_view.empty()) j["thin_parts"]["worst_view"] = thin.worst_view;
   j["noise_sigma"] = noise_sigma;

@@ -64,12 +64,13 @@ struct SamplingReport {
 /// What silhouettes show of thin parts, and where they disagree (calib/mask_lines.h,
 /// carving/missing_parts.h, carving/fit_stems.h).
 struct ThinReport {
-  std::int64_t line_pixels = 0;    ///< of all masks: parts narrower than about two pixels
-  std::int64_t looked_at = 0;      ///< places of the foreground
-  std::int64_t unexplained = 0;    ///< of these, without a point that all silhouettes bear
-  std::int64_t placed = 0;         ///< of the unexplained, given the place that most views bear
-  std::int64_t stem_vertices = 0;  ///< of the mesh, put to where lines say
-  std::string worst_view;          ///< with the largest share left unexplained; empty: none
+  std::int64_t line_pixels = 0;      ///< of all masks: parts narrower than about two pixels
+  std::int64_t looked_at = 0;        ///< places of the foreground
+  std::int64_t unexplained = 0;      ///< of these, without a point that all silhouettes bear
+  std::int64_t placed = 0;           ///< of the unexplained, given the place that most views bear
+  std::int64_t restored_pixels = 0;  ///< of lines that eaten masks had lost, in all views
+  std::int64_t stem_vertices = 0;    ///< of the mesh, put to where lines say
+  std::string worst_view;            ///< with the largest share left unexplained; empty: none
 };
 
 /// A view whose outline is off what the other views' say.

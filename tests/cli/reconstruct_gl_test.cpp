@@ -69,7 +69,7 @@ TEST_F(Reconstruct, ReportHasTheDocumentedFields) {
     "box": {"min": [], "max": [], "source": ""}, "masks": {"source": "", "confidence": 0.1, "mended": 0, "left_out": [], "offset": 0.1, "disagreement": 0.1},
     "grid": {"origin": [], "voxel_size": 0.1, "voxels": [], "bricks_stored": 1},
     "hull": {"nodes_tested": 1, "bricks_evaluated": 1},
-    "thin_parts": {"line_pixels": 1, "looked_at": 1, "unexplained": 1, "placed": 1, "stem_vertices": 1},
+    "thin_parts": {"line_pixels": 1, "looked_at": 1, "unexplained": 1, "placed": 1, "restored_pixels": 1, "stem_vertices": 1},
     "photo": {"sweeps": 1, "voxels_judged": 1, "voxels_carved": 1, "voxels_undecided": 1},
     "resumed_levels": 0, "refine": [], "refine_fits": [], "mesh": {"vertices": 1, "triangles": 1, "uniform_triangles": 1,
     "sharpened_vertices": 1, "unseen_share": 0.1}, "photometric": {"used": true}, "sharpness": []})");

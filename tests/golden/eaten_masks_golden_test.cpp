@@ -1,0 +1,73 @@
+// Stems that the masks' maker ate, by a pixel around every outline, come back from the photographs.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "eval/evaluate.h"
+#include "pipeline/reconstruct.h"
+#include "support/scratch_folder.h"
+#include "synth/synthesize.h"
+#include "volume/write_mesh.h"
+
+namespace photohull::golden {
+namespace {
+
+struct Result {
+  pipeline::Report report;
+  double f = 0;  ///< percent, at 1 % of the diagonal
+};
+
+Result run(const std::string& degradations, const std::string& background) {
+  const ScratchFolder folder;
+  Progress silent;
+  const std::string common = R"({"geometry": {"shape": "seedling", "parameters": {"shoot": 0.0014}},
+      "material": {"base": [0.24, 0.45, 0.14], "contrast": 0.6, "size": 0.02},
+      "image": {"width": 448, "height": 448, "samples": 4, "maps": false}, "truth_samples": 20000,
+      "cameras": {"rings": [{"count": 8, "elevation": 10},
+                            {"count": 4, "elevation": 35, "phase": 0.5}]},)";
+  synth::synthesize(synth::parse_spec(common + "\"background\": " + background +
+                                          ", \"degradations\": " + degradations + "}",
+                                      "test", ""),
+                    folder / "scene", silent);
+  pipeline::ReconstructOptions options;
+  options.scene = folder / "scene";
+  options.output = folder / "out";
+  options.method = pipeline::Method::kHull;
+  options.device = "software";
+  Result result{pipeline::reconstruct(options, silent)};
+  eval::EvaluateOptions judge;
+  judge.samples = 20000;
+  judge.columns = 64;
+  const eval::Evaluation e =
+      eval::evaluate(read_ply(folder / "out/mesh.ply"), eval::read_truth(folder / "scene"), judge);
+  for (const eval::Score& score : e.seen.scores)
+    if (score.threshold == 0.01) result.f = 100 * score.f;
+  std::printf("F %.2f at 1 %%, %lld px restored\n", result.f,
+              (long long)(result.report.thin.restored_pixels));
+  return result;
+}
+
+constexpr const char* kPlain = R"({"colour": [0.03, 0.03, 0.04]})";
+constexpr const char* kEroded = R"({"mask_style": "eroded"})";
+
+TEST(EatenMasks, StemsComeBackBeforePlainGround) {
+  const Result r = run(kEroded, kPlain);
+  EXPECT_GT(r.report.mask_offset, 0.5);
+  EXPECT_GT(r.report.thin.restored_pixels, 4000);
+  EXPECT_GT(r.f, 95);
+}
+
+TEST(EatenMasks, StemsComeBackBeforeClutterThatMoves) {
+  const Result r = run(kEroded, R"({"type": "clutter", "moving": true})");
+  EXPECT_GT(r.report.thin.restored_pixels, 2000);
+  EXPECT_GT(r.f, 85);
+}
+
+TEST(EatenMasks, NothingIsPutBackIntoMasksThatAreRight) {
+  const Result r = run("{}", kPlain);
+  EXPECT_EQ(r.report.mask_offset, 0);
+  EXPECT_EQ(r.report.thin.restored_pixels, 0);
+}
+
+}  // namespace
+}  // namespace photohull::golden
