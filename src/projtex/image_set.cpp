@@ -67,6 +67,7 @@ ImageSet::ImageSet(std::span<const View> views) {
     texture_.upload(int(i), size.x, size.y, pixels);
   }
   texture_.generate_mipmaps();
+  for (const View& view : views) sharpness_.push_back(std::min(view.sharpness, 1.0));
 }
 
 }  // namespace photohull::projtex

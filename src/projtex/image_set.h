@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "core/image.h"
 #include "gpu/texture.h"
@@ -19,9 +20,13 @@ class ImageSet {
 
   const gpu::TextureArray& texture() const { return texture_; }
   int layers() const { return texture_.layers(); }
+  /// Of every view, View::sharpness where that is below 1: how much less fine detail it has than
+  /// others of the same. What is more than others have is worth no more.
+  const std::vector<double>& sharpness() const { return sharpness_; }
 
  private:
   gpu::TextureArray texture_;
+  std::vector<double> sharpness_;
 };
 
 }  // namespace photohull::projtex
