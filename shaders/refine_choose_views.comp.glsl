@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Chooses the views that each surfel is matched in: as reference the worthiest one that sees it,
 // then greedily worthy ones at a useful angle from it and from each other. Worth is the cosine
-// between normal and direction, times the square of the view's sharpness. Also lists the most
+// between normal and direction, times the fourth power of the view's sharpness. Also lists the most
 // frontal ones that the surface itself hides it from. One thread a surfel.
 // Reference: refine::reference::choose_views.
 #include "include/projection.glsl"
@@ -75,7 +75,8 @@ void main() {
     }
     ++seen;
     if (!(cosine > parameters.visibility.z)) continue;
-    insert(v, cosine * view.detail.x * view.detail.x);
+    float energy = view.detail.x * view.detail.x;
+    insert(v, cosine * energy * energy);
     ++found;
   }
   found = min(found, kMatchCandidates);

@@ -56,6 +56,7 @@ void choose_views(vec3 position, vec3 normal) {
     direction_count += 1.0;
     float density = view.centre.w / p.z;
     float sharp = view.detail.x * view.detail.x;
+    sharp *= sharp;
     insert(v, cosine * cosine * cosine * density * density * sharp * sharp);
   }
 }

@@ -20,8 +20,8 @@ class ImageSet {
 
   const gpu::TextureArray& texture() const { return texture_; }
   int layers() const { return texture_.layers(); }
-  /// Of every view, View::sharpness where that is below 1: how much less fine detail it has than
-  /// others of the same. What is more than others have is worth no more.
+  /// Of every view, View::sharpness relative to 0.9, at most 1: below, it has less fine detail than
+  /// views of the same without blur have, whose surface and light make some percent of difference.
   const std::vector<double>& sharpness() const { return sharpness_; }
 
  private:

@@ -142,7 +142,7 @@ Choice choose_views(std::span<const MatchView> views, const dvec3& position, con
     if (cosine > options.least_cosine)
       (sees ? candidates : hidden)
           .push_back(
-              {int(v), cosine, cosine * std::pow(views[v].sharpness, 2), glm::normalize(offset)});
+              {int(v), cosine, cosine * std::pow(views[v].sharpness, 4), glm::normalize(offset)});
   }
   std::stable_sort(hidden.begin(), hidden.end(),
                    [](const Candidate& a, const Candidate& b) { return a.cosine > b.cosine; });

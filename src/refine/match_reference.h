@@ -18,7 +18,7 @@ struct MatchView {
   shaders::DepthMapInfo depth_info;
   std::vector<double> depths;  ///< voxels, row-major as depth_info says
   std::vector<projtex::reference::LinearImage> mips;
-  double sharpness = 1;  ///< of View, at most 1
+  double sharpness = 1;  ///< as ImageSet has it
 };
 
 /// How a step in space moves the pixel position of a point: the projection's derivative.
@@ -38,8 +38,8 @@ struct Choice {
 /// (refine_choose_views.comp.glsl). The worthiest view that sees it is the reference. The others
 /// follow by falling worth, a third of it for near-duplicates of what was chosen, among those of
 /// the kMatchCandidates worthiest whose angle to the reference lies in the options' range. Worth is
-/// the cosine between normal and direction times the square of the view's sharpness: the energy of
-/// its gradients is what places a patch. Least cosines are of the direction alone.
+/// the cosine between normal and direction times the fourth power of the view's sharpness: the
+/// square of its gradients' energy, which places a patch. Least cosines are of the direction alone.
 ///
 /// `ties`: a choice that is taken where it is the best but for rounding.
 Choice choose_views(std::span<const MatchView> views, const glm::dvec3& position,

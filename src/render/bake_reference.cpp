@@ -42,7 +42,7 @@ std::vector<Sight> find_sights(std::span<const BakeView> views, const glm::dvec3
                                         shaders::kBakeDepthBias, view.depths))
       continue;
     const double weight =
-        std::pow(cosine, 3) * std::pow(view.camera.focal / p.z, 2) * std::pow(view.sharpness, 4);
+        std::pow(cosine, 3) * std::pow(view.camera.focal / p.z, 2) * std::pow(view.sharpness, 8);
     sights.push_back({&view, weight, offset / distance});
   }
   return sights;

@@ -188,7 +188,7 @@ TEST_F(ChooseViewsOf, BlurredViewsGiveWayToSharpOnesThatSeeTheSame) {
   const Found found = run(mesh);
   const std::vector<int> chosen = test::views_of(found.choices[0]);
   EXPECT_EQ(chosen.size(), std::size_t(shaders::kMatchViews));
-  for (const int view : chosen) EXPECT_GE(view, 10);  // cos 20 x 0.64 < cos 35
+  for (const int view : chosen) EXPECT_GE(view, 10);  // cos 20 x 0.62 < cos 35
   EXPECT_TRUE(agrees(mesh, found, 0));
 }
 

@@ -38,7 +38,7 @@ inline std::vector<refine::reference::MatchView> reference_views(const std::vect
                    {},
                    {},
                    projtex::reference::mip_chain(view.image, {kImageEdge, kImageEdge}),
-                   std::min(view.sharpness, 1.0)});
+                   std::min(view.sharpness / 0.9, 1.0)});
   return out;
 }
 

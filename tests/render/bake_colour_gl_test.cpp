@@ -46,7 +46,7 @@ std::vector<BakeView> reference_views(const std::vector<View>& views,
                   maps.infos()[i],
                   {},
                   &views[i].image,
-                  std::min(views[i].sharpness, 1.0)};
+                  std::min(views[i].sharpness / 0.9, 1.0)};
     view.depths.assign(std::size_t(view.depth_info.size.x) * view.depth_info.size.y, 1e30);
     for (const auto& v : vertices)
       render::reference::splat_point(glm::dvec3(v.position), glm::dvec3(v.normal), view);
