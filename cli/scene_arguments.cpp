@@ -55,9 +55,11 @@ std::vector<CLI::Option*> SceneArguments::add_reading_options(CLI::App& command)
       command.add_option("--pixel-center", pixel_center,
                          "coordinate of the top-left pixel's centre in the scene file, 0, 0.5 or 1 "
                          "(default: the format's)"),
-      command.add_flag("--strict", strict,
-                       "refuse scenes whose photographs are not all there, readable and of their "
-                       "cameras' shape (default: such are left out while two of three remain)")};
+      command.add_flag(
+          "--strict", strict,
+          "refuse scenes whose photographs are not all there, readable and of their "
+          "cameras' shape, and folders of masks that lack some (default: such photographs "
+          "are left out while two of three remain, such masks done without)")};
 }
 
 void SceneArguments::add_to(CLI::App& command) {

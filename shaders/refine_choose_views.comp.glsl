@@ -1,7 +1,8 @@
 #version 450 core
 #extension GL_GOOGLE_include_directive : require
-// Chooses the views that each surfel is matched in: as reference the most frontal one that sees it,
-// then greedily frontal ones at a useful angle from it and from each other. Also lists the most
+// Chooses the views that each surfel is matched in: as reference the worthiest one that sees it,
+// then greedily worthy ones at a useful angle from it and from each other. Worth is the cosine
+// between normal and direction, times the fourth power of the view's sharpness. Also lists the most
 // frontal ones that the surface itself hides it from. One thread a surfel.
 // Reference: refine::reference::choose_views.
 #include "include/projection.glsl"
@@ -15,23 +16,23 @@ layout(std430, binding = 1) readonly buffer Surfels { BakeVertex surfels[]; };
 layout(std430, binding = 2) writeonly buffer Choices { MatchChoice choices[]; };
 layout(std430, binding = 3) readonly buffer ViewLists { uint view_lists[]; };  // render::list_views
 
-// The most frontal views in falling order of cosine; 0 where there are fewer.
-float best_cosine[kMatchCandidates];
+// The worthiest views in falling order of worth; 0 where there are fewer.
+float best_worth[kMatchCandidates];
 int best_view[kMatchCandidates];
 
-void insert(int view, float cosine) {
+void insert(int view, float worth) {
   for (int k = 0; k < kMatchCandidates; ++k) {
-    bool better = cosine > best_cosine[k];
-    float other_cosine = better ? best_cosine[k] : cosine;
+    bool better = worth > best_worth[k];
+    float other_worth = better ? best_worth[k] : worth;
     int other_view = better ? best_view[k] : view;
-    best_cosine[k] = better ? cosine : best_cosine[k];
+    best_worth[k] = better ? worth : best_worth[k];
     best_view[k] = better ? view : best_view[k];
-    cosine = other_cosine;
+    worth = other_worth;
     view = other_view;
   }
 }
 
-// Likewise of those that do not see it.
+// The most frontal ones of those that do not see it.
 float hidden_cosine[kHiddenViews];
 int hidden_view[kHiddenViews];
 
@@ -51,7 +52,7 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= uint(parameters.counts.x)) return;
   vec3 position = surfels[i].position.xyz, normal = surfels[i].normal.xyz;
-  for (int k = 0; k < kMatchCandidates; ++k) best_cosine[k] = 0.0;
+  for (int k = 0; k < kMatchCandidates; ++k) best_worth[k] = 0.0;
   for (int k = 0; k < kMatchCandidates; ++k) best_view[k] = 0;
   for (int k = 0; k < kHiddenViews; ++k) hidden_cosine[k] = 0.0;
   for (int k = 0; k < kHiddenViews; ++k) hidden_view[k] = -1;
@@ -74,7 +75,8 @@ void main() {
     }
     ++seen;
     if (!(cosine > parameters.visibility.z)) continue;
-    insert(v, cosine);
+    float energy = view.detail.x * view.detail.x;
+    insert(v, cosine * energy * energy);
     ++found;
   }
   found = min(found, kMatchCandidates);
@@ -96,7 +98,7 @@ void main() {
     float most = 0.0;
     for (int k = 1; k < kMatchCandidates; ++k) {
       // Near-duplicates are worth a third.
-      float worth = best_cosine[k] * (nearest[k] > parameters.angles.z ? 0.33 : 1.0);
+      float worth = best_worth[k] * (nearest[k] > parameters.angles.z ? 0.33 : 1.0);
       bool better = nearest[k] <= 1.0 && worth > most;
       most = better ? worth : most;
       best = better ? k : best;

@@ -55,7 +55,9 @@ void choose_views(vec3 position, vec3 normal) {
     direction_sum += to_camera * reciprocal;
     direction_count += 1.0;
     float density = view.centre.w / p.z;
-    insert(v, cosine * cosine * cosine * density * density);
+    float sharp = view.detail.x * view.detail.x;
+    sharp *= sharp;
+    insert(v, cosine * cosine * cosine * density * density * sharp * sharp);
   }
 }
 

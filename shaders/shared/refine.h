@@ -12,7 +12,7 @@ using glm::vec4;
 #endif
 
 constexpr int kMatchViews = 6;        // the reference view and those compared with it
-constexpr int kMatchCandidates = 16;  // views, the most frontal ones, that the choice is made among
+constexpr int kMatchCandidates = 16;  // views, the worthiest ones, that the choice is made among
 constexpr int kMatchRadius = 2;  // taps: every other place of 5 x 5 in the tangent plane
 constexpr int kMatchTaps = 13;
 constexpr int kHiddenViews = 4;  // views that face a surfel and whose sight something blocks

@@ -15,10 +15,11 @@ struct GpuView {
   vec4 row_q;
   vec4 centre;  // xyz: optical centre; w: focal length in pixels (geometric mean of fx and fy)
   vec4 size;    // xy: image size in pixels; zw: reciprocal size of the array texture in pixels
+  vec4 detail;  // x: fine detail beside other views of the same (ImageSet::sharpness), at most 1
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(GpuView) == 80);
+static_assert(sizeof(GpuView) == 96);
 }  // namespace photohull::shaders
 #endif
 

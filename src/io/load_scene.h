@@ -15,7 +15,7 @@ enum class MaskSource {
   kAuto,  ///< the scene's own entries, else a masks/ folder beside the images where there is one
   kNone,  ///< no masks, whatever the scene says
   kBackground,  ///< made from the background, whatever masks the scene has
-  kDirectory    ///< LoadSceneOptions::mask_directory, which must hold one for every view
+  kDirectory    ///< LoadSceneOptions::mask_directory, which must hold one at least
 };
 
 /// Photographs of the object by what `photohull calibrate` has calibrated. Worlds: of a rig, the
@@ -60,7 +60,8 @@ struct LoadSceneOptions {
   /// (spread_views.h), with a warning. 0: all.
   std::size_t most_views = 0;
   /// No photograph may be missing, unreadable or of another shape: else they are left out, with a
-  /// warning, while enough remain (core/left_out.h).
+  /// warning, while enough remain (core/left_out.h). Nor may a folder of masks lack one: else that
+  /// view is used without, with a warning.
   bool strict = false;
 
   /// Throws UsageError naming the field and its legal values.

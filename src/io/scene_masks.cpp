@@ -10,6 +10,8 @@ namespace photohull::io {
 namespace fs = std::filesystem;
 namespace {
 
+constexpr std::size_t kNamed = 3;  // views, in a sentence
+
 bool is_folder(const fs::path& path) {
   std::error_code ignored;
   return fs::is_directory(path, ignored);
@@ -57,16 +59,58 @@ void check_mask_size(const RawView& raw, const SourceView& view) {
                        "; use a mask of the image's size or --masks none"));
 }
 
-void attach_from_directory(const fs::path& folder, const std::vector<RawView>& raw, Scene& scene) {
+/// Views that a folder holds no mask for.
+struct Unmasked {
+  fs::path folder;  ///< that was searched last
+  std::vector<std::string> names;
+};
+
+/// "DIR holds no mask for 4 of 16 views (a.png, b.png, c.png and 1 more)"
+std::string counted(const Unmasked& without, std::size_t all) {
+  std::string names;
+  for (std::size_t i = 0; i < std::min(without.names.size(), kNamed); ++i)
+    names += (i ? ", " : "") + without.names[i];
+  if (without.names.size() > kNamed)
+    names += concat(" and ", without.names.size() - kNamed, " more");
+  return concat(without.folder.string(), " holds no mask for ", without.names.size(), " of ", all,
+                " views (", names, ")");
+}
+
+/// "NAME.EXT.png and NAME.png, .jpg, .tif, .exr" for a view.
+std::string looked_for(const std::string& name) {
+  return concat(name, ".png and ", fs::path(name).stem().string(), ".png, .jpg, .tif, .exr");
+}
+
+/// Throws Error where `strict` asks for the masks of all views; else warns.
+void note_unmasked(const Unmasked& without, bool strict, Scene& scene) {
+  if (without.names.empty()) return;
+  const std::string said = counted(without, scene.views.size());
+  if (strict)
+    throw Error(concat(said, "; --strict asks for all of them: add them (for ",
+                       without.names.front(), ", ", looked_for(without.names.front()),
+                       " were looked for) or leave these views out with --views"));
+  scene.warnings.push_back(
+      concat(said,
+             ": these are used without (or with what their alpha or background tells); "
+             "--strict refuses"));
+}
+
+void attach_from_directory(const LoadSceneOptions& options, const std::vector<RawView>& raw,
+                           Scene& scene) {
+  const fs::path& folder = options.mask_directory;
   if (!is_folder(folder)) throw Error(concat(folder.string(), ": there is no such mask folder"));
+  Unmasked without{folder, {}};
   for (std::size_t i = 0; i < scene.views.size(); ++i) {
     SourceView& view = scene.views[i];
     view.mask = find_mask(folder, view.image, raw[i].listed);
-    if (view.mask.empty())
-      throw Error(concat(folder.string(), ": there is no mask for ", view.name, " (looked for ",
-                         view.name, ".png and ", fs::path(view.name).stem().string(),
-                         ".png, .jpg, .tif, .exr); add it or leave the view out with --views"));
+    if (view.mask.empty()) without.names.push_back(view.name);
   }
+  if (without.names.size() == scene.views.size())
+    throw Error(concat(folder.string(), ": there is no mask for any of the ", scene.views.size(),
+                       " views (for the first, ", without.names.front(), ", looked for ",
+                       looked_for(without.names.front()),
+                       "); name the masks as the photographs or give another folder"));
+  note_unmasked(without, options.strict, scene);
 }
 
 void attach_stated(const fs::path& scene_folder, const RawView& raw, SourceView& view) {
@@ -76,11 +120,9 @@ void attach_stated(const fs::path& scene_folder, const RawView& raw, SourceView&
                        ", but there is no such file; add it or use --masks none"));
 }
 
-void attach_automatically(const fs::path& scene_folder, const std::vector<RawView>& raw,
-                          Scene& scene) {
-  std::string first_without;
-  fs::path searched;
-  std::size_t without = 0;
+void attach_automatically(const LoadSceneOptions& options, const fs::path& scene_folder,
+                          const std::vector<RawView>& raw, Scene& scene) {
+  Unmasked without;
   for (std::size_t i = 0; i < scene.views.size(); ++i) {
     SourceView& view = scene.views[i];
     if (!raw[i].mask.empty()) {
@@ -89,14 +131,11 @@ void attach_automatically(const fs::path& scene_folder, const std::vector<RawVie
     }
     const fs::path folder = masks_folder(scene_folder, view.image);
     if (folder.empty()) continue;
-    searched = folder;
+    without.folder = folder;
     view.mask = find_mask(folder, view.image, raw[i].listed);
-    if (view.mask.empty() && without++ == 0) first_without = view.name;
+    if (view.mask.empty()) without.names.push_back(view.name);
   }
-  if (without > 0)
-    scene.warnings.push_back(concat(searched.string(), " holds no mask for ", without, " of ",
-                                    scene.views.size(), " views (the first is ", first_without,
-                                    ")"));
+  note_unmasked(without, options.strict, scene);
 }
 
 }  // namespace
@@ -109,10 +148,10 @@ void attach_masks(const LoadSceneOptions& options, const fs::path& scene_folder,
     case MaskSource::kBackground:
       return;
     case MaskSource::kDirectory:
-      attach_from_directory(options.mask_directory, raw, scene);
+      attach_from_directory(options, raw, scene);
       break;
     case MaskSource::kAuto:
-      attach_automatically(scene_folder, raw, scene);
+      attach_automatically(options, scene_folder, raw, scene);
       break;
   }
   for (std::size_t i = 0; i < scene.views.size(); ++i)
@@ -132,9 +171,8 @@ void attach_plates(const LoadSceneOptions& options, const std::vector<RawView>& 
     view.plate = folder ? find_mask(given, view.image, raw[i].listed) : given;
     if (view.plate.empty())
       throw Error(concat(given.string(), ": there is no background for ", view.name,
-                         " (looked for ", view.name, ".png and ",
-                         fs::path(view.name).stem().string(),
-                         ".png, .jpg, .tif, .exr); add it or leave the view out with --views"));
+                         " (looked for ", looked_for(view.name),
+                         "); add it or leave the view out with --views"));
     const ImageSize size = read_image_size(view.plate);
     const Intrinsics& k = view.camera.intrinsics;
     if (size.width != k.width || size.height != k.height)

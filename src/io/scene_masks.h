@@ -10,9 +10,10 @@
 namespace photohull::io {
 
 /// Sets the mask of every view as the options ask; `raw[i]` is what the scene file said of
-/// `scene.views[i]`. Checks that each mask exists and has its image's size. Views left without a
-/// mask by a folder found automatically are reported in the scene's warnings.
-/// Throws Error naming the view and where its mask was looked for.
+/// `scene.views[i]`. Checks that each mask has its image's size. Views that a folder holds no mask
+/// for are counted and named in the scene's warnings; LoadSceneOptions::strict refuses them.
+/// Throws Error naming the view and where its mask was looked for: where a mask that the scene file
+/// names is not there, and where a folder that was asked for holds none at all.
 void attach_masks(const LoadSceneOptions& options, const std::filesystem::path& scene_folder,
                   const std::vector<RawView>& raw, Scene& scene);
 

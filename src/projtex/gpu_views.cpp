@@ -19,14 +19,19 @@ GridCamera to_grid(const Camera& camera, const GridSpec& grid) {
   return out;
 }
 
-shaders::GpuView to_gpu_view(const GridCamera& camera, const glm::ivec2& array_size) {
+shaders::GpuView to_gpu_view(const GridCamera& camera, const glm::ivec2& array_size,
+                             double sharpness) {
   const auto row = [&](int r) {
     const glm::dmat4x3& p = camera.projection;
     return glm::vec4(p[0][r], p[1][r], p[2][r], p[3][r]);
   };
-  return {row(0), row(1), row(2), glm::vec4(glm::vec3(camera.centre), float(camera.focal)),
+  return {row(0),
+          row(1),
+          row(2),
+          glm::vec4(glm::vec3(camera.centre), float(camera.focal)),
           glm::vec4(camera.width, camera.height, 1.0f / float(array_size.x),
-                    1.0f / float(array_size.y))};
+                    1.0f / float(array_size.y)),
+          glm::vec4(sharpness, 0, 0, 0)};
 }
 
 glm::ivec2 array_size(std::span<const Camera> cameras) {

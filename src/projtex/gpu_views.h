@@ -22,8 +22,9 @@ struct GridCamera {
 GridCamera to_grid(const Camera& camera, const GridSpec& grid);
 
 /// The same in single precision for images that sit at the origin of layers of an array texture of
-/// `array_size` pixels.
-shaders::GpuView to_gpu_view(const GridCamera& camera, const glm::ivec2& array_size);
+/// `array_size` pixels. `sharpness` as ImageSet has it, in (0, 1].
+shaders::GpuView to_gpu_view(const GridCamera& camera, const glm::ivec2& array_size,
+                             double sharpness = 1);
 
 /// Smallest array texture that holds images of all the sizes.
 glm::ivec2 array_size(std::span<const Camera> cameras);

@@ -11,6 +11,8 @@
 namespace photohull::projtex {
 namespace {
 
+constexpr double kUnblurred = 0.9;  // least sharpness of most views without blur, beside others
+
 using Encoding = ColourImage::Encoding;
 
 std::vector<std::uint8_t> to_half(const ColourImage& image) {
@@ -67,6 +69,7 @@ ImageSet::ImageSet(std::span<const View> views) {
     texture_.upload(int(i), size.x, size.y, pixels);
   }
   texture_.generate_mipmaps();
+  for (const View& view : views) sharpness_.push_back(std::min(view.sharpness / kUnblurred, 1.0));
 }
 
 }  // namespace photohull::projtex

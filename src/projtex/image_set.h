@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "core/image.h"
 #include "gpu/texture.h"
@@ -19,9 +20,13 @@ class ImageSet {
 
   const gpu::TextureArray& texture() const { return texture_; }
   int layers() const { return texture_.layers(); }
+  /// Of every view, View::sharpness relative to 0.9, at most 1: below, it has less fine detail than
+  /// views of the same without blur have, whose surface and light make some percent of difference.
+  const std::vector<double>& sharpness() const { return sharpness_; }
 
  private:
   gpu::TextureArray texture_;
+  std::vector<double> sharpness_;
 };
 
 }  // namespace photohull::projtex

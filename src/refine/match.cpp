@@ -42,8 +42,9 @@ std::vector<shaders::GpuView> views_on(const GridSpec& grid, const projtex::Imag
                                        std::span<const Camera> cameras) {
   const glm::ivec2 size(images.texture().width(), images.texture().height());
   std::vector<shaders::GpuView> out;
-  for (const Camera& camera : cameras)
-    out.push_back(projtex::to_gpu_view(projtex::to_grid(camera, grid), size));
+  for (std::size_t i = 0; i < cameras.size(); ++i)
+    out.push_back(
+        projtex::to_gpu_view(projtex::to_grid(cameras[i], grid), size, images.sharpness()[i]));
   return out;
 }
 

@@ -57,8 +57,8 @@ struct Matches {
   }
 };
 
-/// The views that each vertex of `mesh` (with normals) is matched in. Visibility by depth maps of
-/// the mesh itself.
+/// The views that each vertex of `mesh` (with normals) is matched in, sharp ones first where
+/// others are blurred (reference::choose_views). Visibility by depth maps of the mesh itself.
 std::vector<shaders::MatchChoice> choose_views(gpu::Context& context, const GridSpec& grid,
                                                const TriMesh& mesh, const projtex::ImageSet& images,
                                                std::span<const Camera> cameras,

@@ -23,6 +23,7 @@ double degrees_between(const dvec3& a, const dvec3& b) {
 struct Candidate {
   int view;
   double cosine;
+  double worth;
   dvec3 direction;  // unit, to the camera
 };
 
@@ -139,11 +140,14 @@ Choice choose_views(std::span<const MatchView> views, const dvec3& position, con
     const bool sees = unblocked(views[v], receiver, options.depth_bias);
     out.seen += sees;
     if (cosine > options.least_cosine)
-      (sees ? candidates : hidden).push_back({int(v), cosine, glm::normalize(offset)});
+      (sees ? candidates : hidden)
+          .push_back(
+              {int(v), cosine, cosine * std::pow(views[v].sharpness, 4), glm::normalize(offset)});
   }
-  for (std::vector<Candidate>* list : {&candidates, &hidden})
-    std::stable_sort(list->begin(), list->end(),
-                     [](const Candidate& a, const Candidate& b) { return a.cosine > b.cosine; });
+  std::stable_sort(hidden.begin(), hidden.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.cosine > b.cosine; });
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.worth > b.worth; });
   for (std::size_t k = 0; k < std::min<std::size_t>(hidden.size(), shaders::kHiddenViews); ++k)
     out.hidden.push_back(hidden[k].view);
   if (candidates.size() > shaders::kMatchCandidates) candidates.resize(shaders::kMatchCandidates);
@@ -156,7 +160,7 @@ Choice choose_views(std::span<const MatchView> views, const dvec3& position, con
   };
   const auto tie = [&](std::size_t slot) { return slot < ties.size() ? ties[slot] : -1; };
   if (candidates.empty()) return out;
-  take(best_of(candidates, tie(0), [](const Candidate& c) { return c.cosine; }));
+  take(best_of(candidates, tie(0), [](const Candidate& c) { return c.worth; }));
   std::erase_if(candidates, [&](const Candidate& c) {
     const double angle = degrees_between(c.direction, directions[0]);
     return angle < options.nearest_angle || angle > options.farthest_angle;
@@ -166,7 +170,7 @@ Choice choose_views(std::span<const MatchView> views, const dvec3& position, con
       const bool duplicate = std::any_of(directions.begin(), directions.end(), [&](const dvec3& d) {
         return degrees_between(c.direction, d) < options.duplicate_angle;
       });
-      return duplicate ? 0.33 * c.cosine : c.cosine;
+      return duplicate ? 0.33 * c.worth : c.worth;
     }));
   return out;
 }

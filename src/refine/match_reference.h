@@ -18,6 +18,7 @@ struct MatchView {
   shaders::DepthMapInfo depth_info;
   std::vector<double> depths;  ///< voxels, row-major as depth_info says
   std::vector<projtex::reference::LinearImage> mips;
+  double sharpness = 1;  ///< as ImageSet has it
 };
 
 /// How a step in space moves the pixel position of a point: the projection's derivative.
@@ -34,10 +35,11 @@ struct Choice {
 };
 
 /// The views that a surfel (voxel coordinates; unit outward normal, or zero) is matched in
-/// (refine_choose_views.comp.glsl). The most frontal view that sees it is the reference. The others
-/// follow by falling cosine between normal and direction, a third of it for near-duplicates of what
-/// was chosen, among those of the kMatchCandidates most frontal whose angle to the reference lies
-/// in the options' range.
+/// (refine_choose_views.comp.glsl). The worthiest view that sees it is the reference. The others
+/// follow by falling worth, a third of it for near-duplicates of what was chosen, among those of
+/// the kMatchCandidates worthiest whose angle to the reference lies in the options' range. Worth is
+/// the cosine between normal and direction times the fourth power of the view's sharpness: the
+/// square of its gradients' energy, which places a patch. Least cosines are of the direction alone.
 ///
 /// `ties`: a choice that is taken where it is the best but for rounding.
 Choice choose_views(std::span<const MatchView> views, const glm::dvec3& position,

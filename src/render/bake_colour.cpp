@@ -61,8 +61,9 @@ void bake_colour(gpu::Context& context, const GridSpec& grid, const projtex::Ima
   PHOTOHULL_CHECK_OP(noise_sigma, >, 0.0);
   const glm::ivec2 array_size(images.texture().width(), images.texture().height());
   std::vector<shaders::GpuView> gpu_views;
-  for (const Camera& camera : cameras)
-    gpu_views.push_back(projtex::to_gpu_view(projtex::to_grid(camera, grid), array_size));
+  for (std::size_t i = 0; i < cameras.size(); ++i)
+    gpu_views.push_back(projtex::to_gpu_view(projtex::to_grid(cameras[i], grid), array_size,
+                                             images.sharpness()[i]));
   const Buffer views = Buffer::of(gpu_views);
   const visibility::DepthMaps maps = render::occluder_maps(cameras, grid);
   views.bind_storage(0);

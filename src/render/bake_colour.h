@@ -27,9 +27,10 @@ struct BakeReport {
 /// A view sees a vertex when the cosine c between normal and viewing direction exceeds
 /// kBakeMinCosine, the vertex lies in front of the camera and on its image, and nothing of the mesh
 /// hides the point kBakeShift voxels above it in depth maps of voxel-sized texels [Williams78].
-/// Each view weighs w = c^3 (focal / depth)^2, and the kMaxBakeViews heaviest give their colours,
-/// sampled at the mip level on which a pixel is a voxel large. Distances d between colours are
-/// taken on square roots of linear light, where noise is even. The colour is the mean in linear
+/// Each view weighs w = c^3 (focal / depth)^2 q^8, q its sharpness where others of the same are
+/// sharper (ImageSet::sharpness), and the kMaxBakeViews heaviest give their colours, sampled
+/// at the mip level on which a pixel is a voxel large. Distances d between colours are taken on
+/// square roots of linear light, where noise is even. The colour is the mean in linear
 /// light with the weights w / (1 + (d / s)^2)^2, d from the medoid (the sample with the least
 /// weighted sum of distances) and s two noise deviations plus the medoid's mean distance: a
 /// highlight that one view sees has next to no say.
@@ -65,6 +66,7 @@ struct BakeView {
   shaders::DepthMapInfo depth_info;
   std::vector<double> depths;  ///< voxels, row-major as depth_info says
   const ColourImage* image = nullptr;
+  double sharpness = 1;  ///< as ImageSet has it
 };
 
 struct BakedVertex {

@@ -41,7 +41,8 @@ std::vector<Sight> find_sights(std::span<const BakeView> views, const glm::dvec3
     if (!visibility::reference::visible(view.camera, view.depth_info, receiver,
                                         shaders::kBakeDepthBias, view.depths))
       continue;
-    const double weight = std::pow(cosine, 3) * std::pow(view.camera.focal / p.z, 2);
+    const double weight =
+        std::pow(cosine, 3) * std::pow(view.camera.focal / p.z, 2) * std::pow(view.sharpness, 8);
     sights.push_back({&view, weight, offset / distance});
   }
   return sights;

@@ -45,13 +45,25 @@ TEST_F(BadMasks, Inverted) {
 
 TEST_F(BadMasks, NotThereOrNotMasks) {
   refuse("nowhere", {path("nowhere"), "no such mask folder"});
-  fs::remove(mask_file(2));
-  refuse("cutouts", {path("cutouts"), "no mask for view2.png"});
+  fs::create_directory(path("none"));
+  refuse("none", {path("none"), "no mask for any of the 16 views", "view0.png.png"});
   write_bytes(mask_file(2), "no picture");
   refuse("cutouts", {mask_file(2)});
   const std::vector<std::uint8_t> small(10 * 10, 255);
   io::write_png(mask_file(2), 10, 10, 1, small);
   refuse("cutouts", {mask_file(2), "10 x 10", "96 x 72"});
+}
+
+TEST_F(BadMasks, MissingOnesAreNamedAndTheirViewsUsedWithout) {
+  for (const int view : {2, 9}) fs::remove(mask_file(view));
+  const std::string said = "no mask for 2 of 16 views (view2.png, view9.png)";
+  const Finished run = succeed(reconstruct({"--masks", path("cutouts"), "--method", "hull"}));
+  EXPECT_THAT(run.err, HasSubstr(said));
+  const auto report = nlohmann::json::parse(read_bytes(path("out/report.json")));
+  EXPECT_EQ(report["masks"]["views"].size(), std::size_t(kViews));
+  EXPECT_EQ(report["masks"]["views"][3]["source"], "mask files");
+  EXPECT_NE(report["masks"]["views"][2]["source"], "mask files");
+  fail(1, reconstruct({"--masks", path("cutouts"), "--strict"}), {said, "--strict"});
 }
 
 TEST_F(BadMasks, HolesInThemAreMendedUnlessTheyAreToBeKept) {

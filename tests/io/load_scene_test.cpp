@@ -138,22 +138,70 @@ TEST_F(LoadScene, MasksAreFoundBesideTheImagesFolder) {
   EXPECT_THAT(scene.warnings, IsEmpty());
 }
 
-TEST_F(LoadScene, AMaskDirectoryMustServeEveryView) {
+TEST_F(LoadScene, AMaskDirectoryMayLackSome) {
   LoadSceneOptions options;
   options.masks = MaskSource::kDirectory;
   EXPECT_THAT(error_with(options), HasSubstr("--masks is empty"));
   options.mask_directory = folder_ / "cut";
   EXPECT_THAT(error_with(options), HasSubstr("no such mask folder"));
-  put_image("cut/a.png");
   put_image("cut/b.png.png");
-  EXPECT_THAT(error_with(options), AllOf(HasSubstr("cut"), HasSubstr("no mask for c.png")));
+  const Scene scene = load_scene(folder_, options);
+  EXPECT_TRUE(scene.views[0].mask.empty());
+  EXPECT_EQ(scene.views[1].mask, folder_ / "cut/b.png.png");
+  EXPECT_TRUE(scene.views[2].mask.empty());
+  EXPECT_THAT(scene.warnings, ElementsAre(AllOf(HasSubstr("cut holds no mask for 2 of 3 views"),
+                                                HasSubstr("(a.png, c.png)"))));
+  options.strict = true;
+  EXPECT_THAT(error_with(options),
+              AllOf(HasSubstr("cut holds no mask for 2 of 3 views (a.png, c.png)"),
+                    HasSubstr("--strict"), HasSubstr("a.png.png and a.png, .jpg")));
+  put_image("cut/a.png");
   put_image("cut/c.png", 8, 7);
   EXPECT_THAT(error_with(options), AllOf(HasSubstr("c.png"), HasSubstr("8 x 7")));
   put_image("cut/c.png");
-  EXPECT_EQ(load_scene(folder_, options).views[2].mask, folder_ / "cut/c.png");
+  const Scene complete = load_scene(folder_, options);
+  EXPECT_EQ(complete.views[2].mask, folder_ / "cut/c.png");
+  EXPECT_THAT(complete.warnings, IsEmpty());
+}
+
+TEST_F(LoadScene, AMaskDirectoryMustHoldOne) {
+  LoadSceneOptions options;
+  options.masks = MaskSource::kDirectory;
+  options.mask_directory = folder_ / "cut";
+  put_image("cut/other.png");
+  EXPECT_THAT(error_with(options), AllOf(HasSubstr("cut: there is no mask for any of the 3 views"),
+                                         HasSubstr("a.png.png and a.png, .jpg")));
   // The images' own folder is no mask folder, though every name is in it.
   options.mask_directory = folder_ / "images";
-  EXPECT_THAT(error_with(options), HasSubstr("no mask for a.png"));
+  EXPECT_THAT(error_with(options), HasSubstr("images: there is no mask for any"));
+}
+
+TEST_F(LoadScene, MissingMasksAreNamedUpToThree) {
+  LoadSceneOptions options;
+  options.masks = MaskSource::kDirectory;
+  options.mask_directory = folder_ / "cut";
+  put_image("cut/a.png");
+  Scene scene = example_scene(folder_ / "images");
+  for (const char* name : {"d.png", "e.png"}) {
+    SourceView more = scene.views[2];
+    more.name = name;
+    more.image = folder_ / "images" / name;
+    put_image(std::string("images/") + name);
+    scene.views.push_back(more);
+  }
+  write_middlebury(scene, folder_);
+  EXPECT_THAT(load_scene(folder_, options).warnings,
+              ElementsAre(HasSubstr("4 of 5 views (b.png, c.png, d.png and 1 more)")));
+}
+
+TEST_F(LoadScene, AnAutomaticMaskFolderThatLacksSomeIsRefusedWhenStrict) {
+  put_image("masks/a.png");
+  put_image("masks/b.png");
+  LoadSceneOptions options;
+  options.strict = true;
+  EXPECT_THAT(error_with(options), AllOf(HasSubstr("1 of 3 views (c.png)"), HasSubstr("--strict")));
+  put_image("masks/c.png");
+  EXPECT_THAT(load_scene(folder_, options).warnings, IsEmpty());
 }
 
 TEST_F(LoadScene, BoxOptionComesFirst) {

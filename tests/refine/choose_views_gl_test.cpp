@@ -75,6 +75,9 @@ class ChooseViews : public ::testing::TestWithParam<int> {
 
 TEST_P(ChooseViews, AgreesOnRandomPoints) {
   views_ = test::random_views(rng_, GetParam());
+  for (View& view : views_)
+    if (std::uniform_int_distribution(0, 1)(rng_))
+      view.sharpness = std::uniform_real_distribution(0.5, 1.3)(rng_);
   const TriMesh mesh = test::random_points(rng_, 2000);
   const Found found = run(mesh);
   ASSERT_EQ(found.choices.size(), mesh.positions.size());
@@ -174,6 +177,30 @@ TEST_F(ChooseViewsOf, HiddenSurfelIsUnseen) {
                                 found.choices[0].hidden.z, found.choices[0].hidden.w};
   EXPECT_EQ(std::set<int>(hidden.begin(), hidden.end()).size(), 4u);
   for (const int view : hidden) EXPECT_TRUE(view >= 0 && view < 8);
+}
+
+TEST_F(ChooseViewsOf, BlurredViewsGiveWayToSharpOnesThatSeeTheSame) {
+  add_ring(10, 20);
+  add_ring(10, 35);
+  for (std::size_t i = 0; i < 10; ++i) views_[i].sharpness = 0.8;
+  TriMesh mesh;
+  test::add_vertex({24, 24, 24}, {0, 0, 1}, mesh);
+  const Found found = run(mesh);
+  const std::vector<int> chosen = test::views_of(found.choices[0]);
+  EXPECT_EQ(chosen.size(), std::size_t(shaders::kMatchViews));
+  for (const int view : chosen) EXPECT_GE(view, 10);  // cos 20 x 0.62 < cos 35
+  EXPECT_TRUE(agrees(mesh, found, 0));
+}
+
+TEST_F(ChooseViewsOf, BlurredViewsServeWhereThereAreNoOthersAndSharperOnesAreWorthNoMore) {
+  add_ring(10, 20);
+  TriMesh mesh;
+  test::add_vertex({24, 24, 24}, {0, 0, 1}, mesh);
+  const std::vector<int> plain = test::views_of(run(mesh).choices[0]);
+  for (View& view : views_) view.sharpness = 2;
+  EXPECT_EQ(test::views_of(run(mesh).choices[0]), plain);
+  for (View& view : views_) view.sharpness = 0.5;
+  EXPECT_EQ(run(mesh).choices[0].second.w, int(plain.size()));
 }
 
 TEST_F(ChooseViewsOf, TiesAreSettledOneWayOrTheOther) {

@@ -37,7 +37,8 @@ inline std::vector<refine::reference::MatchView> reference_views(const std::vect
     out.push_back({projtex::to_grid(view.camera, kGrid),
                    {},
                    {},
-                   projtex::reference::mip_chain(view.image, {kImageEdge, kImageEdge})});
+                   projtex::reference::mip_chain(view.image, {kImageEdge, kImageEdge}),
+                   std::min(view.sharpness / 0.9, 1.0)});
   return out;
 }
 

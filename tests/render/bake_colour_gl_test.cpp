@@ -42,7 +42,11 @@ std::vector<BakeView> reference_views(const std::vector<View>& views,
   const visibility::DepthMaps maps = render::occluder_maps(cameras, kGrid);
   std::vector<BakeView> out;
   for (std::size_t i = 0; i < views.size(); ++i) {
-    BakeView view{projtex::to_grid(cameras[i], kGrid), maps.infos()[i], {}, &views[i].image};
+    BakeView view{projtex::to_grid(cameras[i], kGrid),
+                  maps.infos()[i],
+                  {},
+                  &views[i].image,
+                  std::min(views[i].sharpness / 0.9, 1.0)};
     view.depths.assign(std::size_t(view.depth_info.size.x) * view.depth_info.size.y, 1e30);
     for (const auto& v : vertices)
       render::reference::splat_point(glm::dvec3(v.position), glm::dvec3(v.normal), view);
@@ -82,8 +86,11 @@ class BakeAgainstReference : public ::testing::TestWithParam<int> {};
 
 TEST_P(BakeAgainstReference, AgreesOnRandomPoints) {
   test::Rng rng(GetParam());
-  const std::vector<View> views = random_views(rng, GetParam());
+  std::vector<View> views = random_views(rng, GetParam());
   TriMesh mesh = random_points(rng, 3000);
+  for (View& view : views)
+    if (std::uniform_int_distribution(0, 1)(rng))
+      view.sharpness = std::uniform_real_distribution(0.5, 1.3)(rng);
   const auto vertices = render::to_voxels(kGrid, mesh);
   std::vector<render::PooledEvidence> baked;  // of single points: nothing to pool
   bake(views, mesh, nullptr, &baked);
@@ -176,6 +183,30 @@ TEST(BakeColour, LargeTrianglesHideWhatIsBehindThem) {
   bake({plain_view(ahead, {0.8, 0.1, 0.1})}, mesh);
   EXPECT_EQ(std::count(mesh.confidence.begin() + long(back), mesh.confidence.end(), 0.0f),
             long(mesh.confidence.size() - back));
+}
+
+TEST(BakeColour, BlurredViewsSayLess) {
+  const double voxel = kGrid.voxel_size;
+  TriMesh mesh;
+  mesh.origin = kGrid.world({24, 24, 24});
+  test::add_plate(0, 0, 0, 10 * voxel, voxel, mesh);
+  const glm::dvec3 target = mesh.origin;
+  const auto from = [&](double x) {
+    return test::look_at(target - glm::dvec3(x, 0, 6), target, 300, 128, 128, {0, 1, 0});
+  };
+  std::vector<View> views = {plain_view(from(-1), {0.3, 0.3, 0.3}),
+                             plain_view(from(1), {0.33, 0.3, 0.3})};
+  const auto red = [&] {
+    TriMesh copy = mesh;
+    bake(views, copy);
+    return copy.colours[copy.colours.size() / 2].r;
+  };
+  const float even = red();
+  views[1].sharpness = 0.5;
+  const float first = red();
+  views[0].sharpness = 0.5;
+  EXPECT_LT(first, even);
+  EXPECT_NEAR(red(), even, 1e-4);
 }
 
 TEST(BakeColour, EmptyMesh) {
