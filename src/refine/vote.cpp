@@ -31,20 +31,20 @@ class Voter {
   /// they passed through it.
   Revision revise(SparseVolume& volume) const {
     Revision out;
-    for (const auto& [voxel, value] :
-         votes(&RayMap::before, volume.grid, options_.least_weight, SparseVolume::kBand)) {
-      const float old = volume.at(voxel);
-      if (value > old - kNews) continue;
-      out.added += value < 0 && old >= 0;
-      stored(voxel, volume) = value;
-    }
-    for (const auto& [voxel, value] :
-         votes(&RayMap::through, volume.grid, options_.freeing_weight, -SparseVolume::kBand)) {
-      const float old = volume.at(voxel);
-      if (value < old + kNews || value < 0) continue;
-      out.freed += old < 0;
-      stored(voxel, volume) = value;
-    }
+    for_votes(&RayMap::before, volume.grid, options_.least_weight, SparseVolume::kBand,
+              [&](const glm::ivec3& voxel, float value) {
+                const float old = volume.at(voxel);
+                if (value > old - kNews) return;
+                out.added += value < 0 && old >= 0;
+                stored(voxel, volume) = value;
+              });
+    for_votes(&RayMap::through, volume.grid, options_.freeing_weight, -SparseVolume::kBand,
+              [&](const glm::ivec3& voxel, float value) {
+                const float old = volume.at(voxel);
+                if (value < old + kNews || value < 0) return;
+                out.freed += old < 0;
+                stored(voxel, volume) = value;
+              });
     return out;
   }
 
@@ -139,20 +139,22 @@ class Voter {
     return out;
   }
 
-  /// What the rays say of voxels beside points of the maps.
-  std::vector<std::pair<glm::ivec3, float>> votes(std::vector<glm::vec3> RayMap::*points,
-                                                  const GridSpec& grid, double least,
-                                                  double silent) const {
-    std::vector<glm::vec3> all;
-    for (const RayMap& map : maps_)
-      all.insert(all.end(), (map.*points).begin(), (map.*points).end());
-    const VoxelSet voxels = around(all, grid);
-    std::vector<std::pair<glm::ivec3, float>> out(voxels.size());
-    tbb::parallel_for(std::size_t(0), voxels.size(), [&](std::size_t i) {
-      const glm::ivec3 voxel = Lattice(grid).voxel(voxels[i]);
-      out[i] = {voxel, std::max(hull_.at(voxel), float(vote(glm::dvec3(voxel), least, silent)))};
+  /// Calls use(voxel, vote) for the voxels beside points of the maps, in the lattice's order.
+  template <typename Use>
+  void for_votes(std::vector<glm::vec3> RayMap::*points, const GridSpec& grid, double least,
+                 double silent, const Use& use) const {
+    std::vector<std::span<const glm::vec3>> lists;
+    for (const RayMap& map : maps_) lists.emplace_back(map.*points);
+    const Lattice lattice(grid);
+    std::vector<float> votes;
+    for_around(lists, grid, [&](const VoxelSet& voxels) {
+      votes.resize(voxels.size());
+      tbb::parallel_for(std::size_t(0), voxels.size(), [&](std::size_t i) {
+        const glm::ivec3 voxel = lattice.voxel(voxels[i]);
+        votes[i] = std::max(hull_.at(voxel), float(vote(glm::dvec3(voxel), least, silent)));
+      });
+      for (std::size_t i = 0; i < voxels.size(); ++i) use(lattice.voxel(voxels[i]), votes[i]);
     });
-    return out;
   }
 
   /// `silent`: where the rays say too little, their weights' sum being below `least`.
