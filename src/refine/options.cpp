@@ -36,15 +36,13 @@ void check(const VoteOptions& o) {
   require(o.least_weight > 0, "vote.least_weight must be positive");
   require(o.again_weight > 0, "vote.again_weight must be positive");
   require(o.rounds >= 0 && o.rounds <= 20, "vote.rounds must be 0 to 20");
+  require(o.last_rounds >= 0 && o.last_rounds <= 20, "vote.last_rounds must be 0 to 20");
   require(o.bare_reach >= 0 && o.bare_reach <= OpenVoteOptions::kAnyReach,
           "vote.bare_reach must be 0 to 1048576 rays");
   require(o.freeing_weight > 0, "vote.freeing_weight must be positive");
 }
 
 void check(const OpenVoteOptions& o) {
-  require(o.distinct_by > 0, "open.distinct_by must be positive");
-  require(o.rounds >= 0 && o.rounds <= 20, "open.rounds must be 0 to 20");
-  require(o.last_rounds >= 0 && o.last_rounds <= 20, "open.last_rounds must be 0 to 20");
   require(o.reach >= 0 && o.reach <= OpenVoteOptions::kAnyReach,
           "open.reach must be 0 to 1048576 rays");
   require(o.last_reach >= 0 && o.last_reach <= OpenVoteOptions::kAnyReach,

@@ -19,6 +19,7 @@ using gpu::Buffer;
 
 constexpr int kLengths[] = {8, 16, 32, 64};                 // samples along a ray
 constexpr std::size_t kMostThreads = std::size_t(1) << 21;  // of a dispatch
+constexpr double kHopeful = 0.2;               // below the least score, of what is worth spreading
 constexpr double kElsewhere = 2.5;             // voxels between places that are not the same
 constexpr int kGuesses = 8;                    // planes that a ray tries in a round
 constexpr double kLeastCosine = 0.2;           // between a plane's normal and the ray
@@ -86,8 +87,10 @@ class Lattice {
   Guesses guesses(std::size_t i, std::span<const Finding> findings, int round) const {
     const Ray& ray = rays_[i];
     Guesses out(ray);
-    const auto found = [&](int dx, int dy) { return neighbour(ray, dx, dy, findings); };
-    const int l = found(-1, 0), r = found(1, 0), a = found(0, -1), b = found(0, 1);
+    std::array<int, 6> found;
+    for (std::size_t k = 0; const glm::ivec2& d : neighbours(ray, round))
+      found[k++] = neighbour(ray, d.x, d.y, findings);
+    const auto [l, r, a, b] = std::array{found[0], found[1], found[2], found[3]};
     if (l >= 0 && r >= 0 && a >= 0 && b >= 0 && findings[i].along >= 0) {
       const glm::dvec3 across =
           glm::cross(at(r, findings) - at(l, findings), at(b, findings) - at(a, findings));
@@ -96,17 +99,29 @@ class Lattice {
         out.add_plane(at(int(i), findings), glm::dot(normal, ray.direction) > 0 ? -normal : normal);
       }
     }
-    for (const int k : {l, r, a, b}) add(k, findings, out);
-    const int far = round + 2, sign = (ray.x + ray.y + round) % 2 == 0 ? 1 : -1;
-    add(found(far, sign * far), findings, out);
-    add(found(-far, -sign * far), findings, out);
+    for (const int k : found) add(k, findings, out);
     Finding self = findings[i];
     if (self.along < 0) self.along = 0.5 * ray.length, self.normal = -ray.direction;
     out.fill(self, std::ldexp(1.0, -round), i + std::size_t(round));
     return out;
   }
 
+  /// The best score of a ray and of those whose planes it tries; -1: none found anything.
+  float best_about(std::size_t i, std::span<const Finding> findings, int round) const {
+    float best = findings[i].score;
+    for (const glm::ivec2& d : neighbours(rays_[i], round))
+      if (const int k = neighbour(rays_[i], d.x, d.y, findings); k >= 0)
+        best = std::max(best, findings[std::size_t(k)].score);
+    return best;
+  }
+
  private:
+  /// Where the rays are whose planes a ray tries in a round: beside it, and farther off.
+  static std::array<glm::ivec2, 6> neighbours(const Ray& ray, int round) {
+    const int far = round + 2, sign = (ray.x + ray.y + round) % 2 == 0 ? 1 : -1;
+    return {{{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {far, sign * far}, {-far, -sign * far}}};
+  }
+
   /// That many rays away, with a finding; -1: none.
   int neighbour(const Ray& ray, int dx, int dy, std::span<const Finding> findings) const {
     const int x = ray.x + dx, y = ray.y + dy;
@@ -248,9 +263,13 @@ void RaySearch::spread(std::span<const Ray> rays, int width, int height,
   constexpr std::size_t batch = kMostThreads / kGuesses;
   for (int round = 0; round < options_.rounds; ++round) {
     const std::vector<Finding> before(findings.begin(), findings.end());
-    for (std::size_t first = 0; first < unknown.size(); first += batch) {
-      const auto part = std::span<const std::size_t>(unknown).subspan(
-          first, std::min(batch, unknown.size() - first));
+    std::vector<std::size_t> trying;
+    for (const std::size_t i : unknown)
+      if (lattice.best_about(i, before, round) >= options_.least_score - kHopeful)
+        trying.push_back(i);
+    for (std::size_t first = 0; first < trying.size(); first += batch) {
+      const auto part = std::span<const std::size_t>(trying).subspan(
+          first, std::min(batch, trying.size() - first));
       std::vector<shaders::BakeVertex> surfels(part.size() * kGuesses);
       tbb::parallel_for(std::size_t(0), part.size(), [&](std::size_t i) {
         const Guesses guesses = lattice.guesses(part[i], before, round);

@@ -64,6 +64,8 @@ class RaySearch {
 
   /// PatchMatch [Barnes09, Bleyer11]: each ray that is not known tries its neighbours' planes, the
   /// plane through their places, and planes a little off its own, finer by half with every round.
+  /// Rays are left out that have found nothing near the least score that tells anything, and whose
+  /// neighbours have not either.
   /// `width`, `height`: of the lattice.
   void spread(std::span<const Ray> rays, int width, int height,
               const shaders::MatchChoice& partners, std::span<Finding> findings) const;

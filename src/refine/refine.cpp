@@ -206,10 +206,8 @@ class Refiner {
 
   VoteOptions vote_options(bool last) const {
     VoteOptions options = options_.vote;
-    if (is_bounded()) return options;
-    options.distinct_by = options_.open.distinct_by;
-    options.rounds = last ? options_.open.last_rounds : options_.open.rounds;
-    options.bare_reach = last ? options_.open.last_reach : options_.open.reach;
+    if (last) options.rounds = options.last_rounds;
+    if (!is_bounded()) options.bare_reach = last ? options_.open.last_reach : options_.open.reach;
     return options;
   }
 

@@ -28,11 +28,10 @@
 
 namespace photohull::refine {
 
-/// How rays vote where no silhouettes bound space, for what VoteOptions says with them.
+/// Which rays that meet no surface vote again where no silhouettes bound space: those at most so
+/// many rays from one that does, at all levels but the last, and at that.
 struct OpenVoteOptions {
-  double distinct_by = 0.25;
-  int rounds = 2, last_rounds = 1;        ///< at all levels but the last, and at that
-  int reach = kAnyReach, last_reach = 8;  ///< likewise, of rays that meet no surface
+  int reach = kAnyReach, last_reach = 8;
   static constexpr int kAnyReach = 1 << 20;
 };
 

@@ -19,12 +19,14 @@ struct VoteOptions {
   double tap_spacing = 0.7;  ///< of the patches across the rays, voxels
   double best_pairs = 0.5;   ///< share of the pairs of views that the score is the mean of
   double least_score = 0.5;  ///< of the best sample on a ray; below, the ray says nothing
-  double distinct_by = 0.15;  ///< lead over the second best that gives a ray full weight
+  double distinct_by = 0.25;  ///< lead over the second best that gives a ray full weight
   double band = 1.5;          ///< voxels; at most kBand: a ray's say ends that far behind its depth
   double least_weight = 1.5;  ///< sum of the rays' weights below which a voxel stays
   double again_weight = 2;    ///< likewise, for what vote_again adds
   double freeing_weight = 3;  ///< and for what it frees: plain surface is not explained either
-  int rounds = 0;  ///< of trying neighbours' planes, after a ray has been searched by itself
+  /// Of trying neighbours' planes, after a ray has been searched by itself, at all levels but the
+  /// last, and at that.
+  int rounds = 2, last_rounds = 1;
   int bare_reach =
       0;  ///< rays between one that meets no surface and votes again, and one that does
 };
