@@ -82,6 +82,7 @@ class RaySearchTest : public WallScene {
 
 TEST_F(RaySearchTest, PlanesTurnToTheSurface) {
   VoteOptions options;
+  options.rounds = 0;
   const auto [off, turned] = errors(search(options));
   options.rounds = 3;
   const auto [off_after, turned_after] = errors(search(options));
@@ -93,6 +94,7 @@ TEST_F(RaySearchTest, PlanesTurnToTheSurface) {
 
 TEST_F(RaySearchTest, ScoresNeverFall) {
   VoteOptions options;
+  options.rounds = 0;
   const std::vector<Finding> before = search(options);
   options.rounds = 2;
   const std::vector<Finding> after = search(options);
@@ -103,6 +105,12 @@ TEST_F(RaySearchTest, ScoresNeverFall) {
     better += after[i].moved;
   }
   EXPECT_GT(better, int(before.size()) / 2);
+}
+
+TEST_F(RaySearchTest, WhatFoundNothingWorthTellingIsLeftOut) {
+  VoteOptions options;
+  options.least_score = 1.25;  // no score is near it
+  for (const Finding& found : search(options)) EXPECT_FALSE(found.moved);
 }
 
 TEST_F(RaySearchTest, WhatIsKnownStaysAndSpreads) {
