@@ -9,6 +9,10 @@ namespace {
 
 using nlohmann::ordered_json;
 
+ordered_json finite_or_null(double value) {
+  return std::isfinite(value) ? ordered_json(value) : ordered_json();
+}
+
 ordered_json vector_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
 void add_pose(const Pose& pose, ordered_json& j) {
@@ -28,7 +32,7 @@ void add_lens(const Intrinsics& k, const Distortion& distortion, LensModel lens,
 ordered_json view_json(const BoardView& view, double rms, bool left_out) {
   return {{"name", view.name},
           {"points", view.points.size()},
-          {"rms", std::isnan(rms) ? ordered_json() : ordered_json(rms)},
+          {"rms", finite_or_null(rms)},
           {"left_out", left_out}};
 }
 
@@ -47,22 +51,35 @@ void print_view(const BoardView& view, double rms, bool left_out) {
                 left_out ? ", left out" : "");
 }
 
-void print_lens(const Intrinsics& k, double focal_sigma, double principal_sigma, double rms) {
-  std::printf("focal length     %.3f, %.3f +- %.3f px\n", k.fx, k.fy, focal_sigma);
-  std::printf("principal point  %.3f, %.3f +- %.3f px\n", k.cx, k.cy, principal_sigma);
+void print_lens(const Intrinsics& k, bool known, double focal_sigma, double principal_sigma,
+                double rms) {
+  const auto print = [known](const char* name, double x, double y, double sigma) {
+    std::printf("%-16s %.3f, %.3f", name, x, y);
+    if (known)
+      std::printf(" px, known\n");
+    else
+      std::printf(" +- %.3f px\n", sigma);
+  };
+  print("focal length", k.fx, k.fy, focal_sigma);
+  print("principal point", k.cx, k.cy, principal_sigma);
   std::printf("reprojection     %.4f px rms\n", rms);
 }
+
+void print_object_error(double error) { std::printf("at the object    +- %.4f px\n", error); }
 
 }  // namespace
 
 std::string calibration_json(const std::vector<BoardView>& views, const Calibration& c,
-                             LensModel lens) {
+                             const std::vector<std::string>& warnings) {
   ordered_json j;
   j["photohull_calibration"] = c.turntable ? "turntable" : "camera";
-  add_lens(c.intrinsics, c.distortion, lens, j);
+  add_lens(c.intrinsics, c.distortion, c.model, j);
   j["rms"] = c.all_rms;
   j["focal_sigma"] = c.focal_sigma;
   j["principal_point_sigma"] = c.principal_sigma;
+  j["lens_known"] = c.lens_known;
+  j["object_error"] = finite_or_null(c.object_error);
+  j["warnings"] = warnings;
   if (c.turntable)
     j["turntable"] = {{"axis", vector_json(c.turntable->direction)},
                       {"point", vector_json(c.turntable->point)},
@@ -84,20 +101,23 @@ std::string calibration_json(const std::vector<BoardView>& views, const Calibrat
 
 std::string rig_json(const std::vector<RigCameraViews>& views,
                      const std::vector<std::string>& moments, const RigCalibration& rig,
-                     LensModel lens) {
+                     const std::vector<std::string>& warnings) {
   ordered_json j;
   j["photohull_calibration"] = "rig";
   j["rms"] = rig.all_rms;
+  j["object_error"] = finite_or_null(rig.object_error);
+  j["warnings"] = warnings;
   j["cameras"] = ordered_json::array();
   for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
     const RigCamera& camera = rig.cameras[c];
     ordered_json entry;
     entry["name"] = camera.name;
-    add_lens(camera.intrinsics, camera.distortion, lens, entry);
+    add_lens(camera.intrinsics, camera.distortion, camera.model, entry);
     add_pose(camera.cam_from_rig, entry);
     entry["rms"] = camera.all_rms;
     entry["focal_sigma"] = camera.focal_sigma;
     entry["principal_point_sigma"] = camera.principal_sigma;
+    entry["lens_known"] = camera.lens_known;
     entry["rotation_sigma_degrees"] = camera.rotation_sigma;
     entry["translation_sigma"] = camera.translation_sigma;
     entry["views"] = ordered_json::array();
@@ -114,7 +134,8 @@ std::string rig_json(const std::vector<RigCameraViews>& views,
 
 void print_calibration(const std::vector<BoardView>& views, const Calibration& c) {
   for (std::size_t i = 0; i < views.size(); ++i) print_view(views[i], c.rms[i], c.left_out[i]);
-  print_lens(c.intrinsics, c.focal_sigma, c.principal_sigma, c.all_rms);
+  print_lens(c.intrinsics, c.lens_known, c.focal_sigma, c.principal_sigma, c.all_rms);
+  print_object_error(c.object_error);
   if (!c.turntable) return;
   const TurntableAxis& t = *c.turntable;
   std::printf("axis             %.6f %.6f %.6f +- %.4f degrees\n", t.direction.x, t.direction.y,
@@ -134,13 +155,15 @@ void print_rig(const std::vector<RigCameraViews>& views, const RigCalibration& r
     for (std::size_t m = 0; m < views[c].views.size(); ++m)
       if (!views[c].views[m].name.empty())
         print_view(views[c].views[m], camera.rms[m], camera.left_out[m]);
-    print_lens(camera.intrinsics, camera.focal_sigma, camera.principal_sigma, camera.all_rms);
+    print_lens(camera.intrinsics, camera.lens_known, camera.focal_sigma, camera.principal_sigma,
+               camera.all_rms);
     const Pose& pose = camera.cam_from_rig;
     const glm::dvec3 center = -(glm::transpose(pose.rotation) * pose.translation);
     std::printf("centre           %g %g %g; turned +- %.4f degrees, moved +- %.2g\n", center.x,
                 center.y, center.z, camera.rotation_sigma, camera.translation_sigma);
   }
   std::printf("all              %.4f px rms\n", rig.all_rms);
+  print_object_error(rig.object_error);
 }
 
 }  // namespace photohull::cli

@@ -8,12 +8,12 @@
 
 namespace photohull::cli {
 
-/// A camera, or with calibration.turntable a turntable.
+/// A camera, or with calibration.turntable a turntable. `warnings`: what is doubtful in it.
 std::string calibration_json(const std::vector<BoardView>& views, const Calibration& calibration,
-                             LensModel lens);
+                             const std::vector<std::string>& warnings);
 std::string rig_json(const std::vector<RigCameraViews>& views,
                      const std::vector<std::string>& moments, const RigCalibration& rig,
-                     LensModel lens);
+                     const std::vector<std::string>& warnings);
 
 /// For people, on standard output.
 void print_calibration(const std::vector<BoardView>& views, const Calibration& calibration);

@@ -1,9 +1,13 @@
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 
 #include "calib/calibrate_rig.h"
+#include "calib/judge_calibration.h"
 #include "calibration_json.h"
 #include "commands.h"
 #include "core/atomic_file.h"
@@ -11,7 +15,9 @@
 #include "core/parse_name.h"
 #include "io/board_images.h"
 #include "io/image_file.h"
+#include "io/read_lens.h"
 #include "number_list.h"
+#include "other_board.h"
 #include "terminal_progress.h"
 
 namespace photohull::cli {
@@ -22,7 +28,7 @@ namespace fs = std::filesystem;
 struct Arguments {
   std::vector<std::string> images;
   std::string board = "chess", lens = "brown", out, coverage;
-  std::optional<std::string> rig, angles;
+  std::optional<std::string> rig, angles, lens_from;
   std::optional<double> step;
   BoardSpec spec;
   bool turntable = false, json = false;
@@ -64,6 +70,49 @@ void write_result(const Arguments& a, const std::string& text) {
   if (a.json) std::fputs(text.c_str(), stdout);
 }
 
+/// The lens of --lens-from for these pictures, of the rig's camera named so; nothing where the lens
+/// is to be found, or where no picture shows the board, which is said elsewhere.
+std::optional<KnownLens> known_lens(const Arguments& a, const std::vector<BoardView>& views,
+                                    const std::string& camera = {}) {
+  if (!a.lens_from) return std::nullopt;
+  for (const BoardView& view : views) {
+    if (view.points.empty()) continue;
+    const io::CameraLens lens = io::read_lens(*a.lens_from, view.width, view.height, camera);
+    return KnownLens{lens.intrinsics, lens.distortion};
+  }
+  return std::nullopt;
+}
+
+/// Runs `calibrate`, and where that fails says whether another board would not.
+template <typename Calibrate>
+auto with_hint(const Arguments& a, const std::vector<fs::path>& images, LensModel lens,
+               const Calibrate& calibrate) {
+  try {
+    return calibrate();
+  } catch (const UsageError&) {
+    throw;
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error& failure) {
+    const std::string hint = suggest_board(images, a.spec, lens, INFINITY);
+    if (hint.empty()) throw;
+    throw Error(concat(failure.what(), "; ", hint));
+  }
+}
+
+/// Throws Error for what must not be used, before anything is written; else returns the doubts,
+/// told.
+std::vector<std::string> check(const Arguments& a, const std::vector<fs::path>& images,
+                               LensModel lens, double rms, const CalibrationJudgement& judged) {
+  const std::string hint = judged.misfits ? suggest_board(images, a.spec, lens, rms) : "";
+  if (!judged.refusal.empty())
+    throw Error(concat(judged.refusal, hint.empty() ? "" : "; ", hint, "; nothing was written"));
+  std::vector<std::string> doubts = judged.doubts;
+  if (!hint.empty()) doubts.push_back(hint);
+  for (const std::string& text : doubts) std::fprintf(stderr, "warning: %s\n", text.c_str());
+  return doubts;
+}
+
 void run_rig(const Arguments& a, LensModel lens) {
   if (a.turntable) throw UsageError("--rig and --turntable: calibrate one at a time");
   if (!a.coverage.empty()) throw UsageError("--coverage is for one camera, not for --rig");
@@ -80,9 +129,16 @@ void run_rig(const Arguments& a, LensModel lens) {
                         : boards.find(image, image.lexically_relative(a.images[0]).string()));
   }
   boards.finish();
-  const RigCalibration rig = calibrate_rig(views, lens);
-  write_result(a, rig_json(views, images.moments, rig, lens));
+  std::vector<fs::path> all;
+  for (std::size_t c = 0; c < views.size(); ++c) {
+    views[c].known = known_lens(a, views[c].views, views[c].name);
+    std::copy_if(images.images[c].begin(), images.images[c].end(), std::back_inserter(all),
+                 [](const fs::path& image) { return !image.empty(); });
+  }
+  const RigCalibration rig = with_hint(a, all, lens, [&] { return calibrate_rig(views, lens); });
   if (!a.json) print_rig(views, rig);
+  const auto doubts = check(a, all, lens, rig.all_rms, judge_calibration(rig));
+  write_result(a, rig_json(views, images.moments, rig, doubts));
 }
 
 void run_camera(const Arguments& a, LensModel lens) {
@@ -97,13 +153,17 @@ void run_camera(const Arguments& a, LensModel lens) {
   for (const fs::path& image : images)
     views.push_back(boards.find(image, image.filename().string()));
   boards.finish();
-  const Calibration calibration = calibrate(views, options);
-  write_result(a, calibration_json(views, calibration, lens));
+  options.known = known_lens(a, views);
+  const Calibration calibration =
+      with_hint(a, images, lens, [&] { return calibrate(views, options); });
+  if (!a.json) print_calibration(views, calibration);
+  const auto doubts =
+      check(a, images, lens, calibration.all_rms, judge_calibration(views, calibration));
+  write_result(a, calibration_json(views, calibration, doubts));
   if (!a.coverage.empty()) {
     const ColourImage picture = coverage_picture(views, calibration);
     io::write_png(a.coverage, picture.width, picture.height, 4, picture.bytes);
   }
-  if (!a.json) print_calibration(views, calibration);
 }
 
 void run(Arguments a) {
@@ -143,7 +203,12 @@ void add_calibrate(CLI::App& app) {
       ->capture_default_str();
   c->add_option("--dictionary", a->spec.dictionary, "charuco: number of OpenCV's dictionary")
       ->capture_default_str();
-  c->add_option("--lens", a->lens, "pinhole, brown, rational or fisheye")->capture_default_str();
+  CLI::Option* lens = c->add_option("--lens", a->lens, "pinhole, brown, rational or fisheye");
+  lens->capture_default_str();
+  c->add_option("--lens-from", a->lens_from,
+                "the lens is known, and poses alone are found: a file of photohull calibrate, or a "
+                "scene of one lens in any format")
+      ->excludes(lens);
   c->add_flag("--turntable", a->turntable,
               "a fixed camera and a board that turns: find their common axis and the angles");
   c->add_option("--step", a->step,
@@ -156,14 +221,17 @@ void add_calibrate(CLI::App& app) {
   c->add_option("--coverage", a->coverage, "PNG of where in the frame the board was seen");
   c->add_flag("--json", a->json, "print the calibration instead of a summary");
   c->footer(
-      "Views whose error is far from the others' are named and left out. The file serves "
+      "Views whose error is far from the others' are named and left out. What cannot be a camera, "
+      "or "
+      "is too uncertain to reconstruct with, is refused with exit code 1 and no file; what is "
+      "doubtful is warned of. The file serves "
       "'photohull convert CALIB --images PHOTOGRAPHS', which makes a scene of photographs that the "
       "same cameras took.\n\n"
       "Examples:\n"
       "  photohull calibrate boards/ --columns 9 --rows 6 --square 0.025 --out calib.json\n"
       "  photohull calibrate rig/ --rig \"{camera}/{moment}\" --square 0.025 --out rig.json\n"
       "  photohull calibrate table/ --board charuco --columns 8 --rows 6 --turntable --step 10 "
-      "--out t.json");
+      "--lens-from calib.json --out t.json");
   c->callback([a] { run(*a); });
 }
 

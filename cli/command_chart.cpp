@@ -49,6 +49,17 @@ void print_summary(const chart::ChartSummary& summary, const chart::Plan& plan,
               (summary.files.size() - 1) / 2);
 }
 
+/// Before anything runs.
+void check_arguments(const chart::ChartJob& job) {
+  for (const auto& run : job.runs()) {
+    try {
+      check_reconstruct(run.planned.arguments);
+    } catch (const Error& e) {
+      throw Error(concat(job.plan().file.string(), ": ", run.planned.label(), ": ", e.what()));
+    }
+  }
+}
+
 void run(const Arguments& a) {
   if (a.draw_only && (a.force || a.retry || a.dry_run))
     throw UsageError("--draw-only makes no runs: leave out --force, --retry and --dry-run");
@@ -59,6 +70,7 @@ void run(const Arguments& a) {
   options.retry = a.retry;
   options.draw_only = a.draw_only;
   chart::ChartJob job(options);
+  if (!a.draw_only) check_arguments(job);
   print_notes(job.plan());
   TerminalProgress progress(job.total_weight());
   for (const std::string& warning : job.warnings()) progress.warn(warning);

@@ -15,20 +15,19 @@ namespace {
 struct Arguments {
   SceneArguments scene;
   std::string to, out;
-  std::optional<std::string> images, angles, moment;
+  std::optional<std::string> angles, moment;
   std::optional<double> step;
   bool undistort = false;
 };
 
 io::LoadSceneOptions options_of(const Arguments& a) {
   io::LoadSceneOptions options = a.scene.options();
-  if (!a.images) {
-    if (a.step || a.angles || a.moment)
-      throw UsageError("--step, --angles and --moment are for calibrations with --images");
-    return options;
-  }
+  if (!a.step && !a.angles && !a.moment) return options;
+  if (!a.scene.images)
+    throw UsageError("--step, --angles and --moment are for calibrations with --images");
   if (a.step && a.angles) throw UsageError("--step and --angles: give one of them");
-  options.calibrated = io::CalibratedImages{*a.images, a.step, {}, a.moment.value_or("")};
+  options.calibrated = io::CalibratedImages{options.images, a.step, {}, a.moment.value_or("")};
+  options.images.clear();
   if (a.angles) options.calibrated->angles = parse_numbers("--angles", *a.angles);
   return options;
 }
@@ -38,7 +37,7 @@ void run(const Arguments& a) {
   if (a.out.empty()) throw UsageError("--out is empty: give the folder for the converted scene");
   Scene scene = io::load_scene(a.scene.scene, options_of(a));
   a.scene.complete_box(scene);
-  const std::string from = a.images ? a.scene.scene : to_string(scene.format);
+  const std::string from = a.scene.images ? a.scene.scene : to_string(scene.format);
   for (const std::string& text : scene.warnings)
     std::fprintf(stderr, "photohull: warning: %s\n", text.c_str());
   if (a.undistort) {
@@ -62,9 +61,10 @@ void add_convert(CLI::App& app) {
   c->add_option("--out", a->out, "folder for the result; made when it does not exist")->required();
   c->add_flag("--undistort", a->undistort,
               "resample the photographs and masks to pinhole cameras that any format can express");
-  c->add_option("--images", a->images,
-                "photographs by the cameras that 'photohull calibrate' calibrated; SCENE is its "
-                "file");
+  c->get_option("--images")
+      ->description(
+          "folder of the photographs, where they are not where the scene has them; of a file of "
+          "'photohull calibrate' those of the object");
   c->add_option("--moment", a->moment, "rig: which of each camera's photographs, by name");
   c->add_option("--step", a->step, "turntable: degrees from each photograph to the next");
   c->add_option("--angles", a->angles, "turntable: degrees of each photograph, \"0 7.5 20 ...\"");

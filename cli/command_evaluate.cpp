@@ -26,6 +26,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kAlignWeight = 6;       // of the progress
+constexpr double kPoorAlignment = 0.02;  // of the truth's diagonal
+
 struct Arguments {
   std::string mesh, error_mesh, error_image, reliability_plot;
   std::optional<std::string> truth;
@@ -33,7 +36,7 @@ struct Arguments {
   double error_range = 0.005;
   std::optional<double> reliability;  ///< world units
   eval::EvaluateOptions options;
-  bool json = false;
+  bool json = false, align = false;
 };
 
 void print_scores(const std::vector<eval::Score>& all, const std::vector<eval::Score>& seen) {
@@ -65,6 +68,14 @@ void print_reliability(const eval::Reliability& r) {
               r.calibration_error, r.brier, shown(r.auc).c_str(), shown(r.spearman).c_str());
 }
 
+void print_alignment(const eval::Alignment& a, double diagonal) {
+  std::printf(
+      "aligned     scaled by %.6g, turned by %.4g degrees, then moved by %g %g %g; %.4g %% of the "
+      "diagonal rms is left\n",
+      a.scale, a.degrees, a.translation.x, a.translation.y, a.translation.z,
+      100 * a.rms / diagonal);
+}
+
 void print_text(const eval::Evaluation& e) {
   const double d = e.truth_diagonal;
   const auto row = [d](const char* name, double seen, double all) {
@@ -76,7 +87,11 @@ void print_text(const eval::Evaluation& e) {
   };
   std::printf("result      %s: %zu vertices, %zu faces%s\n", e.result_name.c_str(), e.vertices,
               e.faces, e.points ? ", judged as points" : "");
-  std::printf("truth       %s: %zu faces, diagonal %g\n", e.truth_name.c_str(), e.truth_faces, d);
+  if (e.truth_is_points)
+    std::printf("truth       %s: points, diagonal %g\n", e.truth_name.c_str(), d);
+  else
+    std::printf("truth       %s: %zu faces, diagonal %g\n", e.truth_name.c_str(), e.truth_faces, d);
+  if (e.alignment) print_alignment(*e.alignment, d);
   std::printf("counted     %s\n", e.truth_note.c_str());
   std::printf(
       "samples     %zu of the result, %.2f %% over seen surface; %zu of %zu of the truth\n\n",
@@ -87,7 +102,8 @@ void print_text(const eval::Evaluation& e) {
   row("result to truth, mean", e.seen.to_truth.mean, e.all.to_truth.mean);
   row("                 median", e.seen.to_truth.median, e.all.to_truth.median);
   row("                 RMS", e.seen.to_truth.rms, e.all.to_truth.rms);
-  row("                 signed", e.seen.mean_signed, e.all.mean_signed);
+  if (e.all.mean_signed)
+    row("                 signed", e.seen.mean_signed.value(), *e.all.mean_signed);
   one("truth to result, mean", e.to_result.mean);
   one("                 median", e.to_result.median);
   one("                 RMS", e.to_result.rms);
@@ -168,13 +184,26 @@ void check(const Arguments& a) {
                             ": expected a name that ends in .svg or .png"));
 }
 
-eval::Evaluation evaluate_by_truth(const Arguments& a, const TriMesh& result, Outputs& outputs,
+eval::Evaluation evaluate_by_truth(const Arguments& a, const TriMesh& given, Outputs& outputs,
                                    Progress& progress) {
   const eval::Truth truth = eval::read_truth(*a.truth);
-  if (result.triangles.empty() && outputs.image)
+  if (given.triangles.empty() && outputs.image)
     throw Error(concat(a.mesh, " has no faces; --error-image needs some"));
+  if (truth.is_points() && (outputs.image || outputs.mesh))
+    throw Error(concat(*a.truth, " has no faces; --error-image and --error-mesh need some"));
+  std::optional<eval::Alignment> alignment;
+  if (a.align) {
+    progress.stage("alignment", kAlignWeight);
+    alignment = eval::align(given, truth, a.options.seed, progress);
+  }
+  const TriMesh result = alignment ? eval::moved(given, *alignment) : given;
   eval::Evaluation e = eval::evaluate(result, truth, a.options, &progress);
   e.result_name = a.mesh;
+  e.alignment = alignment;
+  if (alignment && alignment->rms > kPoorAlignment * truth.diagonal())
+    e.warnings.push_back(concat("the alignment leaves ",
+                                std::round(1000 * alignment->rms / truth.diagonal()) / 10,
+                                " % of the diagonal: these may not be of the same object"));
   if (a.reliability) {
     progress.stage("reliability", 1);
     e.reliability = eval::measure_reliability(result, truth, *a.reliability, progress);
@@ -197,7 +226,8 @@ void run(const Arguments& a) {
   if (!(a.error_range > 0 && a.error_range <= 1))
     throw UsageError(concat("--error-range must be above 0 and at most 1, not ", a.error_range));
   Outputs outputs(a);
-  TerminalProgress progress((a.truth ? 12 : 0) + (a.photos.given() ? kPhotoWeight : 0));
+  TerminalProgress progress((a.truth ? 12 : 0) + (a.align ? kAlignWeight : 0) +
+                            (a.photos.given() ? kPhotoWeight : 0));
   const TriMesh result = read_mesh(a.mesh, Faces::kOptional);
   std::optional<eval::Evaluation> evaluation;
   std::optional<eval::PhotoAgreement> photos;
@@ -229,7 +259,10 @@ void add_evaluate(CLI::App& app) {
       ->required();
   CLI::Option* truth =
       c->add_option("--truth", a->truth,
-                    "a scene folder with gt.ply and gt_visible.ply, or a mesh all of which counts");
+                    "a scene folder with gt.ply and gt_visible.ply, or a mesh or points all of "
+                    "which count");
+  c->add_flag("--align", a->align,
+              "first move, turn and scale the result onto the truth, and say how");
   c->add_option("--thresholds", a->options.thresholds,
                 "distances to count within, fractions of the truth's diagonal")
       ->delimiter(',')
@@ -250,8 +283,9 @@ void add_evaluate(CLI::App& app) {
   c->add_option("--reliability", a->reliability,
                 "does confidence mean the chance to lie within this distance (world units)?");
   c->add_option("--reliability-plot", a->reliability_plot, "draw that as an SVG or PNG");
-  for (const char* name : {"--thresholds", "--absolute", "--samples", "--seed", "--min-views",
-                           "--error-mesh", "--error-image", "--error-range", "--reliability"})
+  for (const char* name :
+       {"--thresholds", "--absolute", "--samples", "--seed", "--min-views", "--error-mesh",
+        "--error-image", "--error-range", "--reliability", "--align"})
     c->get_option(name)->needs(truth);
   a->photos.add_to(*c);
   c->add_flag("--json", a->json, "print JSON (docs/evaluate.md)");
@@ -260,6 +294,7 @@ void add_evaluate(CLI::App& app) {
       "  photohull evaluate out/bunny/mesh.ply --truth scenes/bunny\n"
       "  photohull evaluate scan.obj --truth cad.stl --absolute 0.1,0.5 --json\n"
       "  photohull evaluate mesh.ply --truth scenes/bunny --error-image errors.png\n"
+      "  photohull evaluate scan.ply --truth laser.ply --align\n"
       "  photohull evaluate out/mesh.ply --truth scenes/bunny --reliability 0.004 "
       "--reliability-plot r.svg\n"
       "  photohull evaluate out/temple/mesh.ply --photos scenes/temple --views 0,8,16 --picture "

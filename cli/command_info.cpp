@@ -60,8 +60,9 @@ std::string find_box(const Arguments& a, Scene& scene, std::vector<ScenePoint>& 
   TerminalProgress progress(1);
   if (looks) progress.stage("box", 1);
   try {
-    points = pipeline::complete_box(
-        a.scene.box_options(), pipeline::mask_policy(a.scene.options().masks), scene, progress);
+    points = pipeline::complete_box(a.scene.box_options(),
+                                    pipeline::mask_policy(a.scene.options().masks), scene, progress)
+                 .points;
   } catch (const UsageError&) {
     throw;
   } catch (const Cancelled&) {
@@ -123,21 +124,7 @@ void run(const Arguments& a) {
   Scene scene = io::load_scene(a.scene.scene, job.load);
   std::vector<ScenePoint> points;
   const std::string no_box = find_box(a, scene, points);
-  pipeline::Inspection info;
-  std::exception_ptr failure;
-  const auto look = [&] {
-    try {
-      info = pipeline::inspect(scene, job);
-    } catch (...) {
-      // What is wrong with the cameras may be why: it is said first.
-      if (!a.cameras) throw;
-      failure = std::current_exception();
-      info = {};
-      info.scene = scene;
-      info.scene.box.reset();
-    }
-  };
-  look();
+  pipeline::Inspection info = pipeline::inspect(scene, job);
   std::optional<CameraDiagnosis> diagnosis;
   std::optional<PreparedViews> prepared;
   if (a.cameras || a.masks) {
@@ -147,7 +134,7 @@ void run(const Arguments& a) {
     if (scene.left_out.size() > known) {
       // Of what else was found in the photographs --check-masks tells.
       if (!a.masks) scene.warnings.push_back(prepared->warnings.front());
-      look();
+      info = pipeline::inspect(scene, job);
     }
     if (a.cameras) {
       progress.stage("cameras", 3);
@@ -156,11 +143,12 @@ void run(const Arguments& a) {
     progress.finish();
   }
   if (!no_box.empty()) info.warnings.push_back(no_box);
-  if (a.picture) write_picture(*a.picture, info, points);
+  if (a.picture && !info.failure) write_picture(*a.picture, info, points);
   const PreparedViews* masks = a.masks ? &*prepared : nullptr;
   (a.json ? print_info_json : print_info_text)(info, masks, diagnosis ? &*diagnosis : nullptr);
   std::fflush(stdout);
-  if (failure) std::rethrow_exception(failure);
+  // Said last: what is known of the scene may tell why.
+  if (info.failure) std::rethrow_exception(info.failure);
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 #include "command_line.h"
 
-#include <algorithm>
+#include <poll.h>
+#include <unistd.h>
+
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -8,38 +10,48 @@
 
 #include "commands.h"
 #include "core/error.h"
+#include "parse_faults.h"
+#include "version.h"
 
 namespace photohull::cli {
 namespace {
 
-/// The parser's message as one sentence.
-std::string one_line(std::string message) {
-  std::replace(message.begin(), message.end(), '\n', ' ');
-  while (!message.empty() && (message.back() == ' ' || message.back() == '.')) message.pop_back();
-  return message + "; see --help";
+std::string joined(const std::vector<std::string>& names) {
+  std::string all;
+  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
+  return all;
 }
 
-std::string command_names(const CLI::App& app) {
-  std::string names;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
-    names += (names.empty() ? "" : ", ") + command->get_name();
-  return names;
+/// Whoever read standard output has enough of it, as `head -1` has.
+bool reader_is_gone() {
+  pollfd out{STDOUT_FILENO, POLLOUT, 0};
+  return ::poll(&out, 1, 0) == 1 && (out.revents & (POLLERR | POLLHUP));
+}
+
+/// A full disk behind standard output is a failure too; a closed pipe is not.
+void check_output() {
+  const bool written = std::fflush(stdout) == 0 && !std::ferror(stdout);
+  if (!written && !reader_is_gone()) throw Error("standard output could not be written in full");
 }
 
 void run(int argc, const char* const* argv) {
   const std::unique_ptr<CLI::App> app = make_parser();
+  // A command would run before what stands in front of it is looked at.
+  if (argc > 2 && argv[1] == std::string("--json") && argv[2][0] != '-')
+    throw UsageError("--json stands behind the command, or with --version; see --help");
   try {
     app->parse(argc, argv);
-    if (app->get_subcommands().empty())
+    const bool version = app->count("--version") > 0, json = app->count("--json") > 0;
+    if (version)
+      std::fputs((json ? version_json() : version_text() + "\n").c_str(), stdout);
+    else if (app->get_subcommands().empty())
       throw UsageError(
-          concat("a command is missing: one of ", command_names(*app), "; see --help"));
+          concat("a command is missing: one of ", joined(command_names(*app)), "; see --help"));
   } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() != 0) throw UsageError(one_line(e.what()));
-    app->exit(e);  // prints the help or the version
+    if (e.get_exit_code() != 0) throw UsageError(parse_fault(*app, e));
+    app->exit(e);  // prints the help
   }
-  // A full disk or a closed pipe behind standard output is a failure too.
-  if (std::fflush(stdout) != 0 || std::ferror(stdout))
-    throw Error("standard output could not be written in full");
+  check_output();
 }
 
 }  // namespace
@@ -47,7 +59,8 @@ void run(int argc, const char* const* argv) {
 std::unique_ptr<CLI::App> make_parser() {
   auto app = std::make_unique<CLI::App>(
       "photohull turns calibrated photographs into a volume and a mesh by carving space.");
-  app->set_version_flag("--version", "photohull " PHOTOHULL_VERSION);
+  app->add_flag("--version")->description("print the version");
+  app->add_flag("--json")->description("with --version: version, commit, libraries, device");
   app->require_subcommand(0, 1);
   app->footer(
       "Examples:\n"

@@ -50,6 +50,9 @@ std::vector<Overlap> compare(const Arguments& a, const PreparedViews& prepared) 
     const auto same = std::find_if(truth.views.begin(), truth.views.end(),
                                    [&](const SourceView& v) { return v.name == view.name; });
     PHOTOHULL_CHECK(same != truth.views.end());
+    if (same->mask.empty())
+      throw Error(concat("--compare ", *a.compare, ": there is no mask for ", view.name,
+                         "; give one for every view"));
     const Mask mask = io::read_mask(same->mask);
     if (mask.width != view.image.width || mask.height != view.image.height)
       throw Error(concat("--compare: ", view.name,

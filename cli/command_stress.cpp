@@ -55,6 +55,17 @@ void print_summary(const chart::StressOutcome& o, const chart::StressPlan& plan,
               out.c_str(), (o.files.size() - 2) / 2);
 }
 
+/// Before anything runs.
+void check_arguments(const chart::StressJob& job) {
+  for (const auto& run : job.runs()) {
+    try {
+      check_reconstruct(run.arguments);
+    } catch (const Error& e) {
+      throw Error(concat(job.plan().file.string(), ": ", run.label, ": ", e.what()));
+    }
+  }
+}
+
 void run(const Arguments& a) {
   if (a.draw_only && (a.force || a.retry || a.dry_run))
     throw UsageError("--draw-only makes no runs: leave out --force, --retry and --dry-run");
@@ -70,6 +81,7 @@ void run(const Arguments& a) {
     return synth::spec_text(synth::parse_spec(text, source, ""));
   };
   chart::StressJob job(options);
+  if (!a.draw_only) check_arguments(job);
   TerminalProgress progress(job.total_weight());
   for (const std::string& warning : job.warnings()) progress.warn(warning);
   if (a.dry_run) return print_plan(job);

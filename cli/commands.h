@@ -2,10 +2,15 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
 
 namespace photohull::cli {
 
 void add_reconstruct(CLI::App& app);
+/// Are these, between SCENE and --out, arguments that 'photohull reconstruct' takes together?
+/// Throws UsageError, which says what is wrong.
+void check_reconstruct(const std::vector<std::string>& arguments);
 void add_evaluate(CLI::App& app);
 void add_convert(CLI::App& app);
 void add_refine_cameras(CLI::App& app);

@@ -61,6 +61,27 @@ nlohmann::ordered_json diagnosis_json(const CameraDiagnosis& d, const Scene& sce
   return j;
 }
 
+nlohmann::ordered_json box_json(const Box& b) {
+  return {{"min", {b.min.x, b.min.y, b.min.z}}, {"max", {b.max.x, b.max.y, b.max.z}}};
+}
+
+void add_extents(const pipeline::Inspection& info, nlohmann::ordered_json& j) {
+  const pipeline::Extents& e = info.extents;
+  j["cameras_extent"] = box_json(e.cameras);
+  j["points"] = {{"count", info.scene.points.size()}, {"extents", nlohmann::ordered_json::array()}};
+  for (const pipeline::Extents::Share& s : e.points) {
+    nlohmann::ordered_json share = box_json(s.box);
+    share["quantiles"] = {s.low, s.high};
+    j["points"]["extents"].push_back(share);
+  }
+  if (info.suggested_box) j["suggested_box"] = box_json(*info.suggested_box);
+  try {
+    if (info.failure) std::rethrow_exception(info.failure);
+  } catch (const std::exception& failure) {
+    j["failure"] = failure.what();
+  }
+}
+
 nlohmann::ordered_json masks_json(const PreparedViews& prepared) {
   nlohmann::ordered_json j = {{"source", prepared.mask_source},
                               {"confidence", prepared.mask_confidence},
@@ -100,14 +121,16 @@ void print_info_json(const pipeline::Inspection& info, const PreparedViews* mask
         {{"name", v.name}, {"reason", to_string(v.reason)}, {"detail", v.detail}});
   if (info.scene.box) {
     const Box& b = *info.scene.box;
-    j["box"] = {{"min", {b.min.x, b.min.y, b.min.z}},
-                {"max", {b.max.x, b.max.y, b.max.z}},
-                {"source", info.scene.box_source}};
+    j["box"] = box_json(b);
+    j["box"]["source"] = info.scene.box_source;
+  }
+  add_extents(info, j);
+  if (!info.scales.empty()) {
     j["nearest_angle_degrees"] = info.nearest_angle;
     j["farthest_angle_degrees"] = info.farthest_angle;
     j["pixel_footprint"] = info.voxel_size;
     j["normal_voxel_size"] =
-        info.voxel_size * pipeline::footprint_factor(pipeline::Quality::kNormal);
+        info.voxel_size * pipeline::footprint_factor(pipeline::Quality::kNormal, info.silhouettes);
     j["voxel_size"] = info.grid.voxel_size;
     j["image_scale"] = *std::min_element(info.scales.begin(), info.scales.end());
     j["memory_limit_bytes"] = info.memory_limit;

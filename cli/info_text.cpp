@@ -38,15 +38,35 @@ void print_views(const Scene& scene) {
               distorted, scene.views.size(), masked, scene.views.size());
 }
 
+std::string corners(const Box& b) {
+  char text[160];
+  std::snprintf(text, sizeof text, "(%g %g %g) to (%g %g %g)", b.min.x, b.min.y, b.min.z, b.max.x,
+                b.max.y, b.max.z);
+  return text;
+}
+
+void print_extents(const pipeline::Inspection& info) {
+  const pipeline::Extents& e = info.extents;
+  std::printf("cameras at     %s\n", corners(e.cameras).c_str());
+  if (!e.points.empty()) std::printf("sparse points  %zu\n", info.scene.points.size());
+  for (const pipeline::Extents::Share& s : e.points)
+    std::printf("  %2.0f to %3.0f %%  %s\n", 100 * s.low, 100 * s.high, corners(s.box).c_str());
+  if (!info.suggested_box) return;
+  const Box& b = *info.suggested_box;
+  std::printf("suggestion     --box \"%.6g %.6g %.6g %.6g %.6g %.6g\", or --box auto\n", b.min.x,
+              b.min.y, b.min.z, b.max.x, b.max.y, b.max.z);
+}
+
 void print_scene(const pipeline::Inspection& info) {
   print_views(info.scene);
   if (info.scene.box) {
-    const Box& b = *info.scene.box;
-    const glm::ivec3 n = info.grid.voxels();
-    std::printf("box            (%g %g %g) to (%g %g %g), %s%s\n", b.min.x, b.min.y, b.min.z,
-                b.max.x, b.max.y, b.max.z,
+    std::printf("box            %s, %s%s\n", corners(*info.scene.box).c_str(),
                 info.scene.box_source.starts_with("found") ? "" : "from ",
                 info.scene.box_source.c_str());
+  }
+  print_extents(info);
+  if (!info.scales.empty()) {
+    const glm::ivec3 n = info.grid.voxels();
     std::printf("view angles    %.1f degrees to the nearest (median), %.1f at most\n",
                 info.nearest_angle, info.farthest_angle);
     std::printf("pixel          %g world units at the box's centre\n", info.voxel_size);

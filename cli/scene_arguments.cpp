@@ -21,7 +21,7 @@ Box parse_box(const std::string& text) {
   std::string rest;
   if (in >> rest) throw UsageError("--box: '" + rest + "' follows the six numbers");
   const glm::dvec3 a(v[0], v[1], v[2]), b(v[3], v[4], v[5]);
-  return {glm::min(a, b), glm::max(a, b)};
+  return {a, b};  // swapped corners are told where the scene is read
 }
 
 }  // namespace
@@ -52,6 +52,8 @@ std::vector<CLI::Option*> SceneArguments::add_reading_options(CLI::App& command)
       command.add_option("--background", background,
                          "masks from photographs without the object: a file for a camera that "
                          "stands still, or a folder with one for every view"),
+      command.add_option("--images", images,
+                         "folder of the photographs, where they are not where the scene has them"),
       command.add_option("--pixel-center", pixel_center,
                          "coordinate of the top-left pixel's centre in the scene file, 0, 0.5 or 1 "
                          "(default: the format's)"),
@@ -85,6 +87,9 @@ io::LoadSceneOptions SceneArguments::options() const {
   if (scene.empty()) throw UsageError("SCENE is empty: give the folder or file of the scene");
   if (format) out.format = parse_format("--format", *format);
   out.pixel_center = pixel_center;
+  if (images && images->empty())
+    throw UsageError("--images is empty: give a folder of photographs");
+  out.images = images.value_or("");
   out.strict = strict;
   if (box && *box != kFindBox) out.box = parse_box(*box);
   if (views && views->empty()) throw UsageError("--views is empty: write e.g. 0-10,15");

@@ -22,7 +22,7 @@ struct SceneArguments {
 
   std::string scene, masks = "auto";
   std::optional<std::string> format, box, views, hold_out;
-  std::optional<std::string> background;
+  std::optional<std::string> background, images;
   std::optional<double> pixel_center;
   bool strict = false;
   double box_scale = 1;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
+#include <string_view>
 
 namespace photohull::cli {
 namespace {
@@ -16,10 +18,16 @@ double seconds_since(Clock::time_point t) {
   return std::chrono::duration<double>(Clock::now() - t).count();
 }
 
+bool takes_escape_sequences() {
+  const char *term = std::getenv("TERM"), *no_colour = std::getenv("NO_COLOR");
+  return isatty(STDERR_FILENO) && !(term && std::string_view(term) == "dumb") &&
+         !(no_colour && *no_colour);
+}
+
 }  // namespace
 
 TerminalProgress::TerminalProgress(double total_weight)
-    : start_(Clock::now()), total_(total_weight), terminal_(isatty(STDERR_FILENO)) {}
+    : start_(Clock::now()), total_(total_weight), terminal_(takes_escape_sequences()) {}
 
 TerminalProgress::~TerminalProgress() { finish(); }
 
@@ -60,6 +68,11 @@ void TerminalProgress::clear_line() {
 void TerminalProgress::warn(const std::string& message) {
   clear_line();
   std::fprintf(stderr, "warning: %s\n", message.c_str());
+}
+
+void TerminalProgress::note(const std::string& message) {
+  clear_line();
+  std::fprintf(stderr, "note: %s\n", message.c_str());
 }
 
 void TerminalProgress::finish() { clear_line(); }

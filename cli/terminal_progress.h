@@ -1,4 +1,5 @@
-// Progress on the terminal: a bar with the time left, or plain lines where stderr is no terminal.
+// Progress on the terminal: a bar with the time left, or plain lines where standard error is no
+// terminal, or one without escape sequences (TERM=dumb), or NO_COLOR is set.
 #pragma once
 
 #include <chrono>
@@ -16,6 +17,7 @@ class TerminalProgress : public Progress {
   void stage(const std::string& name, double weight) override;
   void update(double fraction) override;
   void warn(const std::string& message) override;
+  void note(const std::string& message) override;
   /// Ends the bar's line.
   void finish();
 

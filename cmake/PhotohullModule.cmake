@@ -10,12 +10,12 @@ function(photohull_module name)
   target_compile_options(photohull_${name} PRIVATE ${PHOTOHULL_WARNINGS})
   target_link_libraries(photohull_${name} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
   photohull_precompile(photohull_${name} photohull_core
-    <algorithm> <filesystem> <functional> <glm/glm.hpp> <span> <string> <vector>)
+    <algorithm> <filesystem> <functional> <glm/glm.hpp> <nlohmann/json.hpp> <span> <string> <vector>)
 endfunction()
 
 # photohull_precompile(TARGET OWNER headers...): compiles the headers once, for OWNER, and all other
 # targets take them from there. Only with PHOTOHULL_PRECOMPILE: the other builds notice headers that
-# a file forgets to include, and ccache serves them better.
+# a file forgets to include.
 function(photohull_precompile target owner)
   if(NOT PHOTOHULL_PRECOMPILE)
     return()
@@ -30,16 +30,19 @@ endfunction()
 # photohull_test(NAME SOURCES files... LIBS libs... [LABELS labels...] [SHARDS count])
 # One test program. ctest runs it whole, or in SHARDS parts that may run side by side: loading the
 # libraries takes a program half a second, which a process for every TEST would pay each time.
-# Labels: unit, gl, golden, slow.
+# Labels: unit (all of these are built by the target unit_tests), gl, golden, slow.
 function(photohull_test name)
   cmake_parse_arguments(ARG "" "SHARDS" "SOURCES;LIBS;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
-  target_compile_options(${name} PRIVATE ${PHOTOHULL_WARNINGS})
+  target_compile_options(${name} PRIVATE ${PHOTOHULL_TEST_OPTIONS})
   target_compile_definitions(${name} PRIVATE
     PHOTOHULL_DATASETS="${PROJECT_SOURCE_DIR}/datasets"
     PHOTOHULL_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
   target_link_libraries(${name} PRIVATE ${ARG_LIBS} GTest::gtest_main GTest::gmock)
   photohull_precompile(${name} photohull_test_support)
+  if("unit" IN_LIST ARG_LABELS)
+    add_dependencies(unit_tests ${name})
+  endif()
   if(NOT ARG_SHARDS)
     set(ARG_SHARDS 1)
   endif()

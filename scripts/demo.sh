@@ -17,7 +17,7 @@ case ${1-} in
 esac
 
 cd "$root"
-scripts/setup.sh
+scripts/setup.sh --target photohull
 
 say "" "Reconstructing datasets/templeSparseRing"
 build/release/photohull reconstruct datasets/templeSparseRing --out out/temple || die \

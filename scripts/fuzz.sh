@@ -4,10 +4,10 @@
 # Feeds every reader of foreign files (scenes, images, meshes, specs, plans, option values) with damaged
 # input under the address and undefined-behaviour sanitizers, by clang's libFuzzer. Input that
 # crashes a reader, makes it throw anything but photohull::Error, takes 5 seconds or asks for 512
-# MiB at once is kept in build/fuzz/found/ and fails the run. docs/robustness.md tells more.
+# MiB at once is kept in build/asan/found/ and fails the run. docs/robustness.md tells more.
 #
 #   --seconds N    for each target (default: 10)
-#   --target NAME  only this one; build/fuzz/tests/fuzz/photohull_fuzz --list prints the names
+#   --target NAME  only this one; build/asan/tests/fuzz/photohull_fuzz --list prints the names
 #   --help         print this text
 
 # shellcheck source=scripts/common.sh
@@ -35,13 +35,13 @@ done
 cd "$root"
 install_missing clang
 export CCACHE_BASEDIR=$root
-build=build/fuzz
+build=build/asan
 mkdir -p $build
-if ! cmake --preset fuzz >$build/configure.log 2>&1; then
+if ! cmake --preset asan >$build/configure.log 2>&1; then
   tail -n 25 $build/configure.log >&2
   die "CMake could not configure the fuzzers; run scripts/setup.sh first."
 fi
-cmake --build --preset fuzz --parallel "$jobs" -- --quiet || die "The fuzzers do not build."
+cmake --build --preset asan --target photohull_fuzz --parallel "$jobs" -- --quiet || die "The fuzzers do not build."
 fuzzer=$root/$build/tests/fuzz/photohull_fuzz
 
 # run_target NAME: what it found new is kept in corpus/ for the next run.

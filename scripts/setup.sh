@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# Usage: scripts/setup.sh [--preset NAME] [--no-install]
+# Usage: scripts/setup.sh [--preset NAME] [--target NAME] [--no-install]
 #
 # Installs what photohull needs and this machine lacks (Debian packages, through apt as root or
 # with sudo), then configures and builds it to build/NAME/photohull. Run again, it only builds
 # what changed.
 #
 #   --preset NAME   release (default), debug, asan or coverage; see CMakePresets.json
+#   --target NAME   build this alone: photohull (the program without the tests), unit_tests, ...
 #   --no-install    build with what is there; install nothing
 #   --help          print this text
 
@@ -32,12 +33,18 @@ packages=(
 )
 
 preset=release
+target=all
 install=yes
 while [ $# -gt 0 ]; do
   case $1 in
     --preset)
       [ $# -ge 2 ] || die "--preset needs a name: release, debug, asan or coverage."
       preset=$2
+      shift
+      ;;
+    --target)
+      [ $# -ge 2 ] || die "--target needs a name, such as photohull."
+      target=$2
       shift
       ;;
     --no-install) install=no ;;
@@ -57,6 +64,7 @@ case $preset in
 esac
 if [ $install = yes ]; then
   install_missing "${packages[@]}"
+  if [ "$preset" = asan ]; then install_missing clang; fi
 fi
 
 # OpenVDB's templates take a compiler more than a gigabyte: fewer jobs than cores where memory is short.
@@ -82,7 +90,7 @@ fi
 say "Building $build with $jobs jobs"
 quiet=()
 [ -t 1 ] || quiet=(-- --quiet) # one line a file is for terminals
-if ! cmake --build "$build" --parallel "$jobs" "${quiet[@]}"; then
+if ! cmake --build "$build" --target "$target" --parallel "$jobs" "${quiet[@]}"; then
   die "The build failed; the first error above is the cause. If the compiler was killed, memory ran
 short: close other programs and run this script again, it goes on where it stopped."
 fi

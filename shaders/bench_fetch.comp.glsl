@@ -1,5 +1,8 @@
 #version 450 core
+#extension GL_GOOGLE_include_directive : require
 // A bare texture-fetch loop: the device's raw sampling rate, for comparison with the sweep.
+#include "include/dispatch.glsl"
+
 layout(local_size_x = 64) in;
 layout(binding = 0) uniform sampler2DArray images;
 layout(std430, binding = 0) writeonly buffer Sums { vec4 sums[]; };
@@ -10,7 +13,7 @@ uniform float lod_step;  // from tap to tap; where it is 0, a device may work ou
 uniform vec4 step_and_size;  // du, dv in pixels a tap; image size in pixels
 
 void main() {
-  uint id = gl_GlobalInvocationID.x;
+  uint id = invocation().x;
   vec2 size = step_and_size.zw;
   vec2 at = vec2(float(id % 512u) * 0.9 + 8.0, float(id / 512u % 384u) * 0.9 + 8.0);
   vec4 sum = vec4(0.0);

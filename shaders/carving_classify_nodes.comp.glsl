@@ -4,6 +4,7 @@
 // surface pass through it? One thread a node. The answer is conservative: a node is called outside or
 // inside only if all of its bounding rectangle says so in the min/max mask pyramid.
 // Reference: carving::reference::classify_node.
+#include "include/dispatch.glsl"
 #include "include/projection.glsl"
 #include "shared/hull.h"
 
@@ -68,7 +69,7 @@ float sphere_clearance(int v, GpuView view, vec3 centre, float radius) {
 }
 
 void main() {
-  uint id = gl_GlobalInvocationID.x;
+  uint id = invocation().x;
   if (id >= uint(parameters.counts.x)) return;
   ivec4 node = nodes[id];
   float edge = kBrickEdge * float(1 << node.w);

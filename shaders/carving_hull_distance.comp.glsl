@@ -6,6 +6,7 @@
 // depth / focal length; or the distance at which the evidence of all views sums to one. One work
 // group a brick, one thread a block of 2^3 voxels: a look at the block's centre tells which few views can be the greatest anywhere in it.
 // Reference: carving::reference::hull_distance.
+#include "include/dispatch.glsl"
 #include "include/projection.glsl"
 #include "shared/hull.h"
 
@@ -59,7 +60,7 @@ float distance_but_for(int missing, uint first, int relevant_count, vec3 p) {
 
 // Software devices run a masked branch in full, so work is skipped by shorter loops, not by `if`.
 void main() {
-  uint brick = gl_WorkGroupID.x, block = gl_LocalInvocationID.x;
+  uint brick = work_group().x, block = gl_LocalInvocationID.x;
   ivec3 corner = 2 * ivec3(block >> 4u, (block >> 2u) & 3u, block & 3u);
   vec3 base = vec3(bricks[brick].xyz * 8 + corner);
   float band = parameters.pyramid.w;

@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Marks the voxels that a layer leaves behind as hiding what comes, for exact rays. One thread a voxel of
 // the list. Reference: visibility::reference::sweep_visible takes such a set of voxels.
+#include "include/dispatch.glsl"
 #include "include/layer.glsl"
 
 layout(local_size_x = 64) in;
@@ -10,8 +11,8 @@ layout(std430, binding = 6) readonly buffer Occluders { uint occluder_count; uin
 layout(std430, binding = 13) buffer Passed { uint passed[]; };
 
 void main() {
-  if (gl_GlobalInvocationID.x >= occluder_count) return;
-  ivec3 voxel = occluders[gl_GlobalInvocationID.x].xyz, b = voxel >> 3, l = voxel & 7;
+  if (invocation().x >= occluder_count) return;
+  ivec3 voxel = occluders[invocation().x].xyz, b = voxel >> 3, l = voxel & 7;
   uint slot = table[(b.z * parameters.bricks.y + b.y) * parameters.bricks.x + b.x];
   if (slot == 0xffffffffu) return;
   uint offset = uint((l.x << 6) | (l.y << 3) | l.z);

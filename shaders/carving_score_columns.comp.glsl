@@ -4,6 +4,7 @@
 // chooses over the patches around the voxel on the reference plane, of the views that see the voxel
 // [KutulakosSeitz00]. Normalised cross-correlation unless another is chosen. One thread a selected
 // column. References: those of the statistics.
+#include "include/dispatch.glsl"
 #include "include/projection.glsl"
 #include "include/layer.glsl"
 #include "include/sweep_visibility.glsl"
@@ -32,8 +33,8 @@ layout(local_size_x = 64) in;
 layout(std430, binding = 7) writeonly buffer Scores { vec4 scores[]; };
 
 void main() {
-  uint index = gl_GlobalInvocationID.x + uint(parameters.chunk.z);
-  if (gl_GlobalInvocationID.x >= uint(parameters.chunk.w)) return;
+  uint index = invocation().x + uint(parameters.chunk.z);
+  if (invocation().x >= uint(parameters.chunk.w)) return;
   Selection selection = selection_of(index);
   vec3 voxel = layer_point(vec2(selection.uv), float(parameters.layer.x));
   int view_count = items[selection.item].brick.w;

@@ -3,6 +3,7 @@
 // Plane sweep, step 1 of a layer: which columns must be judged here? Those whose voxel stands and is
 // bare towards the cameras, and those on an open path. Everything else that stands on the layer and
 // touches empty space is an occluder from now on. One work group a brick of the layer.
+#include "include/dispatch.glsl"
 #include "include/layer.glsl"
 #include "include/occupancy.glsl"
 
@@ -15,7 +16,7 @@ layout(std430, binding = 6) buffer Occluders { uint occluder_count; uint pad3, p
 shared uint column_bits[2];
 
 void main() {
-  uint item = gl_WorkGroupID.x;
+  uint item = work_group().x;
   uint id = gl_LocalInvocationIndex;
   if (id < 2u) column_bits[id] = 0u;
   barrier();

@@ -6,6 +6,7 @@
 // The outcome is only noted here; carving::apply_decisions weighs it against its neighbours, so that
 // no voxel goes because it looks wrong, only because something behind it looks right.
 // Reference: carving::reference::ColumnJudge.
+#include "include/dispatch.glsl"
 #include "include/layer.glsl"
 #include "include/occupancy.glsl"
 #include "include/selection.glsl"
@@ -35,7 +36,7 @@ void close_path(ivec2 uv, inout Column column) {
 }
 
 void main() {
-  uint index = gl_GlobalInvocationID.x;
+  uint index = invocation().x;
   if (index >= uint(parameters.chunk.w)) return;
   ivec2 uv = selection_of(index).uv;
   int layer = parameters.layer.x;

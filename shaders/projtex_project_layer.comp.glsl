@@ -7,6 +7,7 @@
 // alpha < 0 marks what the image does not show.
 // One work group a selected brick and search offset, eight threads a view: on software devices a vector of threads
 // shares the view's set-up. Reference: projtex::reference::project_layer_sample.
+#include "include/dispatch.glsl"
 #include "include/projection.glsl"
 #include "include/layer.glsl"
 #include "include/search_disc.glsl"
@@ -21,10 +22,10 @@ layout(std430, binding = 6) writeonly buffer Samples { vec4 samples[]; };
 layout(binding = 0) uniform sampler2DArray images;
 
 void main() {
-  uint entry = gl_WorkGroupID.x, slot = gl_LocalInvocationID.y;
+  uint entry = work_group().x, slot = gl_LocalInvocationID.y;
   uint item = selected[entry + uint(parameters.chunk.x)].x;
   uint v = items[item].views[slot >> 2u][slot & 3u];
-  uint search = gl_WorkGroupID.y;
+  uint search = work_group().y;
   GpuView view = shifted(views[v], kSearchOffsets[search]);
 
   const int n = SUPERSAMPLE;

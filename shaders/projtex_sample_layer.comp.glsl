@@ -5,6 +5,7 @@
 // background. SAMPLER_CENTROID takes the voxel's centre whatever the plane, as carving in image space
 // does. One work group a selected brick and search offset, eight threads a view.
 // Reference: projtex::reference::sample_square.
+#include "include/dispatch.glsl"
 #include "include/sample_image.glsl"
 #include "include/layer.glsl"
 #include "include/search_disc.glsl"
@@ -14,10 +15,10 @@ layout(std430, binding = 5) readonly buffer Selected { uint selected_count; uint
 layout(std430, binding = 6) writeonly buffer Samples { vec4 samples[]; };
 
 void main() {
-  uint entry = gl_WorkGroupID.x, slot = gl_LocalInvocationID.y;
+  uint entry = work_group().x, slot = gl_LocalInvocationID.y;
   uint item = selected[entry + uint(parameters.chunk.x)].x;
   uint v = items[item].views[slot >> 2u][slot & 3u];
-  uint search = gl_WorkGroupID.y;
+  uint search = work_group().y;
   GpuView view = shifted(views[v], kSearchOffsets[search]);
 #ifdef SAMPLER_CENTROID
   float plane = float(parameters.layer.x);

@@ -3,6 +3,7 @@
 // Projective texture mapping onto squares of any place and orientation, one thread each: what the
 // square's view shows on it, by the sampler that SAMPLER_... chooses.
 // Reference: projtex::reference::sample_square.
+#include "include/dispatch.glsl"
 #include "include/sample_image.glsl"
 
 layout(local_size_x = kSquareGroup) in;
@@ -11,7 +12,7 @@ layout(std430, binding = 2) writeonly buffer Samples { vec4 samples[]; };  // as
 uniform int count;
 
 void main() {
-  int id = int(gl_GlobalInvocationID.x);
+  int id = int(invocation().x);
   if (id >= count) return;
   PlaneSquare square = squares[id];
   uint v = uint(square.centre.w);

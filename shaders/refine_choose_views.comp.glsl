@@ -5,6 +5,7 @@
 // between normal and direction, times the fourth power of the view's sharpness. Also lists the most
 // frontal ones that the surface itself hides it from. One thread a surfel.
 // Reference: refine::reference::choose_views.
+#include "include/dispatch.glsl"
 #include "include/projection.glsl"
 #include "include/depth_map.glsl"
 #include "shared/bake.h"
@@ -49,7 +50,7 @@ void insert_hidden(int view, float cosine) {
 }
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
+  uint i = invocation().x;
   if (i >= uint(parameters.counts.x)) return;
   vec3 position = surfels[i].position.xyz, normal = surfels[i].normal.xyz;
   for (int k = 0; k < kMatchCandidates; ++k) best_worth[k] = 0.0;
@@ -57,7 +58,7 @@ void main() {
   for (int k = 0; k < kHiddenViews; ++k) hidden_cosine[k] = 0.0;
   for (int k = 0; k < kHiddenViews; ++k) hidden_view[k] = -1;
   vec3 receiver = position + parameters.visibility.x * normal;
-  uint list = gl_WorkGroupID.x * uint(parameters.counts.y + 1);
+  uint list = work_group().x * uint(parameters.counts.y + 1);
   uint listed = view_lists[list];
   int found = 0, seen = 0;
   for (uint k = 1u; k <= listed; ++k) {

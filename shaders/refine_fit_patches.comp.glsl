@@ -5,6 +5,7 @@
 // each view's patch first brought to zero mean and unit variance (the image noise as a floor of it).
 // All three parameters move a tap along the normal, so that one directional derivative of the image
 // a tap makes all derivatives. One thread a surfel. Reference: refine::reference::fit_patch.
+#include "include/dispatch.glsl"
 #include "include/projection.glsl"
 #include "include/patch.glsl"
 #include "shared/bake.h"
@@ -168,7 +169,7 @@ Model evaluate(int chosen[kMatchViews], int count, int held, vec3 centre, vec3 n
 }
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
+  uint i = invocation().x;
   if (i >= uint(parameters.counts.x)) return;
   vec3 position = surfels[i].position.xyz, normal = surfels[i].normal.xyz;
   vec4 curvature = shapes[i].curvature;

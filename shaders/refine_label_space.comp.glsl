@@ -4,6 +4,7 @@
 // voxel: with STEP_DUAL the flow between voxels follows the labels' differences, else the labels
 // follow the flow's divergence and the evidence. Bricks hold 8^3 voxels, x slowest. Nothing flows to
 // where there is no brick. Reference: refine::reference::label_space.
+#include "include/dispatch.glsl"
 #include "shared/label.h"
 
 layout(local_size_x = 64) in;
@@ -25,8 +26,7 @@ int beside(int voxel, int axis, int direction) {
 }
 
 void main() {
-  int group = int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x);
-  int voxel = group * 64 + int(gl_LocalInvocationID.x);
+  int voxel = int(invocation().x);
   if (voxel >= parameters.counts.x) return;
   float rate = parameters.weights.x;
   vec3 own = flow[voxel].xyz;

@@ -8,6 +8,7 @@
 // PATCH_BENT patches follow the surface's curvature. One thread an offset of a surfel, so that the
 // threads of a vector share their views.
 // Reference: refine::reference::match_patch.
+#include "include/dispatch.glsl"
 #include "include/projection.glsl"
 #include "include/patch.glsl"
 #include "shared/bake.h"
@@ -25,15 +26,15 @@ layout(std430, binding = 4) readonly buffer Bends { vec4 bends[]; };  // curvatu
 
 void main() {
   uint offsets = uint(parameters.counts.z);
-  uint i = gl_GlobalInvocationID.x / offsets;
+  uint i = invocation().x / offsets;
   if (i >= uint(parameters.counts.x)) return;
-  float offset = (parameters.search.x + parameters.search.y * float(gl_GlobalInvocationID.x % offsets)) *
+  float offset = (parameters.search.x + parameters.search.y * float(invocation().x % offsets)) *
                  surfels[i].position.w;
   vec3 normal = surfels[i].normal.xyz;
   vec3 centre = surfels[i].position.xyz + offset * normal;
   int count = choices[i].second.w;
   if (count < 2) {
-    scores[gl_GlobalInvocationID.x] = kNoScore;
+    scores[invocation().x] = kNoScore;
     textures[i] = 1.0;
     return;
   }
@@ -62,7 +63,7 @@ void main() {
   float lift = 3.0 * n * parameters.consistency.z;
   float variance = max(squares - dot(sum, sum) / n, 0.0);
   float scale = inversesqrt(variance + lift);
-  if (gl_GlobalInvocationID.x % offsets == offsets / 2u) textures[i] = variance / (variance + 3.0 * n * parameters.consistency.x);
+  if (invocation().x % offsets == offsets / 2u) textures[i] = variance / (variance + 3.0 * n * parameters.consistency.x);
 
   float pairs[kMatchViews - 1];
   for (int k = 0; k < kMatchViews - 1; ++k) pairs[k] = -1.0;
@@ -87,5 +88,5 @@ void main() {
   int best = int(ceil(parameters.consistency.y * float(count - 1)));
   float total = 0.0;
   for (int k = 0; k < kMatchViews - 1; ++k) total += k < best ? pairs[k] : 0.0;
-  scores[gl_GlobalInvocationID.x] = total / float(best);
+  scores[invocation().x] = total / float(best);
 }

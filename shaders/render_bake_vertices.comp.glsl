@@ -4,6 +4,7 @@
 // formulas are in render/bake_colour.h and render/confidence.h. One thread a vertex; a work group
 // looks at the views of its list only, which costs software rasterizers half as much as looking at
 // all. Reference: render::reference::bake_vertex.
+#include "include/dispatch.glsl"
 #include "include/projection.glsl"
 #include "include/depth_map.glsl"
 #include "shared/bake.h"
@@ -39,7 +40,7 @@ void choose_views(vec3 position, vec3 normal) {
   direction_sum = vec3(0.0);
   direction_count = 0.0;
   vec3 receiver = position + kBakeShift * normal;
-  uint list = gl_WorkGroupID.x * uint(parameters.counts.y + 1);
+  uint list = work_group().x * uint(parameters.counts.y + 1);
   uint listed = view_lists[list];
   for (uint k = 1u; k <= listed; ++k) {
     int v = int(view_lists[list + k]);
@@ -112,7 +113,7 @@ float spread_about(vec3 centre, vec3 values[kMaxBakeViews], float total) {
 }
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
+  uint i = invocation().x;
   if (i >= uint(parameters.counts.x)) return;
   vec3 position = vertices[i].position.xyz;
   choose_views(position, vertices[i].normal.xyz);

@@ -1,9 +1,11 @@
 #version 450 core
 #extension GL_GOOGLE_include_directive : require
 // Depth maps of a mesh given as points closer together than the maps' texels: each point that faces
-// a camera lowers the depth of the texel it falls into. What faces away is hidden by what faces the
+// a camera lowers the depth of the texel it falls into, and of those that its voxel covers where it
+// is so near that a voxel is wider. What faces away is hidden by what faces the
 // camera, or stands at the edge of an open mesh. One work group takes kSplatRun points a thread
 // into one map, so that the camera is read once. Reference: render::reference::splat_point.
+#include "include/dispatch.glsl"
 #include "include/projection.glsl"
 #include "include/depth_map.glsl"
 #include "shared/bake.h"
@@ -13,9 +15,9 @@ layout(std140, binding = 0) uniform Parameters { BakeParameters parameters; };
 layout(std430, binding = 1) readonly buffer Points { BakeVertex points[]; };
 
 void main() {
-  GpuView view = views[gl_WorkGroupID.y];
-  DepthMapInfo info = depth_map_infos[gl_WorkGroupID.y];
-  uint first = gl_WorkGroupID.x * 64u * uint(kSplatRun) + gl_LocalInvocationID.x;
+  GpuView view = views[work_group().y];
+  DepthMapInfo info = depth_map_infos[work_group().y];
+  uint first = work_group().x * 64u * uint(kSplatRun) + gl_LocalInvocationID.x;
   uint last = uint(parameters.counts.x) - 1u;
   for (int run = 0; run < kSplatRun; ++run) {
     uint i = min(first + uint(run) * 64u, last);  // drawing the last one twice does no harm
@@ -24,8 +26,19 @@ void main() {
     vec2 pixel = p.xy / p.z;
     bool drawn = dot(view.centre.xyz - position, points[i].normal.xyz) >= 0.0 && p.z > 1.0 &&
                  on_image(view, pixel);
-    ivec2 texel = min(ivec2((pixel + 0.5) * info.scale.x), info.size.xy - 1);
-    uint at = uint(info.size.z + texel.y * info.size.x + texel.x);
-    if (drawn) atomicMin(depth_maps[at], floatBitsToUint(p.z));
+    ivec2 low = ivec2(0), high = ivec2(-1);  // texels: none
+    if (drawn) {  // pixels of what is not drawn may be no numbers
+      vec2 middle = (pixel + 0.5) * info.scale.x;
+      low = high = min(ivec2(middle), info.size.xy - 1);
+      // Nearer than half of what the map was made for, points are farther apart than texels.
+      float half_width = min(0.5 * view.centre.w / p.z * info.scale.x, kSplatReach);
+      if (half_width > 0.5) {
+        low = max(ivec2(floor(middle - half_width)), ivec2(0));
+        high = min(ivec2(floor(middle + half_width)), info.size.xy - 1);
+      }
+    }
+    for (int y = low.y; y <= high.y; ++y)
+      for (int x = low.x; x <= high.x; ++x)
+        lower_depth(info, ivec2(x, y), floatBitsToUint(p.z));
   }
 }

@@ -3,6 +3,7 @@
 // One direction of a separable Gaussian over FILTER_SIZE texels of the moments (M1, M2) of depth from 0
 // (near) to 1 (far); empty texels are at 1. FROM_DEPTHS: the first pass, which makes moments of depths.
 // One thread a texel. Reference: visibility::reference::Map::variance.
+#include "include/dispatch.glsl"
 #include "include/visibility_map.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -22,7 +23,7 @@ vec2 moments_at(ivec3 texel) {
 }
 
 void main() {
-  ivec3 texel = ivec3(gl_GlobalInvocationID);
+  ivec3 texel = ivec3(invocation());
   if (any(greaterThanEqual(texel.xy, map_info.size.xy))) return;
   #if !defined(FILTER_SIZE)
 #define FILTER_SIZE 5

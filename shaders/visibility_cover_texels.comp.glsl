@@ -8,6 +8,7 @@
 //   COVER_FILL    their list
 // One thread a triangle of at most kLargeRows rows; with COVER_LARGE one group a longer one.
 // Reference: visibility::reference::Map::seen_in, nearest_in.
+#include "include/dispatch.glsl"
 #include "include/visibility_map.glsl"
 #include "include/visibility_triangle.glsl"
 #include "include/visibility_spans.glsl"
@@ -53,9 +54,9 @@ void cover_row(uint triangle, MapTriangle t, MapPolygon polygon, int row) {
 
 void main() {
 #if defined(COVER_LARGE)
-  uint triangle = large[gl_WorkGroupID.x];
+  uint triangle = large[work_group().x];
 #else
-  uint triangle = gl_GlobalInvocationID.x;
+  uint triangle = invocation().x;
   if (triangle >= uint(map_info.size.w)) return;
 #endif
   MapTriangle t = triangle_of(part, triangle);

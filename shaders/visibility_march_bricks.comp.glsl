@@ -3,6 +3,7 @@
 // Depth and brick of the first voxel on each texel's ray through a volume: whole bricks are skipped
 // where nothing is stored, hit at once where all is inside, and walked voxel by voxel else
 // [AmanatidesWoo87]. One thread a texel. Reference: visibility::VoxelRays.
+#include "include/dispatch.glsl"
 #include "include/visibility_map.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -65,7 +66,7 @@ float walk_brick(vec3 direction, float t, float end, ivec3 brick, uint slot) {
 }
 
 void main() {
-  ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 texel = ivec2(invocation().xy);
   if (any(greaterThanEqual(texel, map_info.size.xy))) return;
   vec2 at = vec2(texel) + 0.5;
   vec3 direction = at.x * ray_x + at.y * ray_y + ray_1;

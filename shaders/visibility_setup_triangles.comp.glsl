@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Edge functions and depth of each triangle on a partition of a map [OlanoGreer97], and a list of those
 // that touch many texels. One thread a triangle. Reference: visibility::reference::Map::cross.
+#include "include/dispatch.glsl"
 #include "include/visibility_map.glsl"
 #include "include/visibility_triangle.glsl"
 #include "include/visibility_spans.glsl"
@@ -42,7 +43,7 @@ MapTriangle setup(uint triangle) {
 }
 
 void main() {
-  uint triangle = gl_GlobalInvocationID.x;
+  uint triangle = invocation().x;
   if (triangle >= uint(map_info.size.w)) return;
   MapTriangle t = setup(triangle);
   map_triangles[part * map_info.size.w + int(triangle)] = t;

@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Depth maps of voxels: each voxel of a list lowers the depth of every texel that its bounding square
 // touches, in all maps. x: voxel; y: map. Reference: visibility::reference::splat_voxel.
+#include "include/dispatch.glsl"
 #include "include/projection.glsl"
 #include "include/depth_map.glsl"
 
@@ -11,10 +12,10 @@ layout(std430, binding = 6) readonly buffer Occluders { uint occluder_count; uin
 const float kHalfVoxel = 0.5;
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
+  uint i = invocation().x;
   if (i >= occluder_count) return;
-  DepthMapInfo info = depth_map_infos[gl_WorkGroupID.y];
-  GpuView view = views[gl_WorkGroupID.y];
+  DepthMapInfo info = depth_map_infos[work_group().y];
+  GpuView view = views[work_group().y];
   vec3 p = project(view, vec3(occluders[i].xyz));
   if (p.z <= 1.0) return;
   vec2 centre = (p.xy / p.z + 0.5) * info.scale.x;
@@ -24,5 +25,5 @@ void main() {
   uint bits = floatBitsToUint(p.z);
   for (int y = low.y; y <= high.y; ++y)
     for (int x = low.x; x <= high.x; ++x)
-      atomicMin(depth_maps[info.size.z + y * info.size.x + x], bits);
+      lower_depth(info, ivec2(x, y), bits);
 }

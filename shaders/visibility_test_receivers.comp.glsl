@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // How much of each receiver a viewpoint sees. One thread a receiver.
 // Reference: visibility::reference::Map::visible.
+#include "include/dispatch.glsl"
 #include "include/visibility_test.glsl"
 
 layout(local_size_x = 64) in;
@@ -10,6 +11,6 @@ layout(std430, binding = 1) writeonly buffer Fractions { float fractions[]; };
 layout(location = 0) uniform int count;
 
 void main() {
-  if (gl_GlobalInvocationID.x >= uint(count)) return;
-  fractions[gl_GlobalInvocationID.x] = visible(receivers[gl_GlobalInvocationID.x]);
+  if (invocation().x >= uint(count)) return;
+  fractions[invocation().x] = visible(receivers[invocation().x]);
 }

@@ -30,5 +30,5 @@ ivec2 item_origin(uint item) {
 }
 
 uint column_index(ivec2 uv) {
-  return uint(uv.y * parameters.bricks[parameters.axes.x] * 8 + uv.x);
+  return uint((uv.y - parameters.layer.y) * parameters.bricks[parameters.axes.x] * 8 + uv.x);
 }

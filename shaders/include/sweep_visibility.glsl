@@ -76,8 +76,7 @@ float sweep_visible(uint v, vec3 voxel, vec3 p, float bias) {
       float inverse = 1.0 / p.z + dot(slope, away);
       depth = clamp(inverse > 0.0 ? 1.0 / inverse : p.z + most, p.z - most, p.z + most);
 #endif
-      uint bits = depth_maps[info.size.z + texel.y * info.size.x + texel.x];
-      passed_taps += depth <= uintBitsToFloat(bits) + bias ? 1.0 : 0.0;
+      passed_taps += depth <= uintBitsToFloat(depth_bits(info, texel)) + bias ? 1.0 : 0.0;
       taps += 1.0;
     }
   return passed_taps / taps;

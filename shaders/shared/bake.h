@@ -18,6 +18,7 @@ constexpr float kBakeMinCosine = 0.2f;      // views flatter than this to the su
 constexpr float kBakeShift = 1.5f;          // voxels along the normal, to where visibility is tested
 constexpr float kBakeDepthBias = 2.5f;      // voxels
 constexpr float kBakeTexel = 2.0f;          // voxels that a depth map's texel is wide
+constexpr float kSplatReach = 6.0f;         // texels: half the width of a near voxel in a depth map, at most
 constexpr float kBakeMinAlpha = 0.5f;       // below: the image knows nothing there
 constexpr int kBakeDetailLevels = 2;        // mip levels from a colour to its surroundings
 

@@ -23,7 +23,7 @@ constexpr int kSearchRounds = 2;   // of r-consistency: how often each view choo
 struct SweepParameters {
   ivec4 bricks;      // grid size in bricks; w: items of this brick layer
   ivec4 axes;        // x, y: the two axes in the plane; z: the sweep's axis; w: +1 or -1
-  ivec4 layer;       // x: layer; w: 1 for planes through the voxels' front faces, 0 through their centres
+  ivec4 layer;       // x: layer; y: first row of voxels in the plane whose columns are held; w: 1 for planes through the voxels' front faces, 0 through their centres
   vec4 thresholds;   // x: score that keeps; y: least gain of a better explanation; z: least views;
                      // w: bias of the depth test in voxels
   vec4 noise;        // x: variance of image noise (square-root encoding); y: least confidence of a
@@ -53,7 +53,7 @@ struct Decision {
 };
 
 struct DepthMapInfo {
-  ivec4 size;   // x, y: texels; z: first texel in the buffer; w: view
+  ivec4 size;   // x, y: texels; z: first texel in the buffer, or layer of the image; w: view
   vec4 scale;   // x: texels per pixel
 };
 

@@ -12,11 +12,40 @@ namespace {
 
 constexpr double kRays = 4000;      // a view, about
 constexpr double kLineStep = 0.15;  // pixels across a line: a tube may be a third of a pixel wide
+constexpr double kWidestLine = 2;   // pixels, about
 
 struct Areas {
-  double foreground = 0, missed = 0;  ///< pixels
-  double covered = 0, excess = 0;     ///< places of a lattice
+  double foreground = 0, missed = 0, beyond_box = 0;  ///< pixels
+  double missed_times_width = 0;                      ///< pixels, cubed
+  double covered = 0, excess = 0;                     ///< places of a lattice
+
+  void look_at(double area, double width, bool hit) {
+    foreground += area;
+    if (hit) return;
+    missed += area;
+    missed_times_width += area * width;
+  }
 };
+
+/// The middles of the parts of the foreground that are narrower than `widest` pixels and no lines,
+/// a pixel apart: where the distance to the outline has a ridge.
+std::vector<LinePoint> narrow_parts(const SilhouetteDistance& d, double widest) {
+  constexpr int kAcross[][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
+  std::vector<LinePoint> out;
+  for (int y = 1; y + 1 < d.height; ++y)
+    for (int x = 1; x + 1 < d.width; ++x) {
+      const float* at = &d.pixels[std::size_t(y) * std::size_t(d.width) + std::size_t(x)];
+      if (*at > -0.5 * kWidestLine || *at < -0.5 * widest) continue;
+      for (const auto& [dx, dy] : kAcross) {
+        const long step = long(dy) * d.width + dx;
+        if (!(at[-step] > *at && at[step] >= *at)) continue;
+        const float length = std::hypot(float(dx), float(dy));
+        out.push_back({float(x), float(y), float(dx) / length, float(dy) / length, -2 * *at});
+        break;
+      }
+    }
+  return out;
+}
 
 class Checker {
  public:
@@ -32,11 +61,13 @@ class Checker {
     visit_lattice(given, step, [&](int x, int y, std::size_t i) {
       if (!inside(given.pixels[i])) return;
       const glm::dvec3 ray = camera_.ray({x, y});
-      if (!clip_ray(box_, origin_, ray)) return;
       const double area = sureness(s, i) * step * step;
+      if (!clip_ray(box_, origin_, ray)) {
+        areas.beyond_box += area;
+        return;
+      }
       ++fit.foreground;
-      areas.foreground += area;
-      areas.missed += rays_.occluded(origin_, ray) ? 0 : area;
+      areas.look_at(area, -2 * double(given.pixels[i]), rays_.occluded(origin_, ray));
     });
   }
 
@@ -53,8 +84,8 @@ class Checker {
     });
   }
 
-  void look_at_lines(const CheckedSilhouette& s, SilhouetteFit& fit, Areas& areas) const {
-    const std::vector<LinePoint>& lines = *s.lines;
+  void look_at_lines(const CheckedSilhouette& s, const std::vector<LinePoint>& lines,
+                     SilhouetteFit& fit, Areas& areas) const {
     const int width = s.given->width, height = s.given->height;
     const std::size_t stride = lines.size() / std::size_t(kRays) + 1;
     for (std::size_t i = 0; i < lines.size(); i += stride) {
@@ -66,8 +97,7 @@ class Checker {
       const double area =
           sureness(s, std::size_t(y) * std::size_t(width) + x) * double(stride) * p.width;
       ++fit.foreground;
-      areas.foreground += area;
-      areas.missed += hit ? 0 : area;
+      areas.look_at(area, p.width, hit);
     }
   }
 
@@ -102,8 +132,13 @@ SilhouetteFit check(const RayScene& rays, const Box& box, const Camera& camera,
   const Checker checker(rays, box, camera, tolerance);
   checker.look_at_foreground(silhouette, fit, areas);
   checker.look_for_excess(silhouette, fit, areas);
-  if (silhouette.lines) checker.look_at_lines(silhouette, fit, areas);
-  if (areas.foreground > 0) fit.missed = areas.missed / areas.foreground;
+  if (silhouette.lines) checker.look_at_lines(silhouette, *silhouette.lines, fit, areas);
+  checker.look_at_lines(silhouette, narrow_parts(*silhouette.given, 2 * tolerance), fit, areas);
+  if (areas.foreground > 0) {
+    fit.missed = areas.missed / areas.foreground;
+    fit.beyond_box = areas.beyond_box / (areas.beyond_box + areas.foreground);
+  }
+  if (areas.missed > 0) fit.missed_width = areas.missed_times_width / areas.missed;
   if (areas.covered > 0) fit.excess = areas.excess / areas.covered;
   return fit;
 }

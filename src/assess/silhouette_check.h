@@ -14,8 +14,10 @@ namespace photohull::assess {
 
 /// Shares of areas, [0, 1].
 struct SilhouetteFit {
-  double missed = 0;                ///< of the foreground, that the surface does not cover
-  double excess = 0;                ///< of the surface's picture, that lies on background
+  double missed = 0;        ///< of the foreground, that the surface does not cover
+  double missed_width = 0;  ///< pixels: how wide the parts are that it does not, in the mean
+  double excess = 0;        ///< of the surface's picture, that lies on background
+  double beyond_box = 0;    ///< of the foreground, whose rays do not meet the box
   int foreground = 0, covered = 0;  ///< places looked at; 0 where nothing is known
 };
 
@@ -36,8 +38,9 @@ bool covers_line(const RayScene& rays, const Camera& camera, const LinePoint& po
 
 /// One for each view, by rays through lattices of some thousand pixels, of the foreground for what
 /// is missed and of the whole picture for the excess, and through the lines. Pixels within
-/// `tolerance` of the silhouette's contour (pixels) do not count, nor do those whose ray does not
-/// meet the box. A line is covered where the surface is within `tolerance` of its middle.
+/// `tolerance` of the silhouette's contour (pixels) do not count, but for the middles of parts that
+/// are narrower than twice that, which count as lines do. Nor do those whose ray does not meet the
+/// box. A line is covered where the surface is within `tolerance` of its middle.
 std::vector<SilhouetteFit> check_silhouettes(const RayScene& rays, const Box& box,
                                              std::span<const Camera> cameras,
                                              std::span<const CheckedSilhouette> silhouettes,

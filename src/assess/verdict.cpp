@@ -19,7 +19,7 @@ constexpr Limits kMoved{0.6, 2.4};            // the same, of what is left in th
 constexpr Limits kFarOff{0.09, 0.6};          // share of the matches
 constexpr Limits kUnmatched{0.42, INFINITY};  // of the surface, textured and not found again
 constexpr Limits kUnsure{0.3, INFINITY};      // of the surface, where matches are few
-constexpr Limits kUnseen{0.2, 0.8};           // of the surface
+constexpr Limits kUnseen{0.5, 0.8};           // of the surface
 constexpr Limits kAtBox{0.08, INFINITY};      // of the surface
 constexpr Limits kMissed{0.04, 0.3};          // of the silhouettes
 constexpr Limits kExcess{0.06, 0.3};          // of the surface's projection
@@ -35,6 +35,12 @@ constexpr Limits kUnexplained{0.25, 0.7};  // of the places of which something i
 constexpr Limits kCutOff{0.12, INFINITY};  // of these and those just outside the box
 constexpr Limits kBare{0.8, INFINITY};     // of all texture
 constexpr double kWorthNoting = 0.05;      // of any of them
+constexpr double kBeyondBox = 0.05;        // of the silhouettes
+constexpr double kBeyondCut = 0.01;        // likewise, where the box's sides cut the surface
+constexpr double kThinVoxels = 2;          // voxels: what is narrower may fall between them
+constexpr double kFinestPixels = 0.5;      // pixels to a voxel: finer ones show nothing more
+constexpr double kMisfit = 0.5;            // of what is told of a view: its photograph is another's
+constexpr double kGuessed = 0.2;           // of the surface, unseen: worth saying what to do
 constexpr int kFewestPlaces = 30;          // told, for a share of them to mean anything
 constexpr double kWorse = 0.1;             // than the mean: views that are named
 constexpr std::size_t kMostNamed = 3;
@@ -75,6 +81,8 @@ class Judge {
   Judge(const Signals& signals, const std::vector<std::string>& names) : s_(signals), n_(names) {}
 
   Verdict run() {
+    box();
+    thin_parts();
     cameras();
     if (s_.hull)
       hull();
@@ -97,6 +105,35 @@ class Judge {
     else
       verdict_.reasons.push_back(reason);
     verdict_.level = std::max(verdict_.level, level);
+  }
+
+  /// What the box cuts off leaves silhouettes empty and makes them contradict each other.
+  void box() {
+    const bool cut = s_.at_box > kAtBox.doubtful;
+    if (!s_.masks || s_.beyond_box <= (cut ? kBeyondCut : kBeyondBox)) return;
+    const std::string beyond =
+        concat(percent(s_.beyond_box), " of what the masks show lies beyond the box");
+    if (cut || s_.missed > kMissed.doubtful || s_.contradiction > kContradiction.doubtful)
+      weigh(1, {0, INFINITY},
+            concat(beyond,
+                   ": the box cuts the object off; make it larger (--box-scale) or let it "
+                   "be found (--box auto)"));
+    else
+      verdict_.notes.push_back(beyond + " (--box-scale makes it larger)");
+  }
+
+  /// Parts that silhouettes show and voxels are too large for.
+  void thin_parts() {
+    const double width = s_.missed_width * s_.pixel_size;
+    if (!s_.masks || !(s_.missed > kMissed.doubtful) || !(width > 0) ||
+        width > kThinVoxels * s_.voxel_size)
+      return;
+    const double voxel = std::max(width / kThinVoxels, kFinestPixels * s_.pixel_size);
+    if (voxel >= s_.voxel_size) return;
+    weigh(1, {0, INFINITY},
+          concat("parts that the masks show about ", pixels(s_.missed_width),
+                 " wide are missing, for they are thinner than ", kThinVoxels,
+                 " voxels: use --resolution ", std::lround(s_.resolution * s_.voxel_size / voxel)));
   }
 
   void cameras() {
@@ -196,6 +233,11 @@ class Judge {
   }
 
   void coverage() {
+    verdict_.coverage = concat(percent(1 - s_.unseen), " of the surface is seen, ",
+                               percent(1 - s_.few_views), " by three views or more");
+    if (s_.unseen > kGuessed)
+      verdict_.coverage +=
+          "; the rest is a guess: add views there, or leave it out with --unseen open";
     weigh(s_.unseen, kUnseen,
           concat("no view sees ", percent(s_.unseen),
                  " of the surface: add views there, or use --unseen open"));
@@ -225,6 +267,22 @@ class Judge {
     std::string list;
     for (const auto& [share, i] : worst)
       list += concat(list.empty() ? "" : ", ", n_[i], " (", percent(share), ")");
+    return list;
+  }
+
+  /// Photographs that show something else than their cameras see.
+  std::string misfits() const {
+    std::string list;
+    std::size_t count = 0, judged = 0;
+    for (std::size_t i = 0; i < s_.explained.views.size(); ++i) {
+      const ExplainedView& view = s_.explained.views[i];
+      if (view.told() < kFewestPlaces) continue;
+      ++judged;
+      if (view.count(Place::kDisagreeing) < kMisfit * view.told()) continue;
+      if (++count <= kMostNamed) list += concat(list.empty() ? "" : ", ", n_[i]);
+    }
+    if (3 * count > judged) return "";  // so many are no single photographs' fault
+    if (count > kMostNamed) list += concat(" and ", count - kMostNamed, " more");
     return list;
   }
 
@@ -258,6 +316,12 @@ class Judge {
                    "masks: paint or project a pattern, add light, or give masks"));
       return;
     }
+    if (const std::string list = misfits(); !list.empty())
+      weigh(1, {0, INFINITY},
+            concat(list,
+                   ": other views show something else at most of what is seen there; is the "
+                   "photograph another view's, upside down or mirrored? Look at it, and at "
+                   "photohull info --cameras; --hold-out leaves views out"));
     const std::string worst = least_explained();
     const std::string where = worst.empty() ? "" : concat("; least in ", worst);
     const double unexplained = e.told() < kFewestPlaces ? 1 : 1 - e.explained();

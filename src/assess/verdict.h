@@ -19,11 +19,15 @@ struct Signals {
   bool hull = false;               ///< is the surface the silhouettes' alone (--method hull)?
   double mask_confidence = 0;      ///< 1 for masks that were given
   double pixel_size = 0;           ///< world units that a pixel covers at the object
+  double voxel_size = 0;           ///< world units
+  int resolution = 0;              ///< voxels along the box's longest side
   double far = 0;                  ///< world units: half a percent of the surface's diagonal
   double cameras_moved = 0;        ///< pixels, by --refine-cameras
   double cameras_moved_alike = 0;  ///< pixels, of it what all views have in common
   double contradiction = 0;        ///< share of the silhouettes that no hull of all views fills
   double missed = 0, excess = 0;   ///< SilhouetteFit, means over the views
+  double missed_width = 0;         ///< likewise, pixels, of what is missed
+  double beyond_box = 0;           ///< likewise
   double mean_confidence = 0;      ///< of the surface, the unseen with 0
   double unsure = 0;               ///< share of the surface with confidence below one half
   double unseen = 0;               ///< share of the surface that no view sees
@@ -44,6 +48,7 @@ struct Verdict {
   Level level = Level::kGood;
   std::vector<std::string> reasons;  ///< sentences: what is wrong, and what to do; empty if good
   std::vector<std::string> notes;    ///< what a result of this kind means, however good
+  std::string coverage;              ///< how much of the surface is seen; no matter of quality
 };
 
 /// `names` are the views', in the order of signals.match.views.

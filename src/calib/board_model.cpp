@@ -49,7 +49,38 @@ void check_same_size(const std::vector<BoardView>& views, const std::vector<std:
                          views[used[0]].name, "; calibrate one camera at one resolution"));
 }
 
-void hold_lens(ceres::Problem& problem, LensModel model, Lens& lens) {
+LensModel model_of(const Distortion& distortion) {
+  const auto& k = distortion.coefficients;
+  switch (distortion.model) {
+    case DistortionModel::kNone:
+      return LensModel::kPinhole;
+    case DistortionModel::kFisheye:
+      return LensModel::kFisheye;
+    case DistortionModel::kBrown:
+      return k[5] != 0 || k[6] != 0 || k[7] != 0 ? LensModel::kRational : LensModel::kBrown;
+    case DistortionModel::kPolynomial:
+    case DistortionModel::kMeasured:
+      break;
+  }
+  throw Error(
+      "the known lens has distortion that boards are not calibrated with; give one that is "
+      "pinhole, brown, rational or fisheye (docs/formats.md)");
+}
+
+Lens lens_of(const KnownLens& known) {
+  const Intrinsics& k = known.intrinsics;
+  constexpr double kNoSkew = 1e-6;  // of the focal length
+  if (!(std::abs(k.skew) <= kNoSkew * std::abs(k.fx)))
+    throw Error(concat("the known lens has a skew of ", k.skew,
+                       " px, which boards are not calibrated with; give one without"));
+  Lens lens{k.fx, k.fy, k.cx, k.cy};
+  std::copy(known.distortion.coefficients.begin(), known.distortion.coefficients.end(),
+            lens.begin() + 4);
+  return lens;
+}
+
+void hold_lens(ceres::Problem& problem, LensModel model, bool known, Lens& lens) {
+  if (known) return problem.SetParameterBlockConstant(lens.data());
   std::vector<int> fixed;
   const auto fix_from = [&](int first) {
     for (int i = first; i < 12; ++i) fixed.push_back(i);
@@ -114,19 +145,18 @@ StandardDeviations::StandardDeviations(ceres::Problem& problem) : problem_(probl
   const Eigen::LDLT<Eigen::MatrixXd> solver(scale.asDiagonal() * normal * scale.asDiagonal());
   constexpr double kDegenerate = 1e-13;
   if (solver.info() != Eigen::Success || !(solver.vectorD().minCoeff() > kDegenerate)) return;
-  const Eigen::MatrixXd inverse = solver.solve(Eigen::MatrixXd::Identity(columns, columns));
   const double spread = 2 * cost / std::max(1, j.num_rows - columns);
-  for (int i = 0; i < columns; ++i)
-    variance_.push_back(std::max(0.0, inverse(i, i) * scale[i] * scale[i] * spread));
+  covariance_ = spread * scale.asDiagonal() *
+                solver.solve(Eigen::MatrixXd::Identity(columns, columns)) * scale.asDiagonal();
 }
 
 std::vector<double> StandardDeviations::of(const double* block) const {
   const auto found = std::find(blocks_.begin(), blocks_.end(), block);
-  if (variance_.empty() || found == blocks_.end()) return {};
+  if (covariance_.size() == 0 || found == blocks_.end()) return {};
   const int first = first_[std::size_t(found - blocks_.begin())];
   std::vector<double> sigma;
   for (int i = 0; i < problem_.ParameterBlockTangentSize(block); ++i)
-    sigma.push_back(std::sqrt(variance_[std::size_t(first + i)]));
+    sigma.push_back(std::sqrt(std::max(0.0, covariance_(first + i, first + i))));
   sigma.resize(std::size_t(problem_.ParameterBlockSize(block)), 0.0);
   return sigma;
 }

@@ -5,6 +5,7 @@
 #include <ceres/ceres.h>
 #include <ceres/rotation.h>
 
+#include <Eigen/Core>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -90,8 +91,18 @@ struct BoardStart {
 BoardStart start_calibration(const std::vector<BoardView>& views,
                              const std::vector<std::size_t>& used, LensModel model);
 
-/// A lens in the problem, with what its model does not have held as it is.
-void hold_lens(ceres::Problem& problem, LensModel model, Lens& lens);
+/// Poses of the board in the views `used` under a lens that is known, each by itself [Collins14].
+std::vector<Rigid> start_poses(const std::vector<BoardView>& views,
+                               const std::vector<std::size_t>& used, LensModel model,
+                               const Lens& lens);
+
+/// Which of the models describes the distortion. Throws Error where none does.
+LensModel model_of(const Distortion& distortion);
+/// A lens that is known, as blocks of a problem. Throws Error for one with skew.
+Lens lens_of(const KnownLens& known);
+
+/// A lens in the problem, with what its model does not have held as it is; all of it if `known`.
+void hold_lens(ceres::Problem& problem, LensModel model, bool known, Lens& lens);
 
 /// Throws Error when it does not converge. `eliminated`: blocks that no residual has two of.
 void solve(ceres::Problem& problem, const std::vector<double*>& eliminated = {});
@@ -104,11 +115,16 @@ class StandardDeviations {
   /// Of a block's parameters, zero for those that are held. Empty where the problem is degenerate.
   std::vector<double> of(const double* block) const;
 
+  /// Free blocks of the problem, in the order of the covariance's rows.
+  const std::vector<double*>& blocks() const { return blocks_; }
+  /// Of all tangents of the free blocks; empty where the problem is degenerate.
+  const Eigen::MatrixXd& covariance() const { return covariance_; }
+
  private:
   ceres::Problem& problem_;
   std::vector<double*> blocks_;
   std::vector<int> first_;  ///< tangent column of each block
-  std::vector<double> variance_;
+  Eigen::MatrixXd covariance_;
 };
 
 /// Intrinsics and distortion as the rest of the program has them.
@@ -123,18 +139,23 @@ glm::dvec2 dot_bias(LensModel model, const Lens& lens, const Rigid& pose, const 
 /// One camera and where it saw the board.
 struct SingleCamera {
   LensModel model = LensModel::kBrown;
+  bool lens_known = false;        ///< and held as it is
   std::vector<BoardView> views;   ///< dots' pixels moved to where their middles are imaged
   std::vector<std::size_t> used;  ///< views that count, ascending
   Lens lens{};
   std::vector<Rigid> poses;  ///< camera from board, of each view that the board was found in
   double focal_sigma = 0, principal_sigma = 0;  ///< pixels
+  double object_error = 0;                      ///< as Calibration has it
 
+  /// So many views must count.
+  std::size_t fewest_views() const { return lens_known ? 1 : kFewestBoardViews; }
   std::vector<double> rms() const;  ///< of each view, NaN where the board was not found
   void note_sigma(const std::vector<double>& lens_sigma);
 };
 
 /// Start, outliers left out, refinement. Throws as calibrate() does.
-SingleCamera calibrate_camera(const std::vector<BoardView>& views, LensModel model);
+SingleCamera calibrate_camera(const std::vector<BoardView>& views, LensModel model,
+                              const std::optional<KnownLens>& known);
 
 /// All views of the camera by one axis and an angle each, free or as `angles` has them (degrees, of
 /// each view): refines the lens too, moves the poses onto the table, and takes views that do not

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "calib/board_model.h"
+#include "calib/object_error.h"
 #include "core/error.h"
 
 namespace photohull {
@@ -10,8 +11,12 @@ namespace {
 
 class Calibrator {
  public:
-  Calibrator(const std::vector<BoardView>& views, LensModel model) : measured_(views) {
-    c_.model = model;
+  Calibrator(const std::vector<BoardView>& views, LensModel model,
+             const std::optional<KnownLens>& known)
+      : measured_(views) {
+    c_.model = known ? model_of(known->distortion) : model;
+    c_.lens_known = known.has_value();
+    if (known) c_.lens = lens_of(*known);
     c_.views = views;
     c_.poses.resize(views.size());
   }
@@ -19,9 +24,10 @@ class Calibrator {
   SingleCamera run() {
     for (std::size_t i = 0; i < measured_.size(); ++i)
       if (measured_[i].points.size() >= kFewestBoardPoints) c_.used.push_back(i);
-    if (c_.used.size() < kFewestBoardViews)
+    if (c_.used.size() < c_.fewest_views())
       throw Error(concat("the board was found in ", c_.used.size(), " of ", measured_.size(),
-                         " pictures, but three are needed; check --board, --columns and --rows"));
+                         " pictures, but ", c_.lens_known ? "one is" : "three are",
+                         " needed; check --board, --columns and --rows"));
     check_same_size(measured_, c_.used);
     start();
     drop_outliers();
@@ -32,6 +38,10 @@ class Calibrator {
 
  private:
   void start() {
+    if (c_.lens_known) {
+      c_.poses = start_poses(c_.views, c_.used, c_.model, c_.lens);
+      return;
+    }
     const BoardStart found = start_calibration(c_.views, c_.used, c_.model);
     c_.lens = found.lens;
     for (const std::size_t i : c_.used) c_.poses[i] = found.poses[i];
@@ -47,7 +57,7 @@ class Calibrator {
       std::vector<std::size_t> kept;
       for (const std::size_t i : c_.used)
         if (all[i] <= limit) kept.push_back(i);
-      if (kept.size() == c_.used.size() || kept.size() < kFewestBoardViews) return;
+      if (kept.size() == c_.used.size() || kept.size() < c_.fewest_views()) return;
       c_.used = kept;
       start();
     }
@@ -64,9 +74,17 @@ class Calibrator {
                 new BoardResidual{c_.model, c_.views[i].points[k], c_.views[i].pixels[k]}),
             new ceres::HuberLoss(1), c_.lens.data(), c_.poses[i].data());
     }
-    hold_lens(problem, c_.model, c_.lens);
+    hold_lens(problem, c_.model, c_.lens_known, c_.lens);
     solve(problem, poses);
-    c_.note_sigma(StandardDeviations(problem).of(c_.lens.data()));
+    const StandardDeviations sigmas(problem);
+    c_.note_sigma(sigmas.of(c_.lens.data()));
+    ObjectError error(problem, sigmas);
+    const glm::ivec2 frame = c_.views[c_.used[0]].size();
+    for (const glm::dvec3& point : points_around_board(c_))
+      for (const std::size_t i : c_.used)
+        error.add<BoardResidual, 12, 6>(frame, {c_.model, point, {}}, c_.lens.data(),
+                                        c_.poses[i].data());
+    c_.object_error = error.rms();
   }
 
   /// False where there are no dots.
@@ -128,13 +146,14 @@ void SingleCamera::note_sigma(const std::vector<double>& lens_sigma) {
   principal_sigma = std::max(lens_sigma[2], lens_sigma[3]);
 }
 
-SingleCamera calibrate_camera(const std::vector<BoardView>& views, LensModel model) {
-  return Calibrator(views, model).run();
+SingleCamera calibrate_camera(const std::vector<BoardView>& views, LensModel model,
+                              const std::optional<KnownLens>& known) {
+  return Calibrator(views, model, known).run();
 }
 
 Calibration calibrate(const std::vector<BoardView>& views, const CalibrateOptions& options) {
   options.validate(views.size());
-  SingleCamera camera = calibrate_camera(views, options.lens);
+  SingleCamera camera = calibrate_camera(views, options.lens, options.known);
   Calibration c;
   if (options.turntable) c.turntable = refine_turntable(camera, options.angles);
   const BoardView& first = views[camera.used[0]];
@@ -152,6 +171,9 @@ Calibration calibrate(const std::vector<BoardView>& views, const CalibrateOption
   c.all_rms = std::sqrt(sum / count);
   c.focal_sigma = camera.focal_sigma;
   c.principal_sigma = camera.principal_sigma;
+  c.object_error = camera.object_error;
+  c.model = camera.model;
+  c.lens_known = camera.lens_known;
   return c;
 }
 

@@ -41,6 +41,8 @@ struct BoardView {
   /// Circles: a dot's radius in world units, measured; `pixels` are then the middles of the dots'
   /// pictures, off the pictures of their middles. 0: points.
   double dot_radius = 0;
+
+  glm::ivec2 size() const { return {width, height}; }
 };
 
 /// OpenCV's detectors (findChessboardCornersSB [Duda18], ArUco [GarridoJurado14],
@@ -51,8 +53,16 @@ enum class LensModel { kPinhole, kBrown, kRational, kFisheye };
 
 const char* to_string(LensModel model);
 
+/// A camera's lens as it was found before, in pixels of the pictures of the board.
+struct KnownLens {
+  Intrinsics intrinsics;
+  Distortion distortion;
+};
+
 struct CalibrateOptions {
   LensModel lens = LensModel::kBrown;
+  /// The lens is this one, whatever `lens` says: only poses are found. No skew.
+  std::optional<KnownLens> known;
   /// One fixed camera, and a board that turns with the object on a table: all pictures share an
   /// axis, and differ in an angle only.
   bool turntable = false;
@@ -84,14 +94,23 @@ struct Calibration {
   std::vector<bool> left_out;        ///< outliers: their rms is far from the others'
   double all_rms = 0;                ///< pixels, of the views that count
   double focal_sigma = 0, principal_sigma = 0;  ///< pixels, standard deviations (largest of x, y)
+  /// What uncertain lens, poses and axis do to a reconstruction: pixels by which points of an
+  /// object as large as the board, in its place, are seen elsewhere, in the root mean square over
+  /// points and views, less what moving, turning and scaling all of the world can take back.
+  /// Infinite where the pictures leave something undetermined.
+  double object_error = 0;
+  LensModel model = LensModel::kBrown;  ///< as asked for, or that of the known lens
+  bool lens_known = false;              ///< CalibrateOptions::known: the lens has no deviations
   std::optional<TurntableAxis> turntable;
 };
 
 /// Intrinsics and poses by OpenCV [Zhang00], then refined in one Ceres problem with a robust loss
 /// (with `turntable` over the common axis), from which the standard deviations come. Dots are
-/// judged by the middles of their pictures, computed through perspective and lens. Throws Error
-/// when fewer than three views show six points or more, when views' sizes differ, when the problem
-/// is degenerate, or when given angles do not fit.
+/// judged by the middles of their pictures, computed through perspective and lens. With a known
+/// lens poses come from each view by itself first [Collins14]. Throws Error when fewer than three
+/// views (one, where the lens is known) show six points or more, when views' sizes differ, when the
+/// problem is degenerate, or when given angles do not fit. What it finds may still be useless:
+/// judge_calibration.h.
 Calibration calibrate(const std::vector<BoardView>& views, const CalibrateOptions& options);
 
 /// How often each part of the frame was covered by the board's points: a picture, 8-bit grey RGB.

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "calib/board_model.h"
+#include "calib/object_error.h"
 #include "core/error.h"
 #include "core/median.h"
 
@@ -46,7 +47,7 @@ class RigCalibrator {
     for (const RigCameraViews& camera : given_) {
       PHOTOHULL_CHECK_OP(camera.views.size(), ==, moments_);
       try {
-        cameras_.push_back(calibrate_camera(camera.views, lens));
+        cameras_.push_back(calibrate_camera(camera.views, lens, camera.known));
       } catch (const UsageError&) {
         throw;
       } catch (const Error& failure) {
@@ -157,7 +158,8 @@ class RigCalibrator {
           boards.push_back(boards_[m].data());
       }
     for (SingleCamera& c : cameras_)
-      if (problem.HasParameterBlock(c.lens.data())) hold_lens(problem, c.model, c.lens);
+      if (problem.HasParameterBlock(c.lens.data()))
+        hold_lens(problem, c.model, c.lens_known, c.lens);
     if (problem.HasParameterBlock(rig_[0].data()))
       problem.SetParameterBlockConstant(rig_[0].data());
     solve(problem, boards);
@@ -171,6 +173,30 @@ class RigCalibrator {
       cameras_[c].note_sigma(sigmas.of(cameras_[c].lens.data()));
       sigmas_[c] = sigmas.of(rig_[c].data());
     }
+    object_error_ = object_error(problem, sigmas);
+  }
+
+  /// Over places of the room in which the boards were held.
+  double object_error(ceres::Problem& problem, const StandardDeviations& sigmas) {
+    glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
+    for (std::size_t m = 0; m < moments_; ++m)
+      for (std::size_t c = 0; c < count(); ++c) {
+        if (!used_[c][m]) continue;
+        const Pose board = pose_of(boards_[m]);
+        for (const glm::dvec3& p : cameras_[c].views[m].points) {
+          const glm::dvec3 q = board.rotation * p + board.translation;
+          low = glm::min(low, q), high = glm::max(high, q);
+        }
+      }
+    ObjectError error(problem, sigmas);
+    for (std::size_t c = 0; c < count(); ++c) {
+      SingleCamera& camera = cameras_[c];
+      for (const glm::dvec3& point : points_throughout(low, high))
+        error.add<BoardResidual, 12, 6>(camera.views[camera.used[0]].size(),
+                                        {camera.model, point, {}}, camera.lens.data(),
+                                        rig_[c].data());
+    }
+    return error.rms();
   }
 
   /// Of each moment the view that fits worst goes where it is far worse than the others; true where
@@ -199,7 +225,7 @@ class RigCalibrator {
   void check_left() {
     for (std::size_t c = 0; c < count(); ++c) {
       const auto left = std::size_t(std::count(used_[c].begin(), used_[c].end(), true));
-      if (left < kFewestBoardViews)
+      if (left < cameras_[c].fewest_views())
         throw Error(concat("camera ", given_[c].name, ": only ", left,
                            " of its views fit the other cameras'; were the pictures of a moment "
                            "taken at the same time?"));
@@ -236,6 +262,8 @@ class RigCalibrator {
       camera.all_rms = std::sqrt(sum / points);
       camera.focal_sigma = single.focal_sigma;
       camera.principal_sigma = single.principal_sigma;
+      camera.model = single.model;
+      camera.lens_known = single.lens_known;
       if (!sigmas_[c].empty()) {
         const auto s = sigmas_[c].begin();
         camera.rotation_sigma = kDegreesPerRadian * *std::max_element(s, s + 3);
@@ -247,6 +275,7 @@ class RigCalibrator {
     for (std::size_t m = 0; m < moments_; ++m)
       r.rig_from_board.push_back(known(m) ? pose_of(boards_[m]) : Pose{});
     r.all_rms = std::sqrt(all / all_count);
+    r.object_error = object_error_;
     return r;
   }
 
@@ -261,6 +290,7 @@ class RigCalibrator {
   std::vector<Rigid> rig_;               ///< of each camera: from the rig's frame
   std::vector<Rigid> boards_;            ///< of each moment: to the rig's frame
   std::vector<std::vector<double>> sigmas_;
+  double object_error_ = 0;
 };
 
 }  // namespace

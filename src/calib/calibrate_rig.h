@@ -13,6 +13,7 @@ namespace photohull {
 struct RigCameraViews {
   std::string name;
   std::vector<BoardView> views;
+  std::optional<KnownLens> known{};  ///< its lens is this one: only its pose is found
 };
 
 /// A camera of a calibrated rig; standard deviations are those of the joint problem.
@@ -26,13 +27,17 @@ struct RigCamera {
   double all_rms = 0;          ///< pixels, of the moments that count
   double focal_sigma = 0, principal_sigma = 0;  ///< pixels (largest of x, y)
   double rotation_sigma = 0;                    ///< degrees, largest of three axes; 0 for the first
-  double translation_sigma = 0;  ///< world units, largest of three axes; 0 for the first
+  double translation_sigma = 0;         ///< world units, largest of three axes; 0 for the first
+  LensModel model = LensModel::kBrown;  ///< as asked for, or that of the known lens
+  bool lens_known = false;              ///< RigCameraViews::known: the lens has no deviations
 };
 
 struct RigCalibration {
   std::vector<RigCamera> cameras;    ///< in the order given
   std::vector<Pose> rig_from_board;  ///< of each moment; identity where no camera counts
   double all_rms = 0;                ///< pixels
+  /// As Calibration's, of an object that fills the room in which the boards were held.
+  double object_error = 0;
 };
 
 /// Each camera on its own first (calibrate()); then poses between cameras from the moments that

@@ -3,6 +3,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "calib/board_model.h"
+#include "calib/object_error.h"
 #include "core/error.h"
 #include "core/median.h"
 
@@ -71,6 +72,9 @@ class Turntable {
   }
 
   TurntableAxis run() {
+    if (c_.used.size() < kFewestBoardViews)
+      throw Error(concat("the board was found in ", c_.used.size(),
+                         " pictures, but a turntable needs three"));
     free_rms_ = median_rms();
     for (;;) {
       solve_once();
@@ -165,9 +169,9 @@ class Turntable {
             new ceres::HuberLoss(1), c_.lens.data(), board.data(), change.data(), &angles[n]);
       if (n == 0 || !given_.empty()) problem.SetParameterBlockConstant(&angles[n]);
     }
-    hold_lens(problem, c_.model, c_.lens);
+    hold_lens(problem, c_.model, c_.lens_known, c_.lens);
     solve(problem);
-    report(problem, axis, change, angles);
+    report(problem, axis, board, change, angles);
     for (std::size_t n = 0; n < count; ++n) {
       const glm::dmat3 turn = turn_about(table_.direction, angles[n]);
       const Pose pose = pose_of(board);
@@ -176,8 +180,8 @@ class Turntable {
     }
   }
 
-  void report(ceres::Problem& problem, const Axis& axis, const std::array<double, 4>& change,
-              const std::vector<double>& angles) {
+  void report(ceres::Problem& problem, const Axis& axis, Rigid& board,
+              std::array<double, 4>& change, std::vector<double>& angles) {
     table_ = {};
     table_.angles_given = !given_.empty();
     axis.at(change.data(), &table_.direction.x, &table_.point.x);
@@ -186,6 +190,14 @@ class Turntable {
       table_.angles[c_.used[n]] = angles[n] * kDegreesPerRadian;
     const StandardDeviations sigmas(problem);
     c_.note_sigma(sigmas.of(c_.lens.data()));
+    ObjectError error(problem, sigmas);
+    const glm::ivec2 frame = c_.views[c_.used[0]].size();
+    for (const glm::dvec3& point : points_around_board(c_))
+      for (double& angle : angles)
+        error.add<TurntableResidual, 12, 6, 4, 1>(frame, {c_.model, axis, point, {}},
+                                                  c_.lens.data(), board.data(), change.data(),
+                                                  &angle);
+    c_.object_error = error.rms();
     const std::vector<double> sigma = sigmas.of(change.data());
     if (sigma.empty()) return;
     table_.direction_sigma = kDegreesPerRadian * std::max(sigma[0], sigma[1]);

@@ -15,6 +15,9 @@ namespace photohull {
 namespace {
 
 constexpr std::uint16_t kHalfOne = 0x3c00;
+constexpr double kWholeFrame = 0.98;        // of the pixels along the frame
+constexpr double kSomeBackground = 0.9995;  // of the pixels are foreground, at most
+constexpr double kNearlyAll = 0.9;          // of the views
 
 std::size_t pixel_count(const ColourImage& image) {
   return std::size_t(image.width) * image.height;
@@ -51,13 +54,27 @@ double mean_coverage(const Mask& mask, int x0, int y0, int x1, int y1) {
   return sum / (255.0 * std::max(x1 - x0, 1) * std::max(y1 - y0, 1));
 }
 
+/// Mean coverage of the pixels along the frame, in [0, 1].
+double frame_coverage(const Mask& mask) {
+  const int w = mask.width, h = mask.height;
+  const double sum = (mean_coverage(mask, 0, 0, w, 1) + mean_coverage(mask, 0, h - 1, w, h)) * w +
+                     (mean_coverage(mask, 0, 0, 1, h) + mean_coverage(mask, w - 1, 0, w, h)) * h;
+  return sum / (2 * w + 2 * h);
+}
+
 /// Mostly foreground along the frame and mostly background in the middle third?
 bool looks_inverted(const Mask& mask) {
   const int w = mask.width, h = mask.height;
-  const double frame = (mean_coverage(mask, 0, 0, w, 1) + mean_coverage(mask, 0, h - 1, w, h)) * w +
-                       (mean_coverage(mask, 0, 0, 1, h) + mean_coverage(mask, w - 1, 0, w, h)) * h;
-  return frame > 0.5 * (2 * w + 2 * h) &&
+  return frame_coverage(mask) > 0.5 &&
          mean_coverage(mask, w / 3, h / 3, w - w / 3, h - h / 3) < 0.5;
+}
+
+/// Is there background, and is it all closed in by foreground that runs along the whole frame? Of a
+/// thin object that is what an inverted mask looks like. In some views a right one may look so,
+/// too, where something is cut out of a scene that fills the frame.
+bool closes_background_in(const Mask& mask) {
+  return frame_coverage(mask) > kWholeFrame &&
+         mean_coverage(mask, 0, 0, mask.width, mask.height) < kSomeBackground;
 }
 
 /// A mask of another size over the same picture: coverage is averaged over the pixels' areas where
@@ -100,10 +117,13 @@ void make_opaque(ColourImage& image) {
   image.has_alpha = false;
 }
 
-MaskOrigin take_given_mask(const SourceView& source, const ViewLoader& loader, View& view) {
+MaskOrigin take_given_mask(const SourceView& source, const ViewLoader& loader, View& view,
+                           bool& from_ones) {
   MaskOrigin origin = MaskOrigin::kNone;
   if (!source.mask.empty()) {
-    view.mask = loader.mask(source.mask);
+    FileMask mask = loader.mask(source.mask);
+    from_ones = mask.from_ones;
+    view.mask = std::move(mask);
     if (is_scaled_copy(view.mask.width, view.mask.height, view.image.width, view.image.height))
       view.mask = resized(view.mask, view.image.width, view.image.height);
     if (view.mask.width != view.image.width || view.mask.height != view.image.height)
@@ -144,7 +164,7 @@ void describe_masks(const std::vector<MaskOrigin>& origins, PreparedViews& views
 }
 
 void check_masks(PreparedViews& views) {
-  std::size_t masks = 0, empty = 0, inverted = 0;
+  std::size_t masks = 0, empty = 0, inverted = 0, closed_in = 0;
   for (const View& view : views.views) {
     if (view.mask.empty()) continue;
     ++masks;
@@ -159,6 +179,7 @@ void check_masks(PreparedViews& views) {
       views.warnings.push_back(concat(view.name, ": the mask is all foreground"));
     }
     inverted += looks_inverted(view.mask);
+    closed_in += looks_inverted(view.mask) || closes_background_in(view.mask);
   }
   if (masks > 0 && empty == masks)
     throw Error("all masks are empty: white must be the object, black the background");
@@ -166,6 +187,10 @@ void check_masks(PreparedViews& views) {
     throw Error(concat("masks look inverted: in ", inverted, " of ", masks,
                        " the frame is foreground and the middle background; "
                        "white must be the object"));
+  if (double(closed_in) > kNearlyAll * double(masks))
+    throw Error(concat("masks look inverted: in ", closed_in, " of ", masks,
+                       " foreground runs along the whole frame and closes the background in; "
+                       "white must be the object (--masks none goes without them)"));
 }
 
 }  // namespace photohull

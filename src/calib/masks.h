@@ -9,8 +9,10 @@ enum class MaskOrigin { kNone, kFile, kAlpha, kPlate, kBackground };
 
 /// Fills view.mask from the file that the scene names, else from an alpha channel that varies, in
 /// pixels of `view.image`; a file that is a scaled copy (core/scaled_size.h) is resampled to them.
-/// Throws Error for a mask of another size and what the loader throws.
-MaskOrigin take_given_mask(const SourceView& source, const ViewLoader& loader, View& view);
+/// `from_ones`: FileMask's, of a file. Throws Error for a mask of another size and what the loader
+/// throws.
+MaskOrigin take_given_mask(const SourceView& source, const ViewLoader& loader, View& view,
+                           bool& from_ones);
 
 /// Sets the alpha of an image that has such a channel to 1: from here on it tells what is known.
 void make_opaque(ColourImage& image);

@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <atomic>
 #include <mutex>
 
 #include "calib/find_masks.h"
@@ -93,6 +94,7 @@ PreparedViews prepare_views(Scene& scene, const ViewLoader& loader, const Prepar
   PreparedViews result;
   result.views.resize(count);
   std::vector<MaskOrigin> origins(count, MaskOrigin::kNone);
+  std::atomic<int> of_ones = 0;              // masks
   std::vector<std::string> failures(count);  // the decoder's words; empty: none
   for_each_view(count, 0.0, kDecodeShare, progress, [&](std::size_t i) {
     const SourceView& source = scene.views[i];
@@ -100,13 +102,19 @@ PreparedViews prepare_views(Scene& scene, const ViewLoader& loader, const Prepar
     view.name = source.name;
     view.camera = source.camera;
     if (!load_image(source, loader, view.image, failures[i])) return;
+    bool ones = false;
     if (options.masks == MaskPolicy::kAuto && source.plate.empty())
-      origins[i] = take_given_mask(source, loader, view);
+      origins[i] = take_given_mask(source, loader, view, ones);
+    of_ones += ones;
     make_opaque(view.image);
   });
 
   leave_out_unreadable(failures, options.strict, scene, origins, result);
   count = scene.views.size();
+  if (of_ones > 0)
+    result.warnings.push_back(concat(of_ones, of_ones == 1 ? " mask has" : " masks have",
+                                     " no other values than 0 and 1: 1 was taken for the object "
+                                     "(255)"));
   check_masks(result);
   result.masks.resize(count);
   if (use_masks) find_masks(scene, loader, options.cut_masks, origins, result);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/file_mask.h"
 #include "core/image.h"
 #include "core/progress.h"
 #include "core/scene.h"
@@ -16,7 +17,7 @@ namespace photohull {
 /// threads at once and throw Error for files that cannot be read.
 struct ViewLoader {
   std::function<ColourImage(const std::filesystem::path&)> image;
-  std::function<Mask(const std::filesystem::path&)> mask;
+  std::function<FileMask(const std::filesystem::path&)> mask;
 };
 
 enum class MaskPolicy {

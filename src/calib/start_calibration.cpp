@@ -1,4 +1,5 @@
-// Based on: Z. Zhang, "A flexible new technique for camera calibration", 2000 [Zhang00].
+// Based on: Z. Zhang, "A flexible new technique for camera calibration", 2000 [Zhang00];
+// T. Collins, A. Bartoli, "Infinitesimal plane-based pose estimation", 2014 [Collins14].
 #include <opencv2/calib3d.hpp>
 
 #include "calib/board_model.h"
@@ -38,7 +39,45 @@ int flags_of(LensModel lens) {
   return cv::CALIB_FIX_K1 | cv::CALIB_FIX_K2 | cv::CALIB_FIX_K3 | cv::CALIB_ZERO_TANGENT_DIST;
 }
 
+/// Directions (x, y, 1) of a view's pixels.
+std::vector<cv::Point2d> directions(const BoardView& view, LensModel model, const Lens& lens) {
+  std::vector<cv::Point2d> pixels, found;
+  for (const glm::dvec2& p : view.pixels) pixels.emplace_back(p.x, p.y);
+  const cv::Matx33d k(lens[0], 0, lens[2], 0, lens[1], lens[3], 0, 0, 1);
+  std::vector<double> d(lens.begin() + 4, lens.end());
+  if (model == LensModel::kFisheye) {
+    d.resize(4);
+    cv::fisheye::undistortPoints(pixels, found, k, d);
+  } else {
+    cv::undistortPoints(pixels, found, k, d);
+  }
+  return found;
+}
+
 }  // namespace
+
+std::vector<Rigid> start_poses(const std::vector<BoardView>& views,
+                               const std::vector<std::size_t>& used, LensModel model,
+                               const Lens& lens) {
+  std::vector<Rigid> poses(views.size());
+  for (const std::size_t i : used) {
+    std::vector<cv::Point3d> points;
+    for (const glm::dvec3& p : views[i].points) points.emplace_back(p.x, p.y, p.z);
+    cv::Mat turn, move;
+    try {
+      cv::solvePnP(points, directions(views[i], model, lens), cv::Matx33d::eye(), {}, turn, move,
+                   false, cv::SOLVEPNP_IPPE);
+    } catch (const cv::Exception& failure) {
+      throw Error(concat(views[i].name, ": no pose fits the board under the known lens (",
+                         failure.err, "); is it that of these pictures?"));
+    }
+    for (int c = 0; c < 3; ++c) {
+      poses[i][std::size_t(c)] = turn.at<double>(c);
+      poses[i][std::size_t(3 + c)] = move.at<double>(c);
+    }
+  }
+  return poses;
+}
 
 BoardStart start_calibration(const std::vector<BoardView>& views,
                              const std::vector<std::size_t>& used, LensModel model) {

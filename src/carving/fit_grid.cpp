@@ -5,20 +5,44 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/viewing_depth.h"
 
 namespace photohull::carving {
 namespace {
 
 constexpr double kMargin = 3.0;  // voxels around the box: room for the narrow band
+constexpr double kRounding = 1e-12;
 constexpr double kMaxBricks = 64.0 * 1024 * 1024;  // a table of 256 MiB; 4096^3 voxels fit
 constexpr double kBytesPerSurfaceBrick = 12e3;     // rough: distances, mesh, VDB copy
+
+/// Along each axis, for so many voxels. Throws as fit_grid does.
+glm::ivec3 bricks_for(const glm::dvec3& voxels, double voxel_size) {
+  const glm::dvec3 bricks = glm::ceil((voxels + 2.0 * kMargin) / double(kBrickEdge));
+  const double count = bricks.x * bricks.y * bricks.z;
+  if (!(count <= kMaxBricks))
+    throw Error(concat("voxel size ", voxel_size, " makes a lattice of ", bricks.x * kBrickEdge,
+                       " x ", bricks.y * kBrickEdge, " x ", bricks.z * kBrickEdge,
+                       " voxels, whose index alone takes ", std::ceil(count * 4 / 1048576),
+                       " MiB; choose a lower --resolution, a larger "
+                       "--voxel-size or a smaller --box"));
+  return glm::ivec3(bricks);
+}
+
+void check_voxel_size(double voxel_size) {
+  if (!(std::isfinite(voxel_size) && voxel_size > 0))
+    throw UsageError(concat("voxel size ", voxel_size, ": must be finite and positive"));
+}
 
 }  // namespace
 
 double pixel_footprint(const Box& box, std::span<const Camera> cameras) {
   std::vector<double> sizes;
   for (const Camera& camera : cameras) {
-    const double depth = camera.to_camera(box.center()).z;
+    const Intrinsics& k = camera.intrinsics;
+    const double depth =
+        box.contains(camera.center())
+            ? viewing_depth(camera.projection(), camera.center(), k.width, k.height, box)
+            : camera.to_camera(box.center()).z;
     const double focal = std::sqrt(std::abs(camera.intrinsics.fx * camera.intrinsics.fy));
     if (depth > 0 && focal > 0) sizes.push_back(depth / focal);
   }
@@ -34,22 +58,22 @@ double voxel_size_for(const Box& box, int resolution) {
 }
 
 GridSpec fit_grid(const Box& box, double voxel_size) {
-  if (!(std::isfinite(voxel_size) && voxel_size > 0))
-    throw UsageError(concat("voxel size ", voxel_size, ": must be finite and positive"));
-  const glm::dvec3 bricks =
-      glm::ceil((box.size() / voxel_size + 2.0 * kMargin) / double(kBrickEdge));
-  const double count = bricks.x * bricks.y * bricks.z;
-  if (!(count <= kMaxBricks))
-    throw Error(concat("voxel size ", voxel_size, " makes a lattice of ", bricks.x * kBrickEdge,
-                       " x ", bricks.y * kBrickEdge, " x ", bricks.z * kBrickEdge,
-                       " voxels, whose index alone takes ", std::ceil(count * 4 / 1048576),
-                       " MiB; choose a lower --resolution, a larger "
-                       "--voxel-size or a smaller --box"));
+  check_voxel_size(voxel_size);
   GridSpec grid;
   grid.voxel_size = voxel_size;
-  grid.bricks = glm::ivec3(bricks);
+  grid.bricks = bricks_for(box.size() / voxel_size, voxel_size);
   // Centre the voxels on the box, so that the margin is even.
   grid.origin = box.center() - 0.5 * voxel_size * glm::dvec3(grid.voxels() - 1);
+  return grid;
+}
+
+GridSpec fixed_grid(const Box& box, double voxel_size) {
+  check_voxel_size(voxel_size);
+  GridSpec grid;
+  grid.voxel_size = voxel_size;
+  // A side of N voxels has N, whichever way its division was rounded.
+  grid.bricks = bricks_for(glm::ceil(box.size() / voxel_size * (1 - kRounding)), voxel_size);
+  grid.origin = box.min + voxel_size * (0.5 - kMargin);
   return grid;
 }
 

@@ -10,14 +10,20 @@
 
 namespace photohull::carving {
 
-/// World size of a pixel's footprint at the box's centre, the median over the views that have the
-/// centre in front of them: depth / focal length. 0 when no view has.
+/// World size of a pixel's footprint at the box's centre (core/viewing_depth.h, for views within),
+/// the median over the views that have that in front of them: depth / focal length. 0 when no view
+/// has.
 double pixel_footprint(const Box& box, std::span<const Camera> cameras);
 
 /// A lattice over the box, grown by a margin of `kMargin` voxels on each side.
 /// Throws UsageError for a voxel size that is not finite and positive, and Error when the lattice's
 /// index alone would take more than 256 MiB (the message says how much).
 GridSpec fit_grid(const Box& box, double voxel_size);
+
+/// A lattice whose voxels tile the box from its lower corner: voxel (3, 3, 3) begins there, and the
+/// margin is at least as wide at the other end. Boxes that share that corner, or whose corners are
+/// whole voxels apart, have voxels in common. Throws as fit_grid does.
+GridSpec fixed_grid(const Box& box, double voxel_size);
 
 /// Voxel size for an effective resolution of `resolution`^3: the box's longest side has that many.
 double voxel_size_for(const Box& box, int resolution);

@@ -22,6 +22,7 @@ using gpu::Buffer;
 
 constexpr float kSplitMargin = 1.0f;         // voxels: keeps both ends of every sign change stored
 constexpr std::size_t kBatchBricks = 16384;  // 32 MiB of distances a dispatch
+constexpr std::size_t kBatchNodes = std::size_t(1) << 20;
 
 /// Everything the kernels need of the silhouettes, on the device.
 struct DeviceSilhouettes {
@@ -124,30 +125,18 @@ class HullCarver {
   }
 
   Classified classify(const std::vector<ivec4>& nodes) {
-    Buffer node_buffer = Buffer::of(nodes);
-    Buffer classes(nodes.size() * 4), relevant(nodes.size() * 4 * words_);
-    parameters_.counts.x = int(nodes.size());
-    Buffer parameters(sizeof parameters_, &parameters_);
-    bind(parameters);
-    device_.pyramid.bind(0);
-    device_.distances.bind(1);
-    node_buffer.bind_storage(1);
-    classes.bind_storage(2);
-    relevant.bind_storage(3);
-    classify_.dispatch(context_, "carving_classify_nodes", gpu::group_count(nodes.size(), 64));
-    const auto kinds = classes.download<std::uint32_t>(nodes.size());
-    const auto bits = relevant.download<std::uint32_t>(nodes.size() * words_);
     Classified out;
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      const std::uint32_t kind = kinds[i] & shaders::kNodeKindMask;
-      if (kind == shaders::kNodeInside) out.inside.push_back(nodes[i]);
-      if (kind != shaders::kNodeSurface) continue;
-      out.unsure.push_back((kinds[i] & shaders::kNodeUnsure) != 0);
-      out.surface.push_back(nodes[i]);
-      out.relevant.insert(out.relevant.end(), bits.begin() + long(i * words_),
-                          bits.begin() + long((i + 1) * words_));
-    }
+    const std::size_t batch =
+        gpu::batch_size(std::max<std::size_t>(sizeof(ivec4), 4 * words_), kBatchNodes);
+    for (std::size_t first = 0; first < nodes.size(); first += batch)
+      classify(std::span(nodes).subspan(first, std::min(batch, nodes.size() - first)), out);
     return out;
+  }
+
+  /// Bricks whose distances and lists of views fit into storage blocks.
+  std::size_t brick_batch() const {
+    const std::size_t bytes = std::max<std::size_t>(kBrickVoxels * 4, 4 * (views_ + 1));
+    return gpu::batch_size(bytes, kBatchBricks);
   }
 
   /// The children that lie on the grid.
@@ -198,6 +187,31 @@ class HullCarver {
   }
 
  private:
+  void classify(std::span<const ivec4> nodes, Classified& out) {
+    const Buffer node_buffer = Buffer::of(nodes);
+    Buffer classes(nodes.size() * 4), relevant(nodes.size() * 4 * words_);
+    parameters_.counts.x = int(nodes.size());
+    Buffer parameters(sizeof parameters_, &parameters_);
+    bind(parameters);
+    device_.pyramid.bind(0);
+    device_.distances.bind(1);
+    node_buffer.bind_storage(1);
+    classes.bind_storage(2);
+    relevant.bind_storage(3);
+    classify_.dispatch(context_, "carving_classify_nodes", gpu::group_count(nodes.size(), 64));
+    const auto kinds = classes.download<std::uint32_t>(nodes.size());
+    const auto bits = relevant.download<std::uint32_t>(nodes.size() * words_);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const std::uint32_t kind = kinds[i] & shaders::kNodeKindMask;
+      if (kind == shaders::kNodeInside) out.inside.push_back(nodes[i]);
+      if (kind != shaders::kNodeSurface) continue;
+      out.unsure.push_back((kinds[i] & shaders::kNodeUnsure) != 0);
+      out.surface.push_back(nodes[i]);
+      out.relevant.insert(out.relevant.end(), bits.begin() + long(i * words_),
+                          bits.begin() + long((i + 1) * words_));
+    }
+  }
+
   void bind(const Buffer& parameters) const {
     parameters.bind_uniform(0);
     device_.views.bind_storage(0);
@@ -269,9 +283,10 @@ SparseVolume carve_silhouette(gpu::Context& context, const GridSpec& grid, const
   if (nodes.empty()) found.surface.clear();
   counts.bricks_evaluated = std::int64_t(found.surface.size());
   counts.samples = count_bits(found.relevant) * kBrickVoxels;
-  for (std::size_t first = 0; first < found.surface.size(); first += kBatchBricks) {
+  const std::size_t batch = carver.brick_batch();
+  for (std::size_t first = 0; first < found.surface.size(); first += batch) {
     progress.check_cancelled();
-    const std::size_t count = std::min(kBatchBricks, found.surface.size() - first);
+    const std::size_t count = std::min(batch, found.surface.size() - first);
     const std::vector<float> distances = carver.evaluate(found, first, count);
     for (std::size_t i = 0; i < count; ++i)
       store_brick(volume, ivec3(found.surface[first + i]), &distances[i * kBrickVoxels]);

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <memory>
+#include <list>
 #include <utility>
 
 #include "carving/bit_volume.h"
 #include "carving/decisions.h"
+#include "carving/layer_item.h"
 #include "carving/search_disc.h"
+#include "carving/sweep_bands.h"
 #include "core/error.h"
 #include "gpu/buffer.h"
 #include "gpu/program.h"
@@ -25,8 +27,9 @@ using glm::ivec3;
 using gpu::Buffer;
 using gpu::Program;
 
-constexpr double kLeastCosine = 0.35;  // between a camera's direction and the sweep
-constexpr std::size_t kChunk = 1024;   // bricks, at a search offset each, whose samples are held
+// Of the samples of a brick's part of a layer, at a search offset.
+constexpr std::size_t kSampleBytes = shaders::kMaxLayerViews * shaders::kApronArea * 16;
+constexpr std::size_t kChunk = 1024;  // bricks, at a search offset each, whose samples are held
 // Voxels carved in a round per voxel judged below which another round changes nothing measurable.
 constexpr double kNegligible = 0.03;
 // Of statistics whose confidence is 0 where there is too little evidence.
@@ -41,20 +44,7 @@ struct Resampling {
   bool coverage;    ///< alpha tells how much of a sample is the object's
 };
 
-struct Direction {
-  int axis, sign;
-};
-
-/// A list with a header of four words, the first being its length.
-struct DeviceList {
-  Buffer buffer;
-  explicit DeviceList(std::size_t capacity) : buffer(16 + capacity * 16) { clear(); }
-  void clear() {
-    const std::uint32_t zeros[4] = {};
-    buffer.write(0, 16, zeros);
-  }
-  std::size_t count() const { return buffer.download<std::uint32_t>(1)[0]; }
-};
+using Direction = SweepDirection;
 
 class Sweeper {
  public:
@@ -64,21 +54,22 @@ class Sweeper {
         resampling_(std::move(resampling)),
         options_(options),
         search_(search_disc(options.search_radius)),
-        chunk_(std::max<std::size_t>(kChunk / search_.size(), 1)),
+        chunk_(gpu::batch_size(search_.size() * kSampleBytes,
+                               std::max<std::size_t>(kChunk / search_.size(), 1))),
         bits_(to_bits(hull)),
+        cameras_(to_grid(cameras, hull.grid)),
+        maps_(cameras_, hull.grid),
         select_(Program::compute("carving_select_columns.comp.glsl")),
         score_(Program::compute("carving_score_columns.comp.glsl",
                                 statistic_defines(options.statistic, resampling_.coverage) +
-                                    search_defines(search_) +
+                                    search_defines(search_) + maps_.defines() +
                                     visibility::sweep_test_defines(options.visibility))),
         update_(Program::compute("carving_update_columns.comp.glsl")),
         mark_(Program::compute("carving_mark_passed.comp.glsl")) {
-    for (const Camera& camera : cameras) cameras_.push_back(projtex::to_grid(camera, hull.grid));
     std::vector<shaders::GpuView> views;
     for (const auto& camera : cameras_)
       views.push_back(projtex::to_gpu_view(camera, resampling_.size));
     views_ = Buffer::of(views);
-    maps_ = std::make_unique<visibility::DepthMaps>(cameras_, hull.grid);
     table_ = Buffer::of(bits_.table);
     occupancy_ = Buffer::of(bits_.words);
     passed_ = Buffer(std::max<std::size_t>(bits_.words.size(), 4) * 4);
@@ -86,7 +77,7 @@ class Sweeper {
     for (std::size_t i = 0; i < active.size(); ++i)
       active[i] = hull.table[i] < SparseVolume::kInside;
     active_ = Buffer::of(active);
-    samples_ = Buffer(chunk_ * search_.size() * shaders::kMaxLayerViews * shaders::kApronArea * 16);
+    samples_ = Buffer(chunk_ * search_.size() * kSampleBytes);
     const float least_texture = float(std::pow(options.min_texture * options.noise_sigma, 2));
     // The confidence of a correlation is the texture.
     const bool correlation = options.statistic == Statistic::kZncc;
@@ -100,7 +91,8 @@ class Sweeper {
   int cameras_along(const Direction& d) const {
     const glm::dvec3 centre = 0.5 * glm::dvec3(bits_.grid.voxels());
     int count = 0;
-    for (const auto& camera : cameras_) count += cosine(camera, centre, d) > kLeastCosine;
+    for (const auto& camera : cameras_)
+      count += sweep_cosine(camera, centre, d) > kLeastSweepCosine;
     return count;
   }
 
@@ -111,27 +103,27 @@ class Sweeper {
     const int u = (direction.axis + 1) % 3, v = (direction.axis + 2) % 3;
     parameters_.axes = {u, v, direction.axis, direction.sign};
     parameters_.layer = {0, 0, 0, options_.front_face};
-    const shaders::Column fresh{{-1, -1, 0, 0}, {0, 0, 0, 0}};
-    columns_ = Buffer::of(std::vector<shaders::Column>(std::size_t(grid[u]) * grid[v] * 64, fresh));
-    maps_->clear();
+    const std::vector<Band> bands = make_bands(grid[u], grid[v]);
+    maps_.clear();
     passed_.fill(0);
     std::vector<shaders::Decision> decisions;
     for (int slab = 0; slab < grid[direction.axis]; ++slab) {
       progress.check_cancelled();
-      const std::vector<shaders::LayerItem> items = items_of(slab);
-      if (items.empty()) continue;
-      items_ = Buffer::of(items);
-      parameters_.bricks = glm::ivec4(grid, int(items.size()));
-      DeviceList selected(items.size()), occluders(items.size() * 128);
-      Buffer scores(items.size() * 64 * 16);
-      DeviceList decided(items.size() * kBrickVoxels * 2);
-      for (int layer = slab * kBrickEdge; layer < (slab + 1) * kBrickEdge; ++layer)
-        sweep_layer(layer, items.size(), selected, occluders, scores, decided);
-      const auto header = decided.buffer.download<std::uint32_t>(2);
-      counts_.judged += header[1];
-      const std::size_t first = decisions.size();
-      decisions.resize(first + header[0]);
-      decided.buffer.read(16, header[0] * sizeof(shaders::Decision), decisions.data() + first);
+      parameters_.bricks = glm::ivec4(grid, 0);
+      std::list<BandWork> work = work_of(slab, bands);
+      for (int layer = slab * kBrickEdge; layer < (slab + 1) * kBrickEdge; ++layer) {
+        // All of a layer is judged before any of it hides what comes behind.
+        for (BandWork& part : work) judge_layer(layer, part);
+        for (BandWork& part : work) hide_behind(part);
+      }
+      for (const BandWork& part : work) {
+        const auto header = part.decided.buffer.download<std::uint32_t>(2);
+        counts_.judged += header[1];
+        const std::size_t first = decisions.size();
+        decisions.resize(first + header[0]);
+        part.decided.buffer.read(16, header[0] * sizeof(shaders::Decision),
+                                 decisions.data() + first);
+      }
     }
     return apply(decisions);
   }
@@ -140,6 +132,13 @@ class Sweeper {
   BitVolume result() { return std::move(bits_); }
 
  private:
+  static std::vector<projtex::GridCamera> to_grid(std::span<const Camera> cameras,
+                                                  const GridSpec& grid) {
+    std::vector<projtex::GridCamera> out;
+    for (const Camera& camera : cameras) out.push_back(projtex::to_grid(camera, grid));
+    return out;
+  }
+
   std::int64_t apply(const std::vector<shaders::Decision>& decisions) {
     const std::vector<ivec3> carved =
         apply_decisions(bits_, direction_.axis, direction_.sign, decisions);
@@ -161,89 +160,63 @@ class Sweeper {
     return std::int64_t(carved.size());
   }
 
-  static double cosine(const projtex::GridCamera& camera, const glm::dvec3& point,
-                       const Direction& d) {
-    const glm::dvec3 ray = point - camera.centre;
-    return ray[d.axis] * d.sign / std::max(glm::length(ray), 1e-9);
-  }
-
-  /// The active bricks of a slab, each with the most frontal views that have it on their image.
-  std::vector<shaders::LayerItem> items_of(int slab) const {
+  /// The active bricks of a slab, by bands that have any.
+  std::list<BandWork> work_of(int slab, const std::vector<Band>& bands) const {
     const ivec3 grid = bits_.grid.bricks;
     const int along = direction_.sign > 0 ? slab : grid[direction_.axis] - 1 - slab;
     const auto active = active_.download<std::uint32_t>(bits_.table.size());
-    std::vector<shaders::LayerItem> items;
+    std::list<BandWork> work;
     const int u = (direction_.axis + 1) % 3, v = (direction_.axis + 2) % 3;
     ivec3 brick;
     brick[direction_.axis] = along;
-    for (brick[v] = 0; brick[v] < grid[v]; ++brick[v])
-      for (brick[u] = 0; brick[u] < grid[u]; ++brick[u]) {
-        const std::size_t index = bits_.grid.brick_index(brick);
-        // An open path may lead through empty bricks.
-        if (active[index]) items.push_back(choose_views(brick));
-      }
-    return items;
-  }
-
-  shaders::LayerItem choose_views(const ivec3& brick) const {
-    const glm::dvec3 centre = glm::dvec3(brick * kBrickEdge) + 0.5 * (kBrickEdge - 1);
-    std::vector<std::pair<double, std::uint32_t>> ranked;
-    for (std::size_t i = 0; i < cameras_.size(); ++i) {
-      const auto& camera = cameras_[i];
-      const double frontal = cosine(camera, centre, direction_);
-      const glm::dvec3 p = camera.projection * glm::dvec4(centre, 1);
-      if (frontal <= kLeastCosine || p.z <= kBrickEdge) continue;
-      const glm::dvec2 pixel(p.x / p.z, p.y / p.z);
-      const double reach = kBrickEdge * camera.focal / p.z;
-      if (pixel.x < -reach || pixel.y < -reach || pixel.x > camera.width + reach ||
-          pixel.y > camera.height + reach)
-        continue;
-      ranked.emplace_back(-frontal, std::uint32_t(i));
+    for (const Band& band : bands) {
+      std::vector<shaders::LayerItem> items;
+      for (brick[v] = band.first_row; band.has(brick[v]); ++brick[v])
+        for (brick[u] = 0; brick[u] < grid[u]; ++brick[u]) {
+          const std::size_t index = bits_.grid.brick_index(brick);
+          // An open path may lead through empty bricks.
+          if (active[index]) items.push_back(layer_item(brick, direction_, cameras_));
+        }
+      if (!items.empty()) work.emplace_back(band, std::move(items));
     }
-    std::sort(ranked.begin(), ranked.end());
-    ranked.resize(std::min<std::size_t>(ranked.size(), shaders::kMaxLayerViews));
-    shaders::LayerItem item{};
-    item.brick = glm::ivec4(brick, int(ranked.size()));
-    for (std::size_t i = 0; i < ranked.size(); ++i)
-      item.views[i / 4][int(i % 4)] = ranked[i].second;
-    return item;
+    return work;
   }
 
-  void bind(std::size_t first_entry, std::size_t first_column, const DeviceList& selected,
-            const Buffer& block6, const Buffer& scores, const DeviceList& decided,
-            std::size_t columns = 0) {
+  void bind(std::size_t first_entry, std::size_t first_column, const BandWork& work,
+            const Buffer& block6, std::size_t columns = 0) {
+    parameters_.bricks.w = int(work.items.size());
+    parameters_.layer.y = work.band.first_row * kBrickEdge;
     parameters_.chunk = {int(first_entry), options_.max_path, int(first_column), int(columns)};
     uniforms_.write(0, sizeof parameters_, &parameters_);
     uniforms_.bind_uniform(0);
     views_.bind_storage(0);
-    items_.bind_storage(1);
+    work.item_buffer.bind_storage(1);
     table_.bind_storage(2);
     occupancy_.bind_storage(3);
-    columns_.bind_storage(4);
-    selected.buffer.bind_storage(5);
+    work.band.columns.bind_storage(4);
+    work.selected.buffer.bind_storage(5);
     block6.bind_storage(6);
-    scores.bind_storage(7);
-    maps_->bind();
+    work.scores.bind_storage(7);
+    maps_.bind();
     active_.bind_storage(10);
-    decided.buffer.bind_storage(11);
+    work.decided.buffer.bind_storage(11);
     packed_.bind_storage(12);
     passed_.bind_storage(13);
   }
 
-  void sweep_layer(int layer, std::size_t items, DeviceList& selected, DeviceList& occluders,
-                   const Buffer& scores, const DeviceList& decided) {
+  void judge_layer(int layer, BandWork& work) {
     parameters_.layer.x = layer;
-    selected.clear();
-    occluders.clear();
+    work.selected.clear();
+    work.occluders.clear();
     columns_of_layer_.clear();
-    bind(0, 0, selected, occluders.buffer, scores, decided);
-    select_.dispatch(context_, "carving_select_columns", items);
-    const std::size_t count = pack_columns(selected);
+    bind(0, 0, work, work.occluders.buffer);
+    select_.dispatch(context_, "carving_select_columns", work.items.size());
+    const std::size_t count = pack_columns(work.selected);
     std::size_t column = 0;
     for (std::size_t first = 0; first < count; first += chunk_) {
       const std::size_t end = std::min(first + chunk_, count), first_column = column;
       while (column < columns_of_layer_.size() && columns_of_layer_[column] >> 6 < end) ++column;
-      bind(first, first_column, selected, samples_, scores, decided, column - first_column);
+      bind(first, first_column, work, samples_, column - first_column);
       resampling_.bind();
       resampling_.program.dispatch(context_, resampling_.name, end - first, search_.size());
       score_.dispatch(context_, "carving_score_columns",
@@ -251,13 +224,19 @@ class Sweeper {
       counts_.samples += std::int64_t(end - first) * shaders::kMaxLayerViews * shaders::kApronArea *
                          options_.supersample * options_.supersample * std::int64_t(search_.size());
     }
-    bind(0, 0, selected, occluders.buffer, scores, decided, columns_of_layer_.size());
+    bind(0, 0, work, work.occluders.buffer, columns_of_layer_.size());
     update_.dispatch(context_, "carving_update_columns",
                      gpu::group_count(columns_of_layer_.size(), 64));
+  }
+
+  /// What stands on the layer hides what the sweep comes to.
+  void hide_behind(const BandWork& work) {
+    bind(0, 0, work, work.occluders.buffer);
+    const std::size_t count = work.occluders.count();
     if (options_.visibility == visibility::SweepTest::kRays)
-      mark_.dispatch(context_, "carving_mark_passed", gpu::group_count(occluders.count(), 64));
+      mark_.dispatch(context_, "carving_mark_passed", gpu::group_count(count, 64));
     else
-      maps_->splat(context_, occluders.buffer, occluders.count());
+      maps_.splat(context_, work.occluders.buffer, count);
   }
 
   /// Puts the selected bricks in the order of their items, so that a run never depends on the
@@ -284,9 +263,9 @@ class Sweeper {
   std::size_t chunk_;               ///< bricks whose samples are held at once
   BitVolume bits_;
   std::vector<projtex::GridCamera> cameras_;
+  visibility::DepthMaps maps_;
   Program select_, score_, update_, mark_;
-  std::unique_ptr<visibility::DepthMaps> maps_;
-  Buffer views_, table_, occupancy_, active_, samples_, columns_, items_, packed_;
+  Buffer views_, table_, occupancy_, active_, samples_, packed_;
   Buffer passed_;  ///< bits of the voxels that hide what the sweep comes to, for rays
   Buffer uniforms_{sizeof(shaders::SweepParameters)};
   std::vector<std::uint32_t> columns_of_layer_;

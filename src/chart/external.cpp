@@ -7,6 +7,7 @@
 
 #include "chart/names.h"
 #include "core/error.h"
+#include "core/nearest_name.h"
 
 namespace photohull::chart {
 namespace {

@@ -1,29 +1,14 @@
 #include "chart/json_fields.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "core/error.h"
 #include "core/json_levels.h"
+#include "core/nearest_name.h"
 #include "core/read_file.h"
 
 namespace photohull::chart {
 namespace {
-
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t(0));
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t above = row[j];
-      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
-      diagonal = above;
-    }
-  }
-  return row.back();
-}
 
 std::string shown(const Json& value) {
   std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -52,18 +37,6 @@ Json read_json(const std::filesystem::path& path) {
     if (const std::size_t at = what.find("] "); at != std::string::npos) what.erase(0, at + 2);
     throw Error(concat(path.string(), ": not valid JSON: ", what));
   }
-}
-
-std::optional<std::string> nearest_name(const std::string& name,
-                                        const std::vector<std::string>& names) {
-  std::optional<std::string> best;
-  std::size_t least = std::max<std::size_t>(2, name.size() / 3) + 1;
-  for (const std::string& candidate : names)
-    if (const std::size_t d = edit_distance(name.substr(0, 64), candidate); d < least) {
-      least = d;
-      best = candidate;
-    }
-  return best;
 }
 
 Fields::Fields(const std::filesystem::path& file, std::string where, const Json& object)

@@ -17,10 +17,6 @@ std::string read_file(const std::filesystem::path& path, std::size_t limit = 256
 /// A file parsed as JSON; throws Error with the file, line and column of what is wrong.
 Json read_json(const std::filesystem::path& path);
 
-/// The one of `names` that is nearest to `name` in single-letter edits, if it is near at all.
-std::optional<std::string> nearest_name(const std::string& name,
-                                        const std::vector<std::string>& names);
-
 /// One object. Every function throws Error("FILE: PATH: ...") for a wrong type or range.
 class Fields {
  public:

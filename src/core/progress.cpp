@@ -11,6 +11,7 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 void Progress::stage(const std::string&, double) {}
 void Progress::update(double) {}
 void Progress::warn(const std::string&) {}
+void Progress::note(const std::string&) {}
 void Progress::check_cancelled() const {
   if (cancellation_requested()) throw Cancelled();
 }

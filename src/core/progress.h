@@ -15,6 +15,8 @@ class Progress {
   /// Share of the current stage done, in [0, 1].
   virtual void update(double fraction);
   virtual void warn(const std::string& message);
+  /// Something worth knowing that is no fault.
+  virtual void note(const std::string& message);
   /// Throws Cancelled once cancellation was asked for; stages call it at safe points.
   void check_cancelled() const;
 };

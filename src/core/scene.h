@@ -72,7 +72,8 @@ const char* to_string(LeftOutView::Reason reason);
 
 /// Result of io::load_scene; only what leaves views out changes it (core/left_out.h).
 struct Scene {
-  std::filesystem::path path;
+  std::filesystem::path path;  ///< as given
+  std::filesystem::path file;  ///< what the cameras were read from: a file, or a model's folder
   SceneFormat format = SceneFormat::kMiddlebury;
   std::vector<SourceView> views;   ///< in the order of the scene file
   std::vector<glm::dvec3> points;  ///< sparse points, world; may be empty

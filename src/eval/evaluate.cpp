@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
+#include "core/box.h"
 #include "core/error.h"
 #include "eval/nearest_sample.h"
 #include "eval/surface_samples.h"
@@ -39,16 +41,37 @@ void for_each_index(std::size_t count, Progress& progress, Function function) {
 
 /// The result's samples and what the truth says of each.
 struct Measured {
-  std::vector<double> distance, signed_distance;
-  std::vector<double> angle;  ///< degrees; empty for points
+  std::vector<double> distance;
+  std::vector<double> signed_distance;  ///< empty where the truth is points
+  std::vector<double> angle;            ///< degrees; empty for points
   std::vector<char> seen;
 };
+
+/// Which samples lie over surface that enough cameras see.
+std::vector<char> seen_of(const SurfaceSamples& samples, const Truth& truth,
+                          const std::vector<double>& distance, int min_views, Progress& progress) {
+  std::vector<char> seen(samples.points.size(), 1);
+  if (!truth.has_views()) return seen;
+  const NearestSample nearest(truth.samples());
+  for_each_index(samples.points.size(), progress, [&](std::size_t i, std::uint32_t&) {
+    if (distance[i] > kUnseenReach * truth.diagonal()) return;
+    seen[i] = truth.views()[nearest.find(samples.points[i]).index] >= min_views;
+  });
+  return seen;
+}
 
 Measured measure(const TriMesh& result, const SurfaceSamples& samples, const Truth& truth,
                  int min_views, Progress& progress) {
   const std::size_t count = samples.points.size();
   Measured m;
   m.distance.resize(count);
+  if (truth.is_points()) {
+    for_each_index(count, progress, [&](std::size_t i, std::uint32_t&) {
+      m.distance[i] = truth.distance(samples.points[i]);
+    });
+    m.seen = seen_of(samples, truth, m.distance, min_views, progress);
+    return m;
+  }
   m.signed_distance.resize(count);
   if (!samples.triangles.empty()) m.angle.resize(count);
   for_each_index(count, progress, [&](std::size_t i, std::uint32_t& hint) {
@@ -61,13 +84,7 @@ Measured measure(const TriMesh& result, const SurfaceSamples& samples, const Tru
     m.angle[i] =
         180 / kPi * std::atan2(glm::length(glm::cross(n, value.normal)), glm::dot(n, value.normal));
   });
-  m.seen.assign(count, 1);
-  if (!truth.has_views()) return m;
-  const NearestSample nearest(truth.samples());
-  for_each_index(count, progress, [&](std::size_t i, std::uint32_t&) {
-    if (m.distance[i] > kUnseenReach * truth.diagonal()) return;
-    m.seen[i] = truth.views()[nearest.find(samples.points[i]).index] >= min_views;
-  });
+  m.seen = seen_of(samples, truth, m.distance, min_views, progress);
   return m;
 }
 
@@ -96,7 +113,7 @@ Part sum_up(const Measured& m, const std::vector<char>& wanted,
   part.share = double(distance.size()) / double(m.distance.size());
   part.accuracy = quantile(distance, options.accuracy_share);
   part.to_truth = distance_stats(distance);
-  part.mean_signed = mean_of(pick(m.signed_distance, wanted));
+  if (!m.signed_distance.empty()) part.mean_signed = mean_of(pick(m.signed_distance, wanted));
   for (const double t : options.thresholds) {
     part.scores.push_back(score_at(t * diagonal, diagonal, distance, to_result));
     part.scores.back().threshold = t;
@@ -112,6 +129,8 @@ Part sum_up(const Measured& m, const std::vector<char>& wanted,
 
 /// The samples of the truth that the result should come near to.
 std::vector<glm::dvec3> wanted_samples(const Truth& truth, const EvaluateOptions& options) {
+  if (!truth.has_views() && truth.is_points())
+    return thin_points(truth.mesh(), kPointCell * truth.diagonal()).points;
   if (!truth.has_views())
     return sample_surface(truth.mesh(), std::size_t(options.samples), options.seed + 1).points;
   std::vector<glm::dvec3> wanted;
@@ -167,11 +186,60 @@ void describe(const TriMesh& result, const Truth& truth, Evaluation& e) {
   e.truth_faces = truth.mesh().triangles.size();
   e.truth_diagonal = truth.diagonal();
   e.truth_has_views = truth.has_views();
+  e.truth_is_points = truth.is_points();
+}
+
+/// Without the outermost hundredth on each side, which may be debris.
+Box bounds_of(const std::vector<glm::dvec3>& points) {
+  constexpr double kDebris = 0.01;
+  Box box;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> values;
+    for (const glm::dvec3& p : points) values.push_back(p[axis]);
+    box.min[axis] = quantile(values, kDebris);
+    box.max[axis] = quantile(values, 1 - kDebris);
+  }
+  return box;
+}
+
+/// Are the result and the truth in frames that have nothing to do with each other?
+void compare_frames(const std::vector<glm::dvec3>& result, const std::vector<glm::dvec3>& truth,
+                    Evaluation& e) {
+  constexpr double kLarger = 1.5, kSmaller = 0.25;  // which a part of the truth may be
+  constexpr double kMeet = 0.2;
+  const Box a = bounds_of(result), b = bounds_of(truth);
+  const double ratio = a.diagonal() / b.diagonal();
+  // Of either box along an axis; plates have no thickness to go by.
+  double least = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double common = std::min(a.max[axis], b.max[axis]) - std::max(a.min[axis], b.min[axis]);
+    const double side = std::min(a.size()[axis], b.size()[axis]);
+    least = std::min(least, (common + 0.01 * b.diagonal()) / (side + 0.01 * b.diagonal()));
+  }
+  if (ratio < kLarger && ratio > kSmaller && least > kMeet) return;
+  char text[400];
+  const auto part = [&](const char* format, auto... values) {
+    std::snprintf(text, sizeof text, format, values...);
+    return std::string(text);
+  };
+  const auto corners = [&](const Box& x) {
+    return part("(%.4g %.4g %.4g) to (%.4g %.4g %.4g)", x.min.x, x.min.y, x.min.z, x.max.x, x.max.y,
+                x.max.z);
+  };
+  e.warnings.push_back(concat(least > kMeet
+                                  ? part("the result is %.4g times as large as the truth", ratio)
+                                  : "the result lies elsewhere than the truth",
+                              " (most of it in ", corners(a), ", of the truth in ", corners(b),
+                              "): are they in one frame and unit? --align aligns them"));
 }
 
 void check_volume(const TriMesh& result, const Truth& truth, Evaluation& e) {
   if (e.points) {
     e.volume.reason = "the result has no faces";
+    return;
+  }
+  if (truth.is_points()) {
+    e.volume.reason = "the truth has no faces";
     return;
   }
   e.volume = measure_overlap(result, truth.mesh(), e.options.columns);
@@ -228,6 +296,8 @@ Evaluation evaluate(const TriMesh& result, const Truth& truth, const EvaluateOpt
                : sample_surface(surface, std::size_t(options.samples), options.seed);
   e.result_samples = samples.points.size();
   e.result_area = samples.area;
+  if (!e.points || samples.points.size() > 1)
+    compare_frames(samples.points, truth.has_views() ? truth.samples() : wanted, e);
   Measured measured = measure(surface, samples, truth, options.min_views, progress);
 
   progress.stage("truth to result", 4);

@@ -8,6 +8,7 @@
 
 #include "core/mesh.h"
 #include "core/progress.h"
+#include "eval/align.h"
 #include "eval/distance_stats.h"
 #include "eval/overlap.h"
 #include "eval/reliability.h"
@@ -48,10 +49,10 @@ struct Part {
   double share = 1;  ///< of the result's samples that count
   double accuracy = 0;
   DistanceStats to_truth;
-  double mean_signed = 0;              ///< positive outside the truth
+  std::optional<double> mean_signed;   ///< positive outside the truth, which must have faces
   std::vector<Score> scores;           ///< at EvaluateOptions::thresholds
   std::vector<Score> absolute;         ///< at EvaluateOptions::absolute
-  std::optional<NormalError> normals;  ///< not for point clouds
+  std::optional<NormalError> normals;  ///< not where either is points
 };
 
 struct Evaluation {
@@ -62,7 +63,7 @@ struct Evaluation {
   double result_area = 0;
   std::size_t truth_faces = 0, truth_samples = 0, truth_samples_seen = 0;
   double truth_diagonal = 0;
-  bool truth_has_views = false;
+  bool truth_has_views = false, truth_is_points = false;
 
   Part all;                 ///< the whole result
   Part seen;                ///< without what lies over surface that no camera sees
@@ -71,13 +72,16 @@ struct Evaluation {
   double hausdorff95 = 0;   ///< greater of the two 95 % quantiles
   double chamfer = 0;       ///< mean of the two mean distances
   Overlap volume;
+  std::optional<Alignment> alignment;      ///< of callers who aligned the result first
   std::optional<Reliability> reliability;  ///< for callers who measure it
   std::vector<std::string> warnings;
 };
 
-/// Judges `result`, a mesh or a point cloud. Equal input gives equal output, whatever the number of
-/// threads. Throws Error when the result has no vertices or a coordinate that is not finite, or
-/// when no camera sees any sample of the truth; UsageError for options out of range; Cancelled.
+/// Judges `result`, a mesh or a point cloud. Warns where its frame is plainly another than the
+/// truth's: boxes that hardly meet, or sizes that no part of the truth has. Equal input gives equal
+/// output, whatever the number of threads. Throws Error when the result has no vertices or a
+/// coordinate that is not finite, or when no camera sees any sample of the truth; UsageError for
+/// options out of range; Cancelled.
 Evaluation evaluate(const TriMesh& result, const Truth& truth, const EvaluateOptions& options = {},
                     Progress* progress = nullptr);
 

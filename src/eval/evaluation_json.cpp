@@ -7,6 +7,20 @@ namespace {
 
 using nlohmann::ordered_json;
 
+ordered_json optional(const std::optional<double>& value) {
+  return value ? ordered_json(*value) : ordered_json(nullptr);
+}
+
+ordered_json alignment(const Alignment& a) {
+  const glm::dmat3& r = a.rotation;
+  return {{"scale", a.scale},
+          {"rotation",
+           {{r[0][0], r[1][0], r[2][0]}, {r[0][1], r[1][1], r[2][1]}, {r[0][2], r[1][2], r[2][2]}}},
+          {"rotation_degrees", a.degrees},
+          {"translation", {a.translation.x, a.translation.y, a.translation.z}},
+          {"rms", a.rms}};
+}
+
 ordered_json stats(const DistanceStats& s) {
   return {{"mean", s.mean}, {"median", s.median}, {"rms", s.rms}, {"q95", s.q95}, {"max", s.max}};
 }
@@ -34,7 +48,7 @@ void put_part(const Part& part, double diagonal, ordered_json& j) {
   j["accuracy"] = part.accuracy;
   j["accuracy_pct_diag"] = 100 * part.accuracy / diagonal;
   j["median"] = part.to_truth.median;
-  j["mean_signed"] = part.mean_signed;
+  j["mean_signed"] = optional(part.mean_signed);
   j["recon_to_gt"] = stats(part.to_truth);
   j["f"] = scores(part.scores);
   j["f_absolute"] = scores(part.absolute);
@@ -53,10 +67,6 @@ ordered_json volume(const Overlap& v) {
   j["intersection"] = v.intersection;
   j["union"] = v.together;
   return j;
-}
-
-ordered_json optional(const std::optional<double>& value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
 }
 
 ordered_json reliability(const Reliability& r) {
@@ -88,6 +98,8 @@ std::string to_json(const Evaluation& e) {
   j["truth_note"] = e.truth_note;
   j["visibility"] = e.truth_has_views;
   j["mode"] = e.points ? "points" : "mesh";
+  j["truth_mode"] = e.truth_is_points ? "points" : "mesh";
+  if (e.alignment) j["alignment"] = alignment(*e.alignment);
   j["samples"] = e.options.samples;
   j["seed"] = e.options.seed;
   j["min_views"] = e.options.min_views;

@@ -45,4 +45,14 @@ NearestSample::Found NearestSample::find(const glm::dvec3& p) const {
   return {index, std::sqrt(squared)};
 }
 
+double NearestSample::find_other(const glm::dvec3& p) const {
+  constexpr std::size_t kMost = 8;
+  unsigned indices[kMost];
+  double squared[kMost];
+  const std::size_t found = tree_->index.knnSearch(&p.x, kMost, indices, squared);
+  for (std::size_t i = 0; i < found; ++i)
+    if (squared[i] > 0) return std::sqrt(squared[i]);
+  return 0;
+}
+
 }  // namespace photohull::eval

@@ -21,6 +21,9 @@ class NearestSample {
     double distance = 0;
   };
   Found find(const glm::dvec3& p) const;
+  /// Distance of the nearest of the points that is elsewhere than `p`, which is one of them; 0
+  /// where the nearest eight coincide.
+  double find_other(const glm::dvec3& p) const;
 
  private:
   struct Tree;

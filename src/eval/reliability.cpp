@@ -105,6 +105,18 @@ Reliability reliability_of(const std::vector<float>& confidence,
   return r;
 }
 
+namespace {
+
+std::vector<double> distances_from(const TriMesh& result, const Truth& truth, Progress& progress) {
+  if (!truth.is_points()) return vertex_distances(result, truth.surface(), progress);
+  std::vector<double> distance;
+  for (std::size_t i = 0; i < result.positions.size(); ++i)
+    distance.push_back(truth.distance(result.world(i)));
+  return distance;
+}
+
+}  // namespace
+
 Reliability measure_reliability(const TriMesh& result, const Truth& truth, double distance,
                                 Progress& progress) {
   if (result.confidence.empty())
@@ -112,8 +124,7 @@ Reliability measure_reliability(const TriMesh& result, const Truth& truth, doubl
         "the result has no confidence to judge: --reliability needs a PLY with the vertex "
         "property 'confidence', such as the mesh.ply of photohull reconstruct");
   PHOTOHULL_CHECK_OP(result.confidence.size(), ==, result.positions.size());
-  return reliability_of(result.confidence, vertex_distances(result, truth.surface(), progress),
-                        distance);
+  return reliability_of(result.confidence, distances_from(result, truth, progress), distance);
 }
 
 }  // namespace photohull::eval

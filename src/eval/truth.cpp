@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/median.h"
+#include "eval/nearest_sample.h"
 #include "volume/read_mesh.h"
 #include "volume/write_mesh.h"
 
@@ -39,6 +41,12 @@ Samples read_samples(const fs::path& path) {
   return samples;
 }
 
+std::string points_note(const Truth& truth) {
+  return concat("distances are to the nearest of ", truth.mesh().positions.size(),
+                " points, which are ", float(truth.spacing()),
+                " apart (median): less than that tells nothing");
+}
+
 template <typename Make>
 Truth named(const fs::path& path, Make make) {
   try {
@@ -48,9 +56,28 @@ Truth named(const fs::path& path, Make make) {
   }
 }
 
+/// Of up to a thousand of the points to the nearest other, the median.
+double spacing_of(const std::vector<glm::dvec3>& points, const NearestSample& nearest) {
+  constexpr std::size_t kLooked = 1000;
+  const std::size_t step = std::max<std::size_t>(1, points.size() / kLooked);
+  std::vector<double> distances;
+  for (std::size_t i = 0; i < points.size(); i += step)
+    distances.push_back(nearest.find_other(points[i]));
+  return median(distances);
+}
+
 }  // namespace
 
-Truth::Truth(TriMesh surface) : mesh_(std::move(surface)), surface_(mesh_) {
+Truth::Truth(TriMesh surface) : mesh_(std::move(surface)) {
+  if (mesh_.triangles.empty()) {
+    std::vector<glm::dvec3> points;
+    for (std::size_t i = 0; i < mesh_.positions.size(); ++i) points.push_back(mesh_.world(i));
+    if (points.size() < 2) throw Error("it has neither faces nor points; give a surface");
+    points_ = std::make_unique<NearestSample>(points);
+    spacing_ = spacing_of(points, *points_);
+  } else {
+    surface_.emplace(mesh_);
+  }
   glm::vec3 low(INFINITY), high(-INFINITY);
   for (const glm::vec3& p : mesh_.positions) {
     low = glm::min(low, p);
@@ -68,15 +95,24 @@ Truth::Truth(TriMesh surface, std::vector<glm::dvec3> samples, std::vector<std::
   views_ = std::move(views);
 }
 
+Truth::~Truth() = default;
+Truth::Truth(Truth&&) noexcept = default;
+Truth& Truth::operator=(Truth&&) noexcept = default;
+
+double Truth::distance(const glm::dvec3& p) const {
+  return surface_ ? std::abs(surface_->at(p).distance) : points_->find(p).distance;
+}
+
 Truth read_truth(const fs::path& path) {
   std::error_code ignored;
   if (!fs::exists(path, ignored))
     throw Error(
         concat("there is no ", path.string(), "; give a scene folder with gt.ply, or a mesh"));
   if (!fs::is_directory(path, ignored)) {
-    Truth truth = named(path, [&] { return Truth(read_mesh(path)); });
+    Truth truth = named(path, [&] { return Truth(read_mesh(path, Faces::kOptional)); });
     truth.name = path.string();
-    truth.note = "all surface counts: a mesh does not say what cameras see";
+    truth.note = truth.is_points() ? concat("all points count: ", points_note(truth))
+                                   : "all surface counts: a mesh does not say what cameras see";
     return truth;
   }
   const fs::path surface = path / "gt.ply", visible = path / "gt_visible.ply";
@@ -86,7 +122,7 @@ Truth read_truth(const fs::path& path) {
                        "or a mesh"));
   const bool seen = fs::exists(visible, ignored);
   Truth truth = named(surface, [&] {
-    TriMesh mesh = read_mesh(surface);
+    TriMesh mesh = read_mesh(surface, Faces::kOptional);
     if (!seen) return Truth(std::move(mesh));
     Samples samples = read_samples(visible);
     return Truth(std::move(mesh), std::move(samples.points), std::move(samples.views));
@@ -94,6 +130,7 @@ Truth read_truth(const fs::path& path) {
   truth.name = path.string();
   truth.note = seen ? "what cameras see counts, by gt_visible.ply"
                     : "all surface counts: the scene has no gt_visible.ply";
+  if (truth.is_points()) truth.note += "; " + points_note(truth);
   return truth;
 }
 

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,18 +13,32 @@
 
 namespace photohull::eval {
 
-/// The exact surface, and points on it with what the cameras see of them.
+class NearestSample;
+
+/// The exact surface, or points on it, and samples with what the cameras see of them.
 class Truth {
  public:
-  /// A surface all of which counts. Throws Error when it has no face with an area or its bounds
-  /// have no size.
+  /// A surface all of which counts; without faces points of one, as scanners give them. Throws
+  /// Error when no face has an area, where there are any, or its bounds have no size.
   explicit Truth(TriMesh surface);
   /// The same with area-uniform `samples` of the surface, world, and the number of cameras that
   /// see each. Throws Error when their numbers differ or there are none.
   Truth(TriMesh surface, std::vector<glm::dvec3> samples, std::vector<std::uint8_t> views);
 
+  ~Truth();
+  Truth(Truth&&) noexcept;
+  Truth& operator=(Truth&&) noexcept;
+
   const TriMesh& mesh() const { return mesh_; }
-  const SignedDistance& surface() const { return surface_; }
+  /// No surface, but points of one: distances are to the nearest, and have no sign.
+  bool is_points() const { return !surface_; }
+  /// Not of points.
+  const SignedDistance& surface() const { return surface_.value(); }
+  /// From the nearest point of the surface, or the nearest of the points; world units.
+  double distance(const glm::dvec3& p) const;
+  /// Of points: how far the nearest other one is, the median over some; world units. Distances
+  /// below that tell nothing.
+  double spacing() const { return spacing_; }
   /// Length of the diagonal of the box of all vertices, world units; > 0.
   double diagonal() const { return diagonal_; }
   /// Is it known what the cameras see?
@@ -35,8 +51,9 @@ class Truth {
 
  private:
   TriMesh mesh_;
-  SignedDistance surface_;
-  double diagonal_ = 0;
+  std::optional<SignedDistance> surface_;
+  std::unique_ptr<NearestSample> points_;  ///< where there is no surface
+  double diagonal_ = 0, spacing_ = 0;
   std::vector<glm::dvec3> samples_;
   std::vector<std::uint8_t> views_;
 };
@@ -47,8 +64,8 @@ class Truth {
 ///   gt_visible.ply  area-uniform samples of it with the vertex property `views`, the number of
 ///                   cameras that see each; without this file all surface counts
 ///
-/// or a mesh file (read_mesh), all of which counts. Throws Error naming the file and what is
-/// missing or wrong.
+/// or a file of a mesh or of points (read_mesh), all of which counts. Throws Error naming the file
+/// and what is missing or wrong.
 Truth read_truth(const std::filesystem::path& path);
 
 }  // namespace photohull::eval

@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "gpu/gl.h"
 #include "gpu/gl_error.h"
+#include "gpu/limits.h"
 
 namespace photohull::gpu {
 
@@ -26,6 +27,11 @@ Buffer::~Buffer() {
 }
 
 void Buffer::bind_storage(unsigned binding) const {
+  const std::size_t most = std::size_t(current_limits().ssbo_bytes);
+  if (bytes_ > most)
+    throw Error(concat("a list of ", (bytes_ >> 20) + 1, " MiB is more than the ", most >> 20,
+                       " MiB that this graphics device gives a kernel in one block; lower "
+                       "--resolution, use fewer --views or give another --device"));
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, id_);
 }
 

@@ -32,6 +32,7 @@ class Buffer {
 
   unsigned id() const { return id_; }
   std::size_t bytes() const { return bytes_; }
+  /// Throws Error when it is larger than the device's storage blocks.
   void bind_storage(unsigned binding) const;
   void bind_uniform(unsigned binding) const;
   void write(std::size_t offset, std::size_t size, const void* data);

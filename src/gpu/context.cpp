@@ -47,15 +47,25 @@ Context::Context(int egl_device_index) : egl_(std::make_unique<Egl>()) {
   glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &limits_.ssbo_bytes);
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limits_.texture_size);
   glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &limits_.texture_layers);
-  GLint groups = 0;
-  glGetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, 0, &groups);
-  limits_.groups_x = groups;
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    GLint groups = 0;
+    glGetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, axis, &groups);
+    limits_.groups[axis] = groups;
+  }
+  try {
+    if (const char* text = std::getenv(kLimitsVariable)) limits_ = lowered(limits_, text);
+  } catch (...) {
+    destroy_context(*egl_);
+    throw;
+  }
+  set_current_limits(&limits_);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
 }
 
 Context::~Context() {
   programs_.clear();
+  set_current_limits(nullptr);
   destroy_context(*egl_);
 }
 

@@ -7,15 +7,9 @@
 #include <string>
 
 #include "gpu/device.h"
+#include "gpu/limits.h"
 
 namespace photohull::gpu {
-
-struct Limits {
-  std::int64_t ssbo_bytes = 0;  ///< largest shader storage block
-  int texture_size = 0;         ///< largest edge of a 2D texture
-  int texture_layers = 0;       ///< largest 2D array
-  std::int64_t groups_x = 0;    ///< largest dispatch along x
-};
 
 class Program;
 
@@ -31,13 +25,14 @@ class Context {
   /// `threads` bounds the software rasterizer's worker threads (0: one a core); it must be set
   /// before the first context of the process. Throws Error when the device gives no 4.5 context.
   static std::unique_ptr<Context> create(const std::string& device_selection, int threads = 0);
-  /// A context on one EGL device.
+  /// A context on one EGL device. Throws UsageError when kLimitsVariable cannot be read.
   explicit Context(int egl_device_index);
   ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
 
   const DeviceInfo& device() const { return device_; }
+  /// The device's, or lower ones that kLimitsVariable gives.
   const Limits& limits() const { return limits_; }
   /// Throws Error naming `where` if GL has an error pending (out of memory, lost context).
   void check_errors(const char* where) const;

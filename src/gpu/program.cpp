@@ -1,5 +1,6 @@
 #include "gpu/program.h"
 
+#include <algorithm>
 #include <regex>
 #include <vector>
 
@@ -91,6 +92,8 @@ Program::~Program() {
   if (id_) glDeleteProgram(id_);
 }
 
+Program::Program(unsigned id) : id_(id), first_group_(glGetUniformLocation(id, "first_group")) {}
+
 void Program::use() const { glUseProgram(id_); }
 
 int Program::location(const char* name) const {
@@ -127,11 +130,18 @@ void Program::set(const char* n, const glm::mat4& v) const {
 void Program::dispatch(Context& context, const char* name, std::size_t groups_x,
                        std::size_t groups_y, std::size_t groups_z) const {
   if (groups_x == 0 || groups_y == 0 || groups_z == 0) return;
-  PHOTOHULL_CHECK_OP(std::int64_t(groups_x), <=, context.limits().groups_x);
   use();
   {
     Launch launch(context, name);
-    glDispatchCompute(unsigned(groups_x), unsigned(groups_y), unsigned(groups_z));
+    const auto& [most_x, most_y, most_z] = context.limits().groups;
+    for (std::size_t z = 0; z < groups_z; z += std::size_t(most_z))
+      for (std::size_t y = 0; y < groups_y; y += std::size_t(most_y))
+        for (std::size_t x = 0; x < groups_x; x += std::size_t(most_x)) {
+          glProgramUniform3ui(id_, first_group_, unsigned(x), unsigned(y), unsigned(z));
+          glDispatchCompute(unsigned(std::min(groups_x - x, std::size_t(most_x))),
+                            unsigned(std::min(groups_y - y, std::size_t(most_y))),
+                            unsigned(std::min(groups_z - z, std::size_t(most_z))));
+        }
     glMemoryBarrier(GL_ALL_BARRIER_BITS);
   }
   context.check_errors(name);

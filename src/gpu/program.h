@@ -27,9 +27,9 @@ class Program {
                                                       std::string_view vertex_path,
                                                       std::string_view fragment_path,
                                                       std::string_view defines = {});
-  Program(Program&& other) noexcept : id_(std::exchange(other.id_, 0)) {}
+  Program(Program&& other) noexcept { swap(other); }
   Program& operator=(Program&& other) noexcept {
-    std::swap(id_, other.id_);
+    swap(other);
     return *this;
   }
   ~Program();
@@ -47,14 +47,20 @@ class Program {
   void set(const char* name, const glm::vec4& value) const;
   void set(const char* name, const glm::mat4& value) const;
 
-  /// Runs `groups` work groups under `name` (see Launch) and waits for their writes to be visible.
+  /// Runs `groups` work groups under `name` (see Launch) and waits for their writes to be visible;
+  /// in parts where the device launches fewer at once (include/dispatch.glsl).
   void dispatch(Context& context, const char* name, std::size_t groups_x, std::size_t groups_y = 1,
                 std::size_t groups_z = 1) const;
 
  private:
-  explicit Program(unsigned id) : id_(id) {}
+  void swap(Program& other) noexcept {
+    std::swap(id_, other.id_);
+    std::swap(first_group_, other.first_group_);
+  }
+  explicit Program(unsigned id);
   int location(const char* name) const;
   unsigned id_ = 0;
+  int first_group_ = -1;  ///< uniform; -1 in programs that launch one group
 };
 
 /// Work groups of `size` that cover `count` items.

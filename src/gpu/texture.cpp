@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "gpu/gl.h"
 #include "gpu/gl_error.h"
+#include "gpu/limits.h"
 
 namespace photohull::gpu {
 namespace {
@@ -41,10 +42,24 @@ FormatInfo info_of(TextureFormat format) {
   check_failed(__FILE__, __LINE__, "texture format");
 }
 
+void check_size(int width, int height, int layers) {
+  const Limits& limits = current_limits();
+  if (std::max(width, height) > limits.texture_size)
+    throw Error(concat("this graphics device has no images of ", width, "x", height,
+                       " pixels, only up to ", limits.texture_size,
+                       " a side; read the photographs smaller (--image-scale), or give another "
+                       "--device"));
+  if (layers > limits.texture_layers)
+    throw Error(concat("this graphics device takes ", limits.texture_layers,
+                       " images at once, and ", layers,
+                       " were given; use fewer views (--views), or give another --device"));
+}
+
 }  // namespace
 
 TextureArray::TextureArray(TextureFormat format, int width, int height, int layers, int levels)
     : format_(format), width_(width), height_(height), layers_(layers) {
+  check_size(width, height, layers);
   const int full = int(std::bit_width(unsigned(std::max(width, height))));
   levels_ = levels == 0 ? full : std::min(levels, full);
   glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &id_);
@@ -91,6 +106,19 @@ void TextureArray::read(int level, std::size_t bytes, void* pixels) const {
   check_gl("reading a texture");
 }
 
+void TextureArray::read_layer(int layer, int width, int height, std::size_t bytes,
+                              void* pixels) const {
+  const FormatInfo f = info_of(format_);
+  glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+  glGetTextureSubImage(id_, 0, 0, 0, layer, width, height, 1, f.layout, f.type, GLsizei(bytes),
+                       pixels);
+  check_gl("reading a texture");
+}
+
+void TextureArray::fill(unsigned word) {
+  glClearTexImage(id_, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
+}
+
 void TextureArray::generate_mipmaps() { glGenerateTextureMipmap(id_); }
 
 void TextureArray::set_filter(bool trilinear) {
@@ -124,6 +152,10 @@ void TextureArray::bind(unsigned unit) const { glBindTextureUnit(unit, id_); }
 void TextureArray::bind_image(unsigned unit, int level, bool write) const {
   glBindImageTexture(unit, id_, level, GL_TRUE, 0, write ? GL_WRITE_ONLY : GL_READ_ONLY,
                      info_of(format_).internal);
+}
+
+void TextureArray::bind_read_write(unsigned unit) const {
+  glBindImageTexture(unit, id_, 0, GL_TRUE, 0, GL_READ_WRITE, info_of(format_).internal);
 }
 
 }  // namespace photohull::gpu

@@ -24,7 +24,8 @@ enum class TextureFormat {
 class TextureArray {
  public:
   TextureArray() = default;
-  /// `levels` 0 allocates the whole mip chain. Throws Error when the device cannot hold it.
+  /// `levels` 0 allocates the whole mip chain. Throws Error when the device has no such textures or
+  /// cannot hold it.
   TextureArray(TextureFormat format, int width, int height, int layers, int levels = 1);
   ~TextureArray();
   TextureArray(TextureArray&& other) noexcept { swap(other); }
@@ -37,6 +38,10 @@ class TextureArray {
   /// type of the format (bytes for 8-bit formats, half or float for the others).
   void upload(int layer, int width, int height, const void* pixels, int level = 0);
   void read(int level, std::size_t bytes, void* pixels) const;
+  /// A rectangle at the origin of a layer's level 0, in the natural client type of the format.
+  void read_layer(int layer, int width, int height, std::size_t bytes, void* pixels) const;
+  /// Sets every texel of level 0 of a kR32ui texture.
+  void fill(unsigned word);
   /// Builds all levels below 0 by box filtering in linear light.
   void generate_mipmaps();
   /// Filtering of `bind`: trilinear between levels, or bilinear at the nearest level.
@@ -48,6 +53,8 @@ class TextureArray {
   void set_anisotropy(float most);
   void bind(unsigned unit) const;
   void bind_image(unsigned unit, int level, bool write) const;
+  /// For kernels that both read and write level 0.
+  void bind_read_write(unsigned unit) const;
 
   unsigned id() const { return id_; }
   int width() const { return width_; }

@@ -12,8 +12,8 @@ namespace photohull::io {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kImageEndings[] = {".png", ".jpg", ".jpeg", ".tif", ".tiff",
-                                         ".exr", ".ppm", ".pgm",  ".bmp"};
+constexpr const char* kImageEndings[] = {".png", ".jpg", ".jpeg", ".tif",  ".tiff", ".exr",
+                                         ".ppm", ".pgm", ".bmp",  ".webp", ".avif"};
 
 /// The file that a path means, tidied where that does not change it (".." after a symbolic link
 /// may); empty when there is none.
@@ -70,7 +70,7 @@ std::vector<fs::path> images_in(const fs::path& folder) {
 fs::path find_listed_image(const std::string& listed, const std::vector<fs::path>& folders) {
   for (const fs::path& folder : folders)
     for (const char* extension :
-         {"", ".png", ".jpg", ".jpeg", ".PNG", ".JPG", ".tif", ".tiff", ".exr"}) {
+         {"", ".png", ".jpg", ".jpeg", ".PNG", ".JPG", ".tif", ".tiff", ".exr", ".webp", ".avif"}) {
       const fs::path found = existing(folder / (listed + extension));
       if (!found.empty()) return found;
     }

@@ -63,7 +63,8 @@ const FormatEntry kEntries[] = {
     {F::kMetashape, "*.xml of Metashape", find_metashape, is_metashape, false, read_metashape,
      write_metashape},
     {F::kRealityCapture, "*.csv of RealityCapture", find_realitycapture, is_realitycapture, false,
-     read_realitycapture, write_realitycapture},
+     [](const fs::path& file) { return read_realitycapture(file, {}); }, write_realitycapture,
+     read_realitycapture},
     {F::kNvm, "*.nvm", find_nvm, is_nvm, false, read_nvm, write_nvm},
     {F::kPmvs, "txt/00000000.txt", find_pmvs, is_pmvs, true, read_pmvs, write_pmvs},
     {F::kBundler, "bundle.out", find_bundler, is_bundler, false, read_bundler, write_bundler},
@@ -72,7 +73,8 @@ const FormatEntry kEntries[] = {
     {F::kStrecha, "*.camera", find_strecha, is_strecha, true, read_strecha, write_strecha},
     {F::kProjection, "projections.txt or *.P", find_projection, is_projection, false,
      read_projection, write_projection},
-    {F::kMatlab, "*.mat", find_matlab, is_matlab, false, read_matlab, write_matlab},
+    {F::kMatlab, "*.mat", find_matlab, is_matlab, false,
+     [](const fs::path& file) { return read_matlab(file, {}); }, write_matlab, read_matlab},
     {F::kOpenCv, "cameras.yml or intri.yml", find_opencv, is_opencv, false, read_opencv,
      write_opencv}};
 
@@ -95,6 +97,14 @@ std::vector<SceneFormat> scene_formats() {
 
 void write_scene(const Scene& scene, SceneFormat format, const fs::path& folder) {
   format_entry(format).write(scene, folder);
+}
+
+RawScene read_raw_scene(SceneFormat format, const fs::path& file, const fs::path& images) {
+  const FormatEntry& entry = format_entry(format);
+  if (images.empty()) return entry.read(file);
+  RawScene raw = entry.read_with ? entry.read_with(file, images) : entry.read(file);
+  raw.image_folders = {images};
+  return raw;
 }
 
 }  // namespace photohull::io

@@ -20,10 +20,18 @@ struct FormatEntry {
   bool reads_folder = false;
   RawScene (*read)(const std::filesystem::path& path) = nullptr;
   void (*write)(const Scene& scene, const std::filesystem::path& folder) = nullptr;
+  /// Of formats whose cameras need the photographs: `read` with these in another folder.
+  RawScene (*read_with)(const std::filesystem::path& path,
+                        const std::filesystem::path& images) = nullptr;
 };
 
 /// All formats, those that take precedence in a folder first.
 std::span<const FormatEntry> format_entries();
 const FormatEntry& format_entry(SceneFormat format);
+
+/// Reads what find_scene found. `images`: where its photographs are instead of where the format has
+/// them; empty: there.
+RawScene read_raw_scene(SceneFormat format, const std::filesystem::path& file,
+                        const std::filesystem::path& images);
 
 }  // namespace photohull::io

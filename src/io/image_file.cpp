@@ -137,11 +137,22 @@ std::unique_ptr<std::uint8_t[]> read_quantised(OpenImage& file) {
   return values;
 }
 
+/// Values 0 and 1 of 8 bits are labels: no mask is at most 1/255 anywhere.
+FileMask take_labels(const OpenImage& file, FileMask mask) {
+  const auto highest = std::max_element(mask.coverage.begin(), mask.coverage.end());
+  mask.from_ones = file.spec.format == OIIO::TypeDesc::UINT8 && *highest == 1;
+  if (mask.from_ones)
+    for (std::uint8_t& value : mask.coverage) value = std::uint8_t(255 * value);
+  return mask;
+}
+
 }  // namespace
 
 ImageSize read_image_size(const fs::path& path) {
   const OpenImage file = open_image(path);
-  return {file.spec.width, file.spec.height};
+  const int orientation = file.spec.get_int_attribute("Orientation", 1);
+  return {file.spec.width, file.spec.height,
+          orientation >= 1 && orientation <= 8 ? orientation : 1};
 }
 
 ColourImage read_image(const fs::path& path) {
@@ -169,11 +180,11 @@ ColourImage read_image(const fs::path& path) {
   unsupported(file);
 }
 
-Mask read_mask(const fs::path& path) {
+FileMask read_mask(const fs::path& path) {
   OpenImage file = open_image(path);
   const Layout layout = file.layout;
   const std::size_t pixels = file.pixels();
-  Mask mask{file.spec.width, file.spec.height, {}};
+  FileMask mask({file.spec.width, file.spec.height, {}});
   try {
     const auto values = read_quantised(file);
     mask.coverage.resize(pixels);
@@ -181,15 +192,15 @@ Mask read_mask(const fs::path& path) {
       const std::uint8_t* in = values.get() + layout.alpha;
       for (std::size_t i = 0; i < pixels; ++i) mask.coverage[i] = in[i * layout.channels];
       const auto [low, high] = std::minmax_element(mask.coverage.begin(), mask.coverage.end());
-      if (*low != *high) return mask;
+      if (*low != *high) return take_labels(file, std::move(mask));
     }
     const std::uint8_t* in = values.get();
     for (std::size_t i = 0; i < pixels; ++i, in += layout.channels)
       mask.coverage[i] = layout.colours == 3 ? luminance(in[0], in[1], in[2]) : in[0];
+    return take_labels(file, std::move(mask));
   } catch (const std::bad_alloc&) {
     out_of_memory(file);
   }
-  return mask;
 }
 
 void write_png(AtomicFile& file, int width, int height, int channels,

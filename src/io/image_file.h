@@ -8,6 +8,7 @@
 #include <span>
 
 #include "core/atomic_file.h"
+#include "core/file_mask.h"
 #include "core/image.h"
 
 namespace photohull::io {
@@ -18,13 +19,16 @@ inline constexpr std::int64_t kMaxImagePixels = std::int64_t(1) << 28;
 struct ImageSize {
   int width = 0;   ///< pixels
   int height = 0;  ///< pixels
+  /// EXIF orientation, 1 to 8: 1 as stored or not stated; 5 to 8 want the sides swapped.
+  int orientation = 1;
 };
 
 /// Size of an image from its header; nothing is decoded. Throws Error as read_image does.
 ImageSize read_image_size(const std::filesystem::path& path);
 
-/// Decodes PNG, JPEG, TIFF or OpenEXR; grey, grey + alpha, RGB or RGBA (further channels are
-/// ignored). Pixels stay as they are stored: no EXIF rotation, no colour profile.
+/// Decodes PNG, JPEG, TIFF, OpenEXR, BMP, PNM, and where OpenImageIO can WebP and AVIF; grey, grey
+/// + alpha, RGB or RGBA (further channels are ignored). Pixels stay as they are stored: no EXIF
+/// rotation, no colour profile.
 ///
 ///   8-bit          kSrgb8, the file's values verbatim
 ///   16-bit         kLinearHalf; decoded from sRGB unless the file declares linear light
@@ -39,8 +43,9 @@ ColourImage read_image(const std::filesystem::path& path);
 
 /// Decodes a mask from an image of any channel count: its alpha where that varies over the image,
 /// else the luminance of its colours (stored values, Rec. 709 weights, no transfer function).
+/// Integer values none of which is above 1 are labels: 1 becomes 255 (FileMask::from_ones).
 /// Throws Error as read_image does.
-Mask read_mask(const std::filesystem::path& path);
+FileMask read_mask(const std::filesystem::path& path);
 
 /// The same at a scale in (0, 1] (core/image_scale.h): what the file's pixels are in the mean over
 /// each of the result's, of colours in linear light. Strips of the file are held at a time, not all
@@ -49,9 +54,9 @@ Mask read_mask(const std::filesystem::path& path);
 /// takes the mean in stored values; the rest is averaged.
 ColourImage read_image(const std::filesystem::path& path, double scale);
 /// Coverage in the mean over each of the result's pixels, so that its sum over the object is kept.
-Mask read_mask(const std::filesystem::path& path, double scale);
+FileMask read_mask(const std::filesystem::path& path, double scale);
 /// Of scales for x and y, above 0: masks that are scaled copies of their photographs' size.
-Mask read_mask(const std::filesystem::path& path, const glm::dvec2& scale);
+FileMask read_mask(const std::filesystem::path& path, const glm::dvec2& scale);
 
 /// Writes an 8-bit PNG; `bytes` holds width * height * channels values, row-major from the
 /// top-left; 1 to 4 channels: grey, grey + alpha, RGB, RGBA, alpha straight. The file appears whole

@@ -1,6 +1,8 @@
 #include "io/image_signature.h"
 
-#include <string>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
 #include <string_view>
 
 #include "core/error.h"
@@ -14,8 +16,16 @@ using namespace std::string_view_literals;
 
 }  // namespace
 
+std::string known_images() {
+  const auto reads = [](const char* name) { return bool(OIIO::ImageInput::create(name)); };
+  std::string names = "PNG, JPEG, TIFF, OpenEXR, BMP and PNM";
+  if (reads("webp")) names += ", WebP";
+  if (reads("heif")) names += ", AVIF and HEIC";
+  return names + " can be read";
+}
+
 const char* image_format(const std::filesystem::path& path) {
-  const std::string head = file_head(path, 8);
+  const std::string head = file_head(path, 12);
   if (head.starts_with("\x89PNG\r\n\x1a\n"sv)) return "png";
   if (head.starts_with("\xff\xd8\xff"sv)) return "jpeg";
   for (const auto magic : {"II*\0"sv, "MM\0*"sv, "II+\0"sv, "MM\0+"sv})
@@ -24,14 +34,15 @@ const char* image_format(const std::filesystem::path& path) {
     check_openexr(path);
     return "openexr";
   }
+  if (head.starts_with("RIFF") && head.substr(8) == "WEBP") return "webp";
+  if (head.substr(std::min<std::size_t>(4, head.size())).starts_with("ftyp")) return "heif";
   if (head.starts_with("BM")) return "bmp";
   if (head.size() > 2 && head[0] == 'P' &&
       std::string_view("123456fF").find(head[1]) != std::string_view::npos)
     return "pnm";
-  throw Error(
-      concat(path.string(),
-             ": cannot be read as an image (its beginning is none that is known); PNG, JPEG, "
-             "TIFF and OpenEXR are known"));
+  throw Error(concat(path.string(),
+                     ": cannot be read as an image (its beginning is none that is known); ",
+                     known_images()));
 }
 
 }  // namespace photohull::io

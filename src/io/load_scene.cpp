@@ -32,7 +32,14 @@ void choose_box(const LoadSceneOptions& options, const fs::path& given, const Ra
   };
   const fs::path folder = raw.file.parent_path();
   std::error_code ignored;
-  if (set(options.box, "--box") || set(read_bbox_file(folder), "bbox.txt")) return;
+  if (set(options.box, "--box")) {
+    const std::string axes = sort_corners(*scene.box);
+    if (!axes.empty())
+      scene.warnings.push_back(
+          concat("the corners of --box are swapped along ", axes, ": they were sorted"));
+    return;
+  }
+  if (set(read_bbox_file(folder), "bbox.txt")) return;
   if (fs::is_directory(given, ignored) && set(read_bbox_file(given), "bbox.txt")) return;
   if (raw.box) {
     check_box(*raw.box, raw.box_source);
@@ -171,7 +178,8 @@ std::vector<RawView> fill_views(const LoadSceneOptions& options, const RawScene&
 RawScene read_calibrated(const fs::path& path, const CalibratedImages& images) {
   if (!is_file(path) || !is_calibration(path))
     throw Error(concat(path.string(),
-                       ": is no file of photohull calibrate, which is what --images is for"));
+                       ": is no file of photohull calibrate, which is what --step, --angles and "
+                       "--moment are for"));
   return read_calibration(path, images);
 }
 
@@ -188,9 +196,13 @@ void LoadSceneOptions::validate() const {
     throw UsageError("--background and --masks none exclude each other: give one");
   if (!background.empty() && masks == MaskSource::kDirectory)
     throw UsageError("--background and a folder of --masks exclude each other: give one");
+  if (!images.empty() && calibrated)
+    throw UsageError("the photographs of a calibration are given once");
   if (!box) return;
   try {
-    check_box(*box, "--box");
+    Box sorted = *box;
+    sort_corners(sorted);
+    check_box(sorted, "--box");
   } catch (const Error& failure) {
     throw UsageError(failure.what());
   }
@@ -198,12 +210,19 @@ void LoadSceneOptions::validate() const {
 
 Scene load_scene(const fs::path& path, const LoadSceneOptions& options) {
   options.validate();
+  std::error_code ignored;
+  if (!options.images.empty() && !fs::is_directory(options.images, ignored))
+    throw Error(concat(options.images.string(), ": is no folder of photographs (--images)"));
+  std::optional<CalibratedImages> calibrated = options.calibrated;
+  if (!options.images.empty() && is_file(path) && is_calibration(path))
+    calibrated = CalibratedImages{options.images, {}, {}, {}};
   SceneLocation location;
-  if (!options.calibrated) location = find_scene(path, options.format);
-  RawScene raw = options.calibrated ? read_calibrated(path, *options.calibrated)
-                                    : format_entry(location.format).read(location.file);
+  if (!calibrated) location = find_scene(path, options.format);
+  RawScene raw = calibrated ? read_calibrated(path, *calibrated)
+                            : read_raw_scene(location.format, location.file, options.images);
   Scene scene;
   scene.path = path;
+  scene.file = location.file.empty() ? raw.file : location.file;
   scene.format = raw.format;
   scene.warnings = location.warnings;
   scene.warnings.insert(scene.warnings.end(), raw.warnings.begin(), raw.warnings.end());

@@ -12,7 +12,8 @@ namespace photohull::io {
 
 /// Where the views' masks come from.
 enum class MaskSource {
-  kAuto,  ///< the scene's own entries, else a masks/ folder beside the images where there is one
+  kAuto,  ///< the scene's own entries, else a masks/ folder beside the images where there is one,
+          ///< else NAME_mask.png beside them
   kNone,  ///< no masks, whatever the scene says
   kBackground,  ///< made from the background, whatever masks the scene has
   kDirectory    ///< LoadSceneOptions::mask_directory, which must hold one at least
@@ -38,11 +39,17 @@ struct LoadSceneOptions {
   /// format's own convention (docs/formats.md). For files whose writer
   /// followed another one.
   std::optional<double> pixel_center;
-  /// Region of interest in world coordinates; replaces the scene's own. Finite, min < max.
+  /// Region of interest in world coordinates; replaces the scene's own. Finite. Corners that are
+  /// swapped along some axis are sorted, with a warning.
   std::optional<Box> box;
+  /// Where the photographs are, if not where the format has them: as listed below this folder, or
+  /// by their file names in it. Of a file of `photohull calibrate`: as CalibratedImages::folder.
+  /// Empty: where the format has them.
+  std::filesystem::path images;
   MaskSource masks = MaskSource::kAuto;
   /// Used with kDirectory only: NAME.png, NAME.EXTENSION.png (COLMAP's way) or the image's stem
   /// with another image extension.
+  /// The stem may have _mask after it.
   std::filesystem::path mask_directory;
   /// Makes a scene of these and a file of `photohull calibrate`, which has no images of its own.
   std::optional<CalibratedImages> calibrated;

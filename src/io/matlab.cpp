@@ -91,12 +91,13 @@ fs::path find_matlab(const fs::path& folder) { return only_file_ending(folder, "
 
 bool is_matlab(const fs::path& file) { return file.extension() == ".mat"; }
 
-RawScene read_matlab(const fs::path& file) {
+RawScene read_matlab(const fs::path& file, const fs::path& images) {
   RawScene scene;
   scene.format = SceneFormat::kMatlab;
   scene.file = file;
   const fs::path folder = folder_of(file);
   scene.image_folders = {folder, folder / "images", folder / ".." / "images"};
+  if (!images.empty()) scene.image_folders = {images};
   const std::vector<MatArray> variables = read_mat_file(file);
   const std::vector<Rows> matrices = choose_matrices(variables, file);
   const std::vector<std::string> names = choose_names(variables, matrices.size(), scene);

@@ -63,8 +63,8 @@ OpenImage open_image(const fs::path& path) {
   file.input = OIIO::ImageInput::create(image_format(path));
   if (!file.input || !file.input->open(path.string(), file.spec, request))
     throw Error(concat(path.string(), ": cannot be read as an image (",
-                       one_line(file.input ? file.input->geterror() : OIIO::geterror()),
-                       "); PNG, JPEG, TIFF and OpenEXR are known"));
+                       one_line(file.input ? file.input->geterror() : OIIO::geterror()), "); ",
+                       known_images()));
   file.input->threads(1);
   check_size(file.spec, path);
   const OIIO::ImageSpec& s = file.spec;

@@ -19,11 +19,6 @@ namespace {
 
 constexpr const char* kMark = "photohull_calibration";
 
-struct Lens {
-  Intrinsics intrinsics;
-  Distortion distortion;
-};
-
 glm::dvec3 read_triple(const JsonNode& node) {
   return {node.at(0).number(), node.at(1).number(), node.at(2).number()};
 }
@@ -34,8 +29,8 @@ std::array<double, 9> read_rows(const JsonNode& node) {
   return rows;
 }
 
-Lens read_lens(const JsonNode& node) {
-  Lens lens;
+CameraLens lens_at(const JsonNode& node) {
+  CameraLens lens;
   lens.intrinsics = intrinsics_of(read_rows(node["camera_matrix"]), node.where());
   lens.intrinsics.width = node["image_width"].size_in_pixels();
   lens.intrinsics.height = node["image_height"].size_in_pixels();
@@ -60,7 +55,7 @@ Pose read_pose(const JsonNode& node) {
           read_triple(node["t"])};
 }
 
-RawView make_view(const Lens& lens, const Pose& pose, const std::string& listed,
+RawView make_view(const CameraLens& lens, const Pose& pose, const std::string& listed,
                   const std::string& where) {
   RawView view;
   view.listed = listed;
@@ -92,7 +87,7 @@ void read_rig(const JsonNode& root, const CalibratedImages& images, RawScene& sc
   const JsonNode cameras = root["cameras"];
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     const JsonNode camera = cameras.at(i);
-    scene.views.push_back(make_view(read_lens(camera), read_pose(camera),
+    scene.views.push_back(make_view(lens_at(camera), read_pose(camera),
                                     image_of_camera(images, camera["name"].text()),
                                     camera.where()));
   }
@@ -100,7 +95,7 @@ void read_rig(const JsonNode& root, const CalibratedImages& images, RawScene& sc
 
 /// Pictures that the calibration names, wherever its own were.
 void read_named(const JsonNode& root, const CalibratedImages& images, RawScene& scene) {
-  const Lens lens = read_lens(root);
+  const CameraLens lens = lens_at(root);
   const JsonNode views = root["views"];
   std::size_t without = 0;
   for (std::size_t i = 0; i < views.size(); ++i) {
@@ -146,7 +141,7 @@ std::vector<double> angles_of(const CalibratedImages& images, std::size_t count)
 }
 
 void read_turntable(const JsonNode& root, const CalibratedImages& images, RawScene& scene) {
-  const Lens lens = read_lens(root);
+  const CameraLens lens = lens_at(root);
   const JsonNode table = root["turntable"];
   const glm::dvec3 axis = read_triple(table["axis"]);
   if (!(std::abs(glm::length(axis) - 1) < 1e-3))
@@ -182,6 +177,23 @@ void read_turntable(const JsonNode& root, const CalibratedImages& images, RawSce
 
 bool is_calibration(const fs::path& file) {
   return file.extension() == ".json" && file_head(file).find(kMark) != std::string::npos;
+}
+
+CameraLens calibrated_lens(const fs::path& file, const std::string& camera) {
+  const nlohmann::json json = parse_json(file);
+  const JsonNode root(json, file.string());
+  if (root[kMark].text() != "rig") return lens_at(root);
+  const JsonNode cameras = root["cameras"];
+  std::string names;
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    const std::string name = cameras.at(i)["name"].text();
+    if (name == camera) return lens_at(cameras.at(i));
+    names += (i ? ", " : "") + name;
+  }
+  throw Error(concat(file.string(), ": is a rig's calibration with the cameras ",
+                     names.substr(0, 200),
+                     camera.empty() ? "; --lens-from takes one camera's, or give --rig"
+                                    : ", and none is called " + camera));
 }
 
 RawScene read_calibration(const fs::path& file, const CalibratedImages& images) {

@@ -46,12 +46,13 @@ glm::dmat3 about(int axis, double angle) {
 
 class Reader {
  public:
-  explicit Reader(const fs::path& file) : lines_(file) {
+  Reader(const fs::path& file, const fs::path& images) : lines_(file) {
     scene_.format = SceneFormat::kRealityCapture;
     scene_.file = file;
     scene_.pixel_center = 0.5;
     scene_.image_folders = {folder_of(file), folder_of(file) / "images",
                             folder_of(file) / ".." / "images"};
+    if (!images.empty()) scene_.image_folders = {images};
   }
 
   RawScene read() {
@@ -143,7 +144,9 @@ bool is_realitycapture(const fs::path& file) {
          line.find("heading") != std::string::npos;
 }
 
-RawScene read_realitycapture(const fs::path& file) { return Reader(file).read(); }
+RawScene read_realitycapture(const fs::path& file, const fs::path& images) {
+  return Reader(file, images).read();
+}
 
 void write_realitycapture(const Scene& scene, const fs::path& folder) {
   make_folder(folder);

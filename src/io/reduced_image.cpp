@@ -212,32 +212,49 @@ float quantised(float value) {
   return std::round(255.0f * std::clamp(finite_or_zero(value), 0.0f, 1.0f));
 }
 
+/// One of a mask's channels at the new size, as coverage and as if it were of labels, 0 and 1:
+/// which it is is known at the end.
+struct MaskChannel {
+  std::vector<std::uint8_t> coverage, labels;
+  float low = 255, high = 0;  ///< of the file's values
+
+  void see(float value) { low = std::min(low, value), high = std::max(high, value); }
+  void add(float mean) {
+    coverage.push_back(std::uint8_t(mean + 0.5f));
+    if (high <= 1)
+      labels.push_back(std::uint8_t(255 * mean + 0.5f));
+    else if (!labels.empty())
+      labels = {};
+  }
+  FileMask take(int width, int height, bool may_be_labels) {
+    const bool ones = may_be_labels && high == 1;
+    return {Mask{width, height, std::move(ones ? labels : coverage)}, ones};
+  }
+};
+
 /// Alpha and luminance side by side: which of them is the mask is known at the end.
 template <typename T>
-Mask average_mask(OpenImage& file, OIIO::TypeDesc type, const glm::dvec2& scale) {
+FileMask average_mask(OpenImage& file, OIIO::TypeDesc type, const glm::dvec2& scale) {
   const Layout& layout = file.layout;
   const int width = file.spec.width;
-  std::vector<std::uint8_t> alpha, colour;
+  MaskChannel alpha, colour;
   AreaAverage average(width, file.spec.height, 1.0 / scale, 2, [&](const float* row) {
     for (int x = 0; x < average.width(); ++x) {
-      alpha.push_back(std::uint8_t(row[2 * x] + 0.5f));
-      colour.push_back(std::uint8_t(row[2 * x + 1] + 0.5f));
+      alpha.add(row[2 * x]);
+      colour.add(row[2 * x + 1]);
     }
   });
   std::vector<float> pairs(2 * std::size_t(width), 255.0f);
-  float low = 255, high = 0;
   for_each_row<T>(file, type, [&](int, const T* in) {
     for (std::size_t x = 0; x < std::size_t(width); ++x, in += layout.channels) {
       const auto at = [&](int c) { return std::uint8_t(quantised(in[c])); };
-      if (layout.alpha >= 0) {
-        const float a = pairs[2 * x] = quantised(in[layout.alpha]);
-        low = std::min(low, a), high = std::max(high, a);
-      }
-      pairs[2 * x + 1] = layout.colours == 3 ? luminance(at(0), at(1), at(2)) : at(0);
+      if (layout.alpha >= 0) alpha.see(pairs[2 * x] = quantised(in[layout.alpha]));
+      colour.see(pairs[2 * x + 1] = layout.colours == 3 ? luminance(at(0), at(1), at(2)) : at(0));
     }
     average.add(pairs.data());
   });
-  return {average.width(), average.height(), low < high ? std::move(alpha) : std::move(colour)};
+  MaskChannel& mask = alpha.low < alpha.high ? alpha : colour;
+  return mask.take(average.width(), average.height(), sizeof(T) == 1);
 }
 
 }  // namespace
@@ -257,9 +274,11 @@ ColourImage read_image(const fs::path& path, double scale) {
   return image;
 }
 
-Mask read_mask(const fs::path& path, double scale) { return read_mask(path, glm::dvec2(scale)); }
+FileMask read_mask(const fs::path& path, double scale) {
+  return read_mask(path, glm::dvec2(scale));
+}
 
-Mask read_mask(const fs::path& path, const glm::dvec2& scale) {
+FileMask read_mask(const fs::path& path, const glm::dvec2& scale) {
   if (scale == glm::dvec2(1)) return read_mask(path);
   OpenImage file = open_image(path);
   try {

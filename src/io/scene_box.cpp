@@ -36,6 +36,16 @@ void check_box(const Box& box, const std::string& source) {
   }
 }
 
+std::string sort_corners(Box& box) {
+  std::string axes;
+  for (int axis = 0; axis < 3; ++axis)
+    if (box.max[axis] < box.min[axis]) {
+      std::swap(box.min[axis], box.max[axis]);
+      axes += concat(axes.empty() ? "" : ", ", "xyz"[axis]);
+    }
+  return axes;
+}
+
 std::optional<Box> read_bbox_file(const fs::path& folder) {
   const fs::path file = folder / "bbox.txt";
   if (!is_file(file)) return std::nullopt;

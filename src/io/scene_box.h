@@ -13,6 +13,9 @@ namespace photohull::io {
 /// Throws Error opening with `source` unless the box is finite and its min below its max.
 void check_box(const Box& box, const std::string& source);
 
+/// Gives the box its smaller corner first. Returns the axes along which that changes it: "x, z".
+std::string sort_corners(Box& box);
+
 /// Six numbers, smallest corner first, from a folder's bbox.txt; nothing where there is none.
 /// Throws Error when the file holds anything else.
 std::optional<Box> read_bbox_file(const std::filesystem::path& folder);

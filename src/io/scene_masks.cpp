@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "io/find_files.h"
 #include "io/image_file.h"
 #include "io/text_file.h"
 
@@ -17,6 +18,17 @@ bool is_folder(const fs::path& path) {
   return fs::is_directory(path, ignored);
 }
 
+constexpr const char* kMaskEndings[] = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr"};
+
+/// NAME_mask.png for NAME.jpg, or with another extension; empty when there is none.
+fs::path find_suffixed(const fs::path& image) {
+  for (const char* extension : kMaskEndings) {
+    const fs::path candidate = image.parent_path() / (image.stem().string() + "_mask" + extension);
+    if (is_file(candidate)) return candidate;
+  }
+  return {};
+}
+
 /// The mask in a folder for an image listed as `listed` ("cam1/0001.jpg"); empty when there is
 /// none.
 fs::path find_mask(const fs::path& folder, const fs::path& image, const std::string& listed) {
@@ -24,12 +36,14 @@ fs::path find_mask(const fs::path& folder, const fs::path& image, const std::str
     fs::path whole = folder / name;
     whole += ".png";
     if (is_file(whole)) return whole;
-    for (const char* extension : {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr"}) {
+    for (const char* extension : kMaskEndings) {
       const fs::path candidate = fs::path(folder / name).replace_extension(extension);
       // A list of "images/0001.png" must not make the image its own mask.
       std::error_code ignored;
       if (is_file(candidate) && !fs::equivalent(candidate, image, ignored)) return candidate;
     }
+    const fs::path suffixed = find_suffixed(folder / name);
+    if (!suffixed.empty()) return suffixed;
   }
   return {};
 }
@@ -78,7 +92,8 @@ std::string counted(const Unmasked& without, std::size_t all) {
 
 /// "NAME.EXT.png and NAME.png, .jpg, .tif, .exr" for a view.
 std::string looked_for(const std::string& name) {
-  return concat(name, ".png and ", fs::path(name).stem().string(), ".png, .jpg, .tif, .exr");
+  const std::string stem = fs::path(name).stem().string();
+  return concat(name, ".png and ", stem, ".png, .jpg, .tif, .exr, or ", stem, "_mask.png");
 }
 
 /// Throws Error where `strict` asks for the masks of all views; else warns.
@@ -123,6 +138,7 @@ void attach_stated(const fs::path& scene_folder, const RawView& raw, SourceView&
 void attach_automatically(const LoadSceneOptions& options, const fs::path& scene_folder,
                           const std::vector<RawView>& raw, Scene& scene) {
   Unmasked without;
+  bool any = false;  // does any folder hold masks?
   for (std::size_t i = 0; i < scene.views.size(); ++i) {
     SourceView& view = scene.views[i];
     if (!raw[i].mask.empty()) {
@@ -130,11 +146,14 @@ void attach_automatically(const LoadSceneOptions& options, const fs::path& scene
       continue;
     }
     const fs::path folder = masks_folder(scene_folder, view.image);
-    if (folder.empty()) continue;
-    without.folder = folder;
-    view.mask = find_mask(folder, view.image, raw[i].listed);
-    if (view.mask.empty()) without.names.push_back(view.name);
+    view.mask =
+        folder.empty() ? find_suffixed(view.image) : find_mask(folder, view.image, raw[i].listed);
+    any = any || !folder.empty() || !view.mask.empty();
+    if (!view.mask.empty()) continue;
+    without.folder = folder.empty() ? folder_of(view.image) : folder;
+    without.names.push_back(view.name);
   }
+  if (!any) return;
   note_unmasked(without, options.strict, scene);
 }
 

@@ -6,6 +6,7 @@
 
 #include "io/load_scene.h"
 #include "io/raw_scene.h"
+#include "io/read_lens.h"
 
 namespace photohull::io {
 
@@ -36,7 +37,8 @@ void write_metashape(const Scene& scene, const std::filesystem::path& folder);
 
 std::filesystem::path find_realitycapture(const std::filesystem::path& folder);
 bool is_realitycapture(const std::filesystem::path& file);
-RawScene read_realitycapture(const std::filesystem::path& file);
+RawScene read_realitycapture(const std::filesystem::path& file,
+                             const std::filesystem::path& images);
 void write_realitycapture(const Scene& scene, const std::filesystem::path& folder);
 
 std::filesystem::path find_strecha(const std::filesystem::path& folder);
@@ -66,7 +68,7 @@ void write_projection(const Scene& scene, const std::filesystem::path& folder);
 
 std::filesystem::path find_matlab(const std::filesystem::path& folder);
 bool is_matlab(const std::filesystem::path& file);
-RawScene read_matlab(const std::filesystem::path& file);
+RawScene read_matlab(const std::filesystem::path& file, const std::filesystem::path& images);
 void write_matlab(const Scene& scene, const std::filesystem::path& folder);
 
 std::filesystem::path find_opencv(const std::filesystem::path& folder);
@@ -77,5 +79,7 @@ void write_opencv(const Scene& scene, const std::filesystem::path& folder);
 /// A file of `photohull calibrate`, and a scene of it with these photographs.
 bool is_calibration(const std::filesystem::path& file);
 RawScene read_calibration(const std::filesystem::path& file, const CalibratedImages& images);
+/// Its lens; of a rig's file that of the camera named so.
+CameraLens calibrated_lens(const std::filesystem::path& file, const std::string& camera);
 
 }  // namespace photohull::io

@@ -48,7 +48,7 @@ std::string looked_in(const RawScene& raw) {
   std::string folders;
   for (const fs::path& folder : raw.image_folders)
     folders += (folders.empty() ? "" : ", ") + (folder / "").lexically_normal().string();
-  return "looked in " + folders;
+  return "looked in " + folders + "; --images says where else they are";
 }
 
 /// What the decoder said, without the path that it opens with.
@@ -65,7 +65,25 @@ void complete_focal_lengths(const RawView& raw, Intrinsics& k) {
   if (k.fy == 0) k.fy = k.fx;
 }
 
-/// The camera of an image of the size that the intrinsics state.
+std::string wrong_shape(const ImageSize& size, const Intrinsics& k) {
+  const bool turned = (size.width == k.height && size.height == k.width) ||
+                      is_scaled_copy(size.height, size.width, k.width, k.height);
+  return concat("it is ", size.width, " x ", size.height, ", but its camera is for ", k.width,
+                " x ", k.height,
+                turned ? ", the sides are swapped: a program has probably turned it by its EXIF "
+                         "orientation"
+                       : "",
+                size.orientation != 1
+                    ? concat(", and its EXIF orientation tag is ", size.orientation,
+                             size.orientation > 4
+                                 ? ", which asks for swapped sides; pixels are read as they are "
+                                   "stored: turn the pixels as the tag says and remove it"
+                                 : "")
+                    : "");
+}
+
+}  // namespace
+
 Camera complete_camera(const RawView& raw, double pixel_center) {
   Camera camera = raw.camera;
   Intrinsics& k = camera.intrinsics;
@@ -76,18 +94,6 @@ Camera complete_camera(const RawView& raw, double pixel_center) {
   check_camera(camera, raw.distortion, raw.where);
   return camera;
 }
-
-std::string wrong_shape(const ImageSize& size, const Intrinsics& k) {
-  const bool turned = (size.width == k.height && size.height == k.width) ||
-                      is_scaled_copy(size.height, size.width, k.width, k.height);
-  return concat("it is ", size.width, " x ", size.height, ", but its camera is for ", k.width,
-                " x ", k.height,
-                turned ? ", the sides are swapped: a program has probably turned it by its EXIF "
-                         "orientation"
-                       : "");
-}
-
-}  // namespace
 
 Photographs find_photographs(const RawScene& raw) {
   Photographs found;

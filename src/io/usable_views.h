@@ -34,6 +34,10 @@ struct CheckedView {
 CheckedView check_view(const RawScene& raw, std::size_t index, const Photographs& photographs,
                        double pixel_center);
 
+/// The camera of an image of the size that the view's intrinsics state, which is not 0.
+/// `pixel_center` as in RawScene. Throws Error for one that is not finite.
+Camera complete_camera(const RawView& raw, double pixel_center);
+
 /// Size of an image; zeros where it cannot be read.
 ImageSize image_size_or_none(const std::filesystem::path& image);
 

@@ -58,12 +58,20 @@ std::vector<std::string> check_box(const Box& box, const std::string& source,
                  blind.size() > 1 ? ", ..." : "")};
 }
 
+std::size_t cameras_within(const Box& box, std::span<const SourceView> views) {
+  return std::size_t(std::count_if(views.begin(), views.end(), [&](const SourceView& view) {
+    return box.contains(view.camera.center());
+  }));
+}
+
 void check_cameras_outside(const Box& box, const std::string& source,
                            std::span<const SourceView> views) {
   for (const SourceView& view : views)
     if (box.contains(view.camera.center()))
       throw Error(concat("camera ", view.name, " stands inside the box from ", source,
-                         ": make --box smaller, or check that the poses are world-to-camera"));
+                         ", where silhouettes tell nothing: make --box smaller, check that the "
+                         "poses are world-to-camera, or, for a room photographed from within, "
+                         "give --masks none and --method refine"));
 }
 
 void check_memory(std::int64_t bytes, std::int64_t limit) {

@@ -16,6 +16,9 @@ namespace photohull::pipeline {
 std::vector<std::string> check_box(const Box& box, const std::string& source,
                                    std::span<const SourceView> views);
 
+/// How many cameras stand inside the box.
+std::size_t cameras_within(const Box& box, std::span<const SourceView> views);
+
 /// Throws Error when a camera stands inside the box.
 void check_cameras_outside(const Box& box, const std::string& source,
                            std::span<const SourceView> views);

@@ -98,10 +98,10 @@ bool looks_for_box(const BoxOptions& options, const Scene& scene) {
   return options.find || !scene.box || scene.box_source == kSparsePoints;
 }
 
-std::vector<ScenePoint> complete_box(const BoxOptions& options, MaskPolicy masks, Scene& scene,
-                                     Progress& progress) {
+BoxFindings complete_box(const BoxOptions& options, MaskPolicy masks, Scene& scene,
+                         Progress& progress) {
   options.validate();
-  std::vector<ScenePoint> points;
+  BoxFindings findings;
   if (looks_for_box(options, scene)) {
     const bool guessed = scene.box && scene.box_source == kSparsePoints;
     try {
@@ -109,7 +109,7 @@ std::vector<ScenePoint> complete_box(const BoxOptions& options, MaskPolicy masks
       scene.box = found.box;
       scene.box_source = std::move(found.source);
       scene.warnings.insert(scene.warnings.end(), found.warnings.begin(), found.warnings.end());
-      points = std::move(found.points);
+      findings = {true, std::move(found.points), found.seen};
     } catch (const Cancelled&) {
       throw;
     } catch (const MemoryError&) {
@@ -125,7 +125,7 @@ std::vector<ScenePoint> complete_box(const BoxOptions& options, MaskPolicy masks
     scene.box = Box{middle - half, middle + half};
     scene.box_source += concat(", scaled by ", options.scale);
   }
-  return points;
+  return findings;
 }
 
 }  // namespace photohull::pipeline

@@ -1,6 +1,7 @@
 // The scene's box: given, or found in its photographs.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "calib/prepare_views.h"
@@ -14,9 +15,17 @@ struct BoxOptions {
   static constexpr double kLeastScale = 0.05, kMostScale = 20;
   bool find = false;  ///< even where the scene or --box gives one
   double scale = 1;   ///< of whatever box there is, about its middle, kLeastScale to kMostScale
+  bool exact =
+      false;  ///< neither made smaller, where it is oversized, nor is surface let out of it
 
   /// Throws UsageError naming the option.
   void validate() const;
+};
+
+struct BoxFindings {
+  bool found = false;              ///< by the photographs, not given
+  std::vector<ScenePoint> points;  ///< that it was found by, if any
+  std::optional<Box> seen;         ///< around what the photographs show beside that, where known
 };
 
 /// Will complete_box look into the photographs?
@@ -25,9 +34,8 @@ bool looks_for_box(const BoxOptions& options, const Scene& scene);
 /// Gives the scene a box: its own, else the one that find_box finds in at most 60 of its
 /// photographs, spread over all and reduced to 800 pixels at most, with their masks by `masks`. A
 /// box that load_scene made of sparse points stands only where none is found, which adds a warning
-/// to the scene. Then scales it. Returns the points that it was found by, if any. Throws Error as
-/// find_box and prepare_views do; Cancelled.
-std::vector<ScenePoint> complete_box(const BoxOptions& options, MaskPolicy masks, Scene& scene,
-                                     Progress& progress);
+/// to the scene. Then scales it. Throws Error as find_box and prepare_views do; Cancelled.
+BoxFindings complete_box(const BoxOptions& options, MaskPolicy masks, Scene& scene,
+                         Progress& progress);
 
 }  // namespace photohull::pipeline

@@ -66,7 +66,8 @@ Scene undistort_scene(const Scene& scene, const fs::path& folder, Progress& prog
     progress.update(double(i) / double(scene.views.size()));
     const SourceView& source = scene.views[i];
     View view{source.name, source.camera, loader.image(source.image), {}};
-    take_given_mask(source, loader, view);
+    bool from_ones = false;  // either way the mask is written with 255
+    take_given_mask(source, loader, view, from_ones);
     make_opaque(view.image);
     rectify(source.distortion, kMaxGrowth, view);
     SourceView& target = result.views[i];

@@ -32,6 +32,7 @@ constexpr double kClearance = 0.01;    // of the diagonal, from a camera
 constexpr double kCutWarning = 0.05;   // of the weight, cut off
 constexpr double kMeets = 0.2;         // of the distance: axes pass their meeting point
 constexpr double kNearlyAll = 0.9;     // of the cameras
+constexpr double kMostMeeting = 0.5;   // of a room's cameras
 constexpr double kSmallestTurn = 10;   // degrees: axes that differ less meet nowhere for sure
 constexpr double kDegrees = 180 / std::numbers::pi;
 
@@ -102,7 +103,7 @@ std::optional<FoundBox> box_of_silhouettes(std::span<const View> views) {
   const Box box = carving::object_box(cube, views);
   if (box.min == cube.min && box.max == cube.max) return std::nullopt;  // nothing was left of it
   return FoundBox{
-      box, concat("found: the space that the silhouettes of ", masked, " views leave"), {}, {}};
+      box, concat("found: the space that the silhouettes of ", masked, " views leave"), {}, {}, {}};
 }
 
 // ---- points
@@ -242,11 +243,33 @@ Box without_cameras(const Box& box, std::span<const Camera> cameras,
   return weight_within(one_by_one, points) > weight_within(at_once, points) ? one_by_one : at_once;
 }
 
+/// Do the cameras stand in what is around them, and look at it on all sides?
+bool is_room(const Box& seen, std::span<const Camera> cameras, const AxesMeeting& axes) {
+  const auto within = std::count_if(cameras.begin(), cameras.end(),
+                                    [&](const Camera& c) { return seen.contains(c.center()); });
+  const double n = double(cameras.size());
+  return axes.turn > kAllAround && double(within) >= kNearlyAll * n &&
+         double(axes.meeting) <= kMostMeeting * n;
+}
+
+FoundBox room(const Box& seen, std::span<const Camera> cameras, const char* what,
+              const std::vector<Weighed>& points) {
+  FoundBox found{seen, {}, {}, {}, seen};
+  for (const Weighed& p : points)
+    if (seen.contains(p.point.position)) found.points.push_back(p.point);
+  found.source = concat("found: ", points.size(), " ", what, " around ", cameras.size(),
+                        " cameras that stand among them, as in a room");
+  return found;
+}
+
 std::optional<FoundBox> box_of_points(std::span<const Camera> cameras,
                                       const std::vector<ScenePoint>& given, const char* what) {
   std::vector<Weighed> points;
   for (const ScenePoint& p : given) points.push_back({p, weight_of(p)});
+  if (points.size() < kFewest) return std::nullopt;
+  const Box seen = box_around(points);
   const AxesMeeting axes = meeting_of_axes(cameras);
+  if (is_room(seen, cameras, axes)) return room(seen, cameras, what, points);
   keep_looked_at(cameras, axes.turn > kAllAround ? kShareAround : kShareAhead, points);
   if (axes.looks_inwards)
     std::erase_if(points, [&](const Weighed& p) {
@@ -255,7 +278,7 @@ std::optional<FoundBox> box_of_points(std::span<const Camera> cameras,
   if (points.size() < kFewest) return std::nullopt;
   keep_connected(cameras, points);
   const Box around = box_around(points);
-  FoundBox found{without_cameras(around, cameras, points), {}, {}, {}};
+  FoundBox found{without_cameras(around, cameras, points), {}, {}, {}, seen};
   if (const glm::dvec3 s = found.box.size(); !(std::min({s.x, s.y, s.z}) > 0)) return std::nullopt;
   const double lost =
       1 - weight_within(found.box, points) / std::max(weight_within(around, points), 1e-300);
@@ -315,15 +338,14 @@ AxesMeeting meeting_of_axes(std::span<const Camera> cameras) {
   std::vector<double> distances;
   for (const glm::dvec3& c : through) distances.push_back(glm::distance(c, out.point));
   out.distance = median(distances);
-  std::size_t meeting = 0;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     const glm::dvec3 to = out.point - through[i];
     const double ahead = glm::dot(to, along[i]);
     out.in_front += ahead > 0;
-    meeting += ahead > 0 && glm::length(to - ahead * along[i]) < kMeets * out.distance;
+    out.meeting += ahead > 0 && glm::length(to - ahead * along[i]) < kMeets * out.distance;
   }
   out.looks_inwards =
-      out.turn > kSmallestTurn && double(meeting) >= kNearlyAll * double(cameras.size());
+      out.turn > kSmallestTurn && double(out.meeting) >= kNearlyAll * double(cameras.size());
   return out;
 }
 

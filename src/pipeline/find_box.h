@@ -1,6 +1,7 @@
 // Where the object is, told by the photographs themselves.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,10 +14,11 @@
 namespace photohull::pipeline {
 
 struct FoundBox {
-  Box box;             ///< world; no camera stands in it
+  Box box;             ///< world; no camera stands in it, unless it is a room
   std::string source;  ///< "found: ..." and what it rests on, for the user
   std::vector<std::string> warnings;
   std::vector<ScenePoint> points;  ///< that it holds; empty where silhouettes told
+  std::optional<Box> seen;         ///< holds nearly all points, those around the object too
 };
 
 /// What is known before the photographs' features are.
@@ -38,7 +40,9 @@ struct BoxEvidence {
 ///     farther from where the axes meet than the cameras are (where they do meet), or that are not
 ///     connected with the many. The box holds all but 0.5 % of the rest's weight on each side, with
 ///     a margin of 10 % of its sides and 3 % of its diagonal at least. Where it would hold cameras,
-///     its sides are drawn in past these.
+///     its sides are drawn in past these. But where nearly all cameras stand among the points, turn
+///     all around and at most half of them look at one place, it is a room: the box holds all but
+///     0.5 % of all points on each side.
 ///  3. Silhouettes of masks that were made, with the points where these are fewer than 100.
 /// Throws Error, saying what to do, for fewer than two views and where neither features nor
 /// silhouettes tell; Cancelled.
@@ -50,6 +54,7 @@ struct AxesMeeting {
   double distance = 0;         ///< of the cameras from it, the median
   std::size_t in_front = 0;    ///< cameras that have it before them
   double turn = 0;             ///< degrees: the largest angle between two axes
+  std::size_t meeting = 0;     ///< cameras whose axes pass it by less than a fifth of the distance
   bool looks_inwards = false;  ///< do nearly all axes pass it by less than a fifth of the distance?
 };
 

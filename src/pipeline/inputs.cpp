@@ -9,7 +9,6 @@
 #include "calib/noise.h"
 #include "calib/prepare_views.h"
 #include "calib/torn_masks.h"
-#include "carving/fit_grid.h"
 #include "carving/object_box.h"
 #include "core/error.h"
 #include "pipeline/checks.h"
@@ -60,7 +59,15 @@ void Inputs::load() {
   report_.photographs_listed = int(scene.listed.size());
   report_.photographs_scaled = scene.scaled;
   report_.photographs_passed_over = scene.passed_over;
-  complete_box(options_.box, mask_policy(options_.load.masks), scene, progress_);
+  if (options_.lattice == Lattice::kFixed && looks_for_box(options_.box, scene))
+    throw Error(
+        concat(scene.path.string(),
+               ": --lattice fixed needs a box that does not follow the photographs, and the "
+               "scene gives none; give --box"));
+  const BoxFindings findings =
+      complete_box(options_.box, mask_policy(options_.load.masks), scene, progress_);
+  box_found_ = findings.found;
+  seen = findings.seen;
   for (const std::string& text : scene.warnings) warn(text);
   report_.box = *scene.box;
   report_.box_source = scene.box_source;
@@ -70,14 +77,15 @@ void Inputs::load() {
 }
 
 std::vector<double> Inputs::choose_scales(const Box& box) {
-  // With masks, the voxels that pixels give are not known before these have been seen: the box
-  // may become smaller.
+  // With masks, the voxels that pixels give are not known for sure before these have been seen: the
+  // box may become smaller.
   const bool known =
       options_.resolution || options_.voxel_size || options_.load.masks == io::MaskSource::kNone;
   const std::int64_t limit = memory_limit();
-  Plan plan = plan_job(options_, full_, box, known, limit);
+  const Plan plan = plan_reading(options_, full_, box, known, limit);
   check_memory(plan.cost.bytes, limit);
-  if (plan.scales != plan.wanted)
+  short_of_memory_ = plan.scales != plan.wanted;
+  if (short_of_memory_)
     warn(concat("the photographs are read at ", smallest_scale_text(plan.scales),
                 " of their size: at ", smallest_scale_text(plan.wanted),
                 " the job would take more than ", memory_text(limit),
@@ -101,7 +109,7 @@ void Inputs::take_scales(std::vector<double> scales) {
 /// A box that is much larger than the object would waste the voxels, and far from the object few
 /// views see what silhouettes do not reject.
 void Inputs::tighten_box() {
-  if (!carving::box_is_oversized(*scene.box, views)) return;
+  if (options_.box_stands() || !carving::box_is_oversized(*scene.box, views)) return;
   const Box box = carving::object_box(*scene.box, views);
   const double factor = longest_side(*scene.box) / longest_side(box);
   if (factor < kOversized) return;
@@ -113,11 +121,12 @@ void Inputs::tighten_box() {
 }
 
 GridSpec Inputs::lattice(std::span<const Camera> of) const {
-  return carving::fit_grid(*scene.box, voxel_size_of(options_, *scene.box, of));
+  return lattice_of(options_, *scene.box, of, any_mask());
 }
 
 void Inputs::fit_grid() {
-  check_cameras_outside(*scene.box, scene.box_source, scene.views);
+  if (any_mask() || options_.effective_method() != Method::kRefine)
+    check_cameras_outside(*scene.box, scene.box_source, scene.views);
   cameras = projtex::cameras_of(views);
   grid = lattice(cameras);
   const CostQuestion question{{},
@@ -138,8 +147,10 @@ PreparedViews Inputs::decode() {
 
 void Inputs::prepare() {
   PreparedViews prepared = decode();
-  // --resolution will count along the object's own box, whose voxels need finer pixels.
-  if (!options_.image_scale && options_.resolution && report_.smallest_scale < 1 &&
+  // --resolution will count along the object's own box, whose voxels need finer pixels; and there
+  // is more memory for those than in all of the box.
+  if (!options_.image_scale && (options_.resolution || short_of_memory_) &&
+      report_.smallest_scale < 1 && !options_.box_stands() &&
       carving::box_is_oversized(*scene.box, prepared.views)) {
     const Box box = carving::object_box(*scene.box, prepared.views);
     if (longest_side(*scene.box) >= kOversized * longest_side(box)) {
@@ -166,7 +177,19 @@ void Inputs::prepare() {
         {views[i].name, prepared.masks[i].source, prepared.masks[i].confidence});
   for (std::size_t i = 0; i < views.size(); ++i)
     if (!views[i].mask.empty() && !was_given(prepared.masks[i])) made_masks_.insert(views[i].name);
+  forget_masks_made_within();
   if (!options_.keep_mask_holes) mend_given_masks(prepared.masks);
+}
+
+/// The background of a photograph taken from within the box is what is looked for.
+void Inputs::forget_masks_made_within() {
+  const std::size_t within = cameras_within(*scene.box, scene.views);
+  if (within == 0 || made_masks_.empty()) return;
+  for (View& view : views)
+    if (made_masks_.contains(view.name)) view.mask = {};
+  made_masks_.clear();
+  warn(concat(within, within == 1 ? " camera stands" : " cameras stand",
+              " inside the box: masks made from the background are not used"));
 }
 
 void Inputs::mend_given_masks(std::span<const MaskJudgement> masks) {
@@ -189,7 +212,17 @@ void Inputs::mend_given_masks(std::span<const MaskJudgement> masks) {
               " % of it): they were filled (--mask-holes keep takes the masks as they are)"));
 }
 
+bool Inputs::has_surroundings() const {
+  if (options_.effective_method() != Method::kRefine) return false;
+  if (options_.surroundings != Surroundings::kAuto)
+    return options_.surroundings == Surroundings::kOn;
+  const auto masked = std::count_if(views.begin(), views.end(),
+                                    [](const View& view) { return !view.mask.empty(); });
+  return box_found_ && 2 * std::size_t(masked) < views.size();
+}
+
 void Inputs::crop() {
+  if (has_surroundings()) return;
   for (View& view : views) crop_to_box(scene.box.value(), kCropMargin, view);
   cameras = projtex::cameras_of(views);
 }

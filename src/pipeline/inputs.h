@@ -53,6 +53,8 @@ class Inputs {
   void explain_foreground();
 
   bool any_mask() const;
+  /// Is what surrounds the box to be reconstructed too, if silhouettes do not bound the object?
+  bool has_surroundings() const;
   /// Frees the masks' pixels, if no view needs them for its lines or the verdict.
   void forget_masks();
   /// What the hull and the refinement go by, one a view.
@@ -60,6 +62,7 @@ class Inputs {
   void warn(const std::string& text);
 
   Scene scene;
+  std::optional<Box> seen;  ///< around what the photographs show, where the box was found
   GridSpec grid;
   std::vector<View> views;  ///< undistorted, and from crop() on around the box alone
   std::vector<Camera> cameras;
@@ -81,6 +84,7 @@ class Inputs {
   void take_scales(std::vector<double> scales);
   /// Decodes the photographs at the scales taken.
   PreparedViews decode();
+  void forget_masks_made_within();
   void mend_given_masks(std::span<const MaskJudgement> masks);
   GridSpec lattice(std::span<const Camera> cameras) const;
   void refine_cameras_of(const std::vector<double>& off);
@@ -93,8 +97,10 @@ class Inputs {
   /// Are the masks too small, as the photographs tell?
   bool masks_are_eaten() const;
 
+  bool box_found_ = false;               ///< not given
   Scene full_;                           ///< the scene in the files' pixels, until they are decoded
   std::vector<double> scales_;           ///< of its views
+  bool short_of_memory_ = false;         ///< were these made smaller by --max-memory?
   std::vector<Outline> outlines_;        ///< of the masks, one a view
   std::vector<double> room_;             ///< pixels around each view's outline, for what it is off
   bool restored_ = false;                ///< were eaten stems put back into the masks?

@@ -35,14 +35,18 @@ void measure_angles(Inspection& out) {
   out.nearest_angle = nearest[nearest.size() / 2];
 }
 
-}  // namespace
-
-Inspection inspect(const Scene& scene, const ReconstructOptions& options) {
-  Inspection out;
-  out.scene = scene;
-  out.warnings = scene.warnings;
-  if (!scene.box) return out;  // whoever looked for one says why
-  check_cameras_outside(*scene.box, scene.box_source, scene.views);
+/// Everything about the job; throws as reconstruct would.
+void look_ahead(const Scene& scene, const ReconstructOptions& options, Inspection& out) {
+  const std::size_t within = cameras_within(*scene.box, scene.views);
+  const bool masks = options.load.masks != io::MaskSource::kNone &&
+                     std::any_of(scene.views.begin(), scene.views.end(),
+                                 [](const SourceView& view) { return !view.mask.empty(); });
+  if (masks || options.effective_method() != Method::kRefine)
+    check_cameras_outside(*scene.box, scene.box_source, scene.views);
+  if (within > 0)
+    out.warnings.push_back(concat(within, " of ", scene.views.size(),
+                                  " cameras stand inside the box: it is taken for a room, and "
+                                  "reconstructed without silhouettes"));
   const auto box_warnings = check_box(*scene.box, scene.box_source, scene.views);
   out.warnings.insert(out.warnings.end(), box_warnings.begin(), box_warnings.end());
   measure_angles(out);
@@ -51,6 +55,7 @@ Inspection inspect(const Scene& scene, const ReconstructOptions& options) {
   out.voxel_size = carving::pixel_footprint(*scene.box, cameras);
   out.memory_limit = options.max_memory ? *options.max_memory : default_max_memory();
   Plan plan = plan_job(options, scene, *scene.box, true, out.memory_limit);
+  out.silhouettes = plan.silhouettes;
   out.grid = plan.grid;
   out.scales = std::move(plan.scales);
   out.memory_bytes = plan.cost.bytes;
@@ -61,12 +66,29 @@ Inspection inspect(const Scene& scene, const ReconstructOptions& options) {
                                   "; --max-memory): lower --resolution"));
   if (out.grid.voxel_size > carving::voxel_size_for(*scene.box, 2))
     out.warnings.push_back("the box is hardly larger than a pixel: check its units");
-  if (out.nearest_angle < kSmallestBaseline)
+  if (out.nearest_angle < kSmallestBaseline && within == 0)
     out.warnings.push_back("neighbouring views are nearly the same: depth will be uncertain");
-  if (out.nearest_angle > kLargestBaseline)
+  if (out.nearest_angle > kLargestBaseline && within == 0)
     out.warnings.push_back(
         "neighbouring views are far apart: photo-consistency will find little; "
         "add views or use --method hull");
+}
+
+}  // namespace
+
+Inspection inspect(const Scene& scene, const ReconstructOptions& options) {
+  Inspection out;
+  out.scene = scene;
+  out.warnings = scene.warnings;
+  out.extents = measure_extents(scene);
+  try {
+    if (scene.box) look_ahead(scene, options, out);
+  } catch (const UsageError&) {
+    throw;
+  } catch (const Error&) {
+    out.failure = std::current_exception();
+  }
+  if (!scene.box || out.failure) out.suggested_box = suggest_box(scene);
   return out;
 }
 

@@ -42,8 +42,11 @@ std::string job_identity(const ReconstructOptions& options, const Scene& scene,
        << device << '\n'
        << to_string(options.quality) << ' ' << to_string(options.effective_method()) << ' '
        << int(options.load.masks) << ' ' << to_string(options.photometric) << '\n';
+  if (options.surroundings != Surroundings::kAuto)
+    text << "surroundings " << to_string(options.surroundings) << '\n';
   if (options.keep_mask_holes) text << "mask holes\n";
   if (options.views_may_miss) text << "views may miss " << *options.views_may_miss << '\n';
+  if (options.box.exact) text << "box exact\n";
   if (options.keep_views) text << "keep views\n";
   if (options.noise) text << "noise " << *options.noise << '\n';
   if (options.mask_offset) text << "mask offset " << *options.mask_offset << '\n';

@@ -29,18 +29,18 @@ void count_cost(const ReconstructOptions& options, const Scene& scene, const Box
     Intrinsics& k = question.cameras.back().intrinsics;
     k = scaled_intrinsics(k, plan.scales[i]);
   }
-  if (with_grid)
-    plan.grid =
-        *(question.grid = carving::fit_grid(box, voxel_size_of(options, box, question.cameras)));
   question.method = options.effective_method();
   question.masks = silhouettes_of(options, scene);
+  plan.silhouettes = question.masks != Silhouettes::kNone;
+  if (with_grid)
+    plan.grid = *(question.grid = lattice_of(options, box, question.cameras, plan.silhouettes));
   plan.cost = estimate_cost(question);
 }
 
 }  // namespace
 
 double voxel_size_of(const ReconstructOptions& options, const Box& box,
-                     std::span<const Camera> cameras) {
+                     std::span<const Camera> cameras, bool silhouettes) {
   if (options.resolution) return carving::voxel_size_for(box, *options.resolution);
   const double largest = carving::voxel_size_for(box, 2);
   if (options.voxel_size) {
@@ -51,13 +51,20 @@ double voxel_size_of(const ReconstructOptions& options, const Box& box,
   }
   const double footprint = carving::pixel_footprint(box, cameras);
   if (!(footprint > 0)) throw Error("no camera has the box's centre in front of it");
-  const double size = footprint * footprint_factor(options.quality);
+  const double size = footprint * footprint_factor(options.quality, silhouettes);
   if (size > largest)
     throw Error(concat("a pixel is ", footprint,
                        " world units large at the box's centre, too much for a box whose longest "
                        "side is ",
                        2 * largest, "; check the box's units, or give --voxel-size"));
   return size;
+}
+
+GridSpec lattice_of(const ReconstructOptions& options, const Box& box,
+                    std::span<const Camera> cameras, bool silhouettes) {
+  const double size = voxel_size_of(options, box, cameras, silhouettes);
+  return options.lattice == Lattice::kFixed ? carving::fixed_grid(box, size)
+                                            : carving::fit_grid(box, size);
 }
 
 Plan plan_job(const ReconstructOptions& options, const Scene& scene, const Box& box, bool with_grid,
@@ -67,7 +74,7 @@ Plan plan_job(const ReconstructOptions& options, const Scene& scene, const Box& 
   // Voxels that follow the pixels need these as they are.
   const bool given = options.resolution || options.voxel_size;
   const double voxel =
-      given ? voxel_size_of(options, box, {}) : std::numeric_limits<double>::infinity();
+      given ? voxel_size_of(options, box, {}, true) : std::numeric_limits<double>::infinity();
   if (given && !options.image_scale) {
     plan.wanted = image_scales(box, scene.views, voxel);
     keep_unexpected_sizes(scene.views, plan.wanted);
@@ -83,6 +90,20 @@ Plan plan_job(const ReconstructOptions& options, const Scene& scene, const Box& 
     count_cost(options, scene, box, with_grid, plan);
   }
   return plan;
+}
+
+Plan plan_reading(const ReconstructOptions& options, const Scene& scene, const Box& box,
+                  bool box_known, std::int64_t limit) {
+  if (box_known) return plan_job(options, scene, box, true, limit);
+  try {
+    Plan plan = plan_job(options, scene, box, true, limit);
+    if (plan.cost.bytes > limit) count_cost(options, scene, box, false, plan);
+    return plan;
+  } catch (const UsageError&) {
+    throw;
+  } catch (const Error&) {  // the lattice; whether it is right is seen when the box is known
+    return plan_job(options, scene, box, false, limit);
+  }
 }
 
 std::string smallest_scale_text(std::span<const double> scales) {

@@ -15,14 +15,20 @@
 namespace photohull::pipeline {
 
 /// World size of the voxels: by --resolution, --voxel-size, or as the quality asks from the
-/// cameras' pixels. Throws Error and UsageError when the box bears no such voxels.
+/// cameras' pixels, with or without silhouettes. Throws Error and UsageError when the box bears no
+/// such voxels.
 double voxel_size_of(const ReconstructOptions& options, const Box& box,
-                     std::span<const Camera> cameras);
+                     std::span<const Camera> cameras, bool silhouettes);
+
+/// The voxels that the options ask for. Throws as voxel_size_of and carving::fit_grid do.
+GridSpec lattice_of(const ReconstructOptions& options, const Box& box,
+                    std::span<const Camera> cameras, bool silhouettes);
 
 struct Plan {
   std::vector<double> wanted;  ///< of each view: the scale that the voxels need, or as forced
   std::vector<double> scales;  ///< the same, or smaller ones where memory asks for them
-  GridSpec grid;               ///< where it was asked for
+  bool silhouettes = true;  ///< may there be any? They are not known before photographs are decoded
+  GridSpec grid;            ///< where it was asked for
   Cost cost;
 };
 
@@ -31,6 +37,13 @@ struct Plan {
 /// stays. Throws as voxel_size_of and carving::fit_grid do.
 Plan plan_job(const ReconstructOptions& options, const Scene& scene, const Box& box, bool with_grid,
               std::int64_t limit);
+
+/// What is planned before photographs are decoded. `box_known`: masks do not make the box smaller.
+/// Else voxels count in all of the box as long as some scale makes that fit; where none does, what
+/// silhouettes leave of the box may still fit: the smallest scales, and the cost of the photographs
+/// alone. Throws as plan_job does, but not for a lattice of a box that is not known yet.
+Plan plan_reading(const ReconstructOptions& options, const Scene& scene, const Box& box,
+                  bool box_known, std::int64_t limit);
 
 /// The smallest scale as text: "1/8".
 std::string smallest_scale_text(std::span<const double> scales);

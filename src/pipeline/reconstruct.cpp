@@ -1,41 +1,37 @@
 #include "pipeline/reconstruct.h"
 
 #include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 
 #include "assess/verdict.h"
-#include "carving/bounding.h"
 #include "carving/fit_grid.h"
 #include "carving/fit_stems.h"
-#include "carving/hull.h"
-#include "carving/photo.h"
-#include "carving/thin_parts.h"
 #include "core/error.h"
 #include "io/image_file.h"
-#include "pipeline/checks.h"
 #include "pipeline/explained_picture.h"
+#include "pipeline/hull_stage.h"
 #include "pipeline/inputs.h"
-#include "pipeline/job_identity.h"
 #include "pipeline/missing_picture.h"
+#include "pipeline/refine_stage.h"
 #include "pipeline/result_files.h"
 #include "pipeline/self_check.h"
 #include "pipeline/stage_clock.h"
 #include "pipeline/stage_weights.h"
+#include "pipeline/surroundings.h"
+#include "pipeline/sweep_stage.h"
 #include "pipeline/tuning.h"
 #include "projtex/image_set.h"
-#include "projtex/sample_images.h"
 #include "refine/dust.h"
-#include "refine/refine.h"
 #include "render/bake_colour.h"
 #include "render/choose_views.h"
 #include "render/preview.h"
 #include "volume/attributes.h"
 #include "volume/components.h"
 #include "volume/extract_mesh.h"
+#include "volume/join_meshes.h"
 #include "volume/remove_islands.h"
 #include "volume/remove_unseen.h"
 #include "volume/sharpen_edges.h"
@@ -46,25 +42,11 @@
 namespace photohull::pipeline {
 namespace {
 
-namespace fs = std::filesystem;
-
-// High quality: iterations of matching at the finest voxels, passes of fitting patches to the
-// photographs after them, and Gauss-Newton steps of each.
-constexpr int kHighIterations = 2, kHighPasses = 3, kHighSteps = 3;
-// Masks that were made from the background are wrong in places, and mostly at their rims: a part
-// comes back only when one view in so many asks for it, so many pixels within its mask.
-constexpr int kDoubtingViews = 3;
-constexpr double kDoubtfulRim = 2;
-constexpr double kLeastEvidence = 0.1;    // share of the surface below which a result is doubtful
 constexpr double kDebrisFraction = 5e-4;  // of the largest part's voxels
-constexpr int kPhotometricVoxels = 160;   // along the box, of the hull that gains are measured on
-constexpr int kCheckVoxels = 64;          // and of that on which is seen whether they differ
 constexpr double kDetail = 1.5;           // pixels: what refinement resolves, by its patches
-constexpr std::size_t kFewestThinVoxels = 32;  // a hull of fewer, all of them thin, is none
 constexpr const char* kMissingPicture = "missing.png";
 constexpr const char* kExplainedPicture = "explained.png";
 constexpr double kMoreLikelyRight = 0.5;  // confidence is the chance to be right
-constexpr double kBoxSlack = 0.5;         // voxels that the surface may stand out of the box
 
 class Job {
  public:
@@ -79,7 +61,10 @@ class Job {
 
   Report run() {
     const auto start = std::chrono::steady_clock::now();
-    clock_.run("scene", Weights::kScene, [&] { in_.load(); });
+    clock_.run("scene", Weights::kScene, [&] {
+      in_.load();
+      report_.inputs = hash_inputs(in_.scene);
+    });
     // What can fail at once does so before the photographs are decoded.
     std::vector<std::string> names = {"volume.vdb", "mesh.ply", "preview.png", "report.json"};
     if (options_.evidence)
@@ -104,30 +89,34 @@ class Job {
       in_.bear_disagreement();
       in_.widen_lines();
       in_.explain_foreground();
-      return refining ? SparseVolume() : carve_hull();
+      hull_ = std::make_unique<HullStage>(options_, in_, *context_, report_);
+      return refining ? SparseVolume() : hull_->carve_alone();
     });
     // Before colours are compared, where silhouettes give a surface.
     const bool photometric = options_.photometric != Photometric::kOff;
     const bool on_hull = photometric && in_.any_mask();
     if (on_hull)
-      clock_.run("photometric", Weights::kPhotometric, [&] { correct_photometric_on_hull(); });
+      clock_.run("photometric", Weights::kPhotometric,
+                 [&] { hull_->correct_photometric(progress_); });
     // The other samplers weight by the masks, and lines get their width from them.
-    if (!refining && sampler() == projtex::Sampler::kMipmap) in_.forget_masks();
+    if (!refining && sampler_of(options_) == projtex::Sampler::kMipmap) in_.forget_masks();
     context_->release_deleted();
     images_ = clock_.run("images", Weights::kImages,
                          [&] { return std::make_unique<projtex::ImageSet>(in_.views); });
     if (refining)
       volume = clock_.run("refine", Weights::kRefine, [&] { return refine(); });
     else if (options_.effective_method() != Method::kHull)
-      volume = clock_.run("photo", Weights::kPhoto, [&] { return carve_photo(volume); });
+      volume = clock_.run("photo", Weights::kPhoto, [&] { return sweep(volume); });
     clock_.run("clean", Weights::kClean, [&] { remove_dust(volume); });
     TriMesh mesh = clock_.run("mesh", Weights::kMesh, [&] { return extract(volume); });
     if (photometric && !on_hull)
       clock_.run("photometric", Weights::kPhotometric, [&] {
         if (options_.photometric == Photometric::kAuto &&
-            photographs_are_alike(mesh, in_.grid.voxel_size))
+            photographs_are_alike(mesh, in_.grid.voxel_size, in_, report_, progress_))
           return;
-        if (!correct_photometric(mesh, in_.grid.voxel_size)) return;
+        if (!correct_photometric(options_.photometric, mesh, in_.grid.voxel_size, in_, report_,
+                                 progress_))
+          return;
         images_.reset();
         context_->release_deleted();
         images_ = std::make_unique<projtex::ImageSet>(in_.views);
@@ -136,12 +125,16 @@ class Job {
       colour(mesh, files);
       return attributes_from_mesh(volume, mesh);
     });
-    images_.reset();
-    context_->release_deleted();
     // What silhouettes bound is judged by them as a whole; else what is delivered is.
     if (is_open() && !bounded_) open_unseen(mesh);
+    if (in_.has_surroundings() && !bounded_)
+      clock_.run("surroundings", Weights::kSurroundings, [&] { surround(mesh); });
+    images_.reset();
+    context_->release_deleted();
     clock_.run("verdict", Weights::kVerdict, [&] { judge(mesh, files); });
     if (is_open() && bounded_) open_unseen(mesh);
+    append_mesh(around_.mesh, mesh);
+    around_ = {};
     report_.uniform_triangles = std::int64_t(mesh.triangles.size());
     if (options_.mesh_error.value > 0)
       clock_.run("simplify", Weights::kSimplify, [&] { simplify(mesh); });
@@ -156,208 +149,34 @@ class Job {
     files.open("report.json").write(report.data(), report.size());
     progress_.check_cancelled();
     files.commit();
-    if (refining) remove_checkpoint();
+    if (refining) refine_->remove_checkpoint();
     return report_;
   }
 
  private:
-  void correct_photometric_on_hull() {
-    const auto hull_of = [&](int voxels, auto&& work) {
-      const double coarse = carving::voxel_size_for(*in_.scene.box, voxels);
-      const GridSpec grid =
-          carving::fit_grid(*in_.scene.box, std::max(coarse, in_.grid.voxel_size));
-      return work(extract_mesh(hull_at(grid)), grid.voxel_size);
-    };
-    const auto alike = [&](const TriMesh& mesh, double voxel_size) {
-      return photographs_are_alike(mesh, voxel_size);
-    };
-    if (options_.photometric == Photometric::kAuto && hull_of(kCheckVoxels, alike)) return;
-    hull_of(kPhotometricVoxels, [&](const TriMesh& mesh, double voxel_size) {
-      return correct_photometric(mesh, voxel_size);
-    });
-  }
-
-  /// A quick look before gains are solved for.
-  bool photographs_are_alike(const TriMesh& mesh, double voxel_size) {
-    const auto alike =
-        find_alike(in_.scene, mesh, voxel_size, report_.noise_sigma, in_.views, progress_);
-    if (!alike) return false;
-    report_.photometric = alike->json;
-    report_.photometric_line = alike->line;
-    return true;
-  }
-
-  /// Whether the views' pixels changed.
-  bool correct_photometric(const TriMesh& mesh, double voxel_size) {
-    const PhotometricOutcome found =
-        pipeline::correct_photometric(options_.photometric, in_.scene, mesh, voxel_size,
-                                      report_.noise_sigma, in_.views, progress_);
-    report_.photometric = found.json;
-    report_.photometric_line = found.line;
-    if (!found.warning.empty()) in_.warn(found.warning);
-    return found.used;
-  }
-
   void open_device() {
     context_ = gpu::Context::create(options_.device, options_.threads);
     report_.device = context_->device().renderer;
   }
 
-  SparseVolume hull_at(const GridSpec& grid) {
-    const std::vector<carving::Silhouette> silhouettes = in_.silhouettes_of_views();
-    carving::HullOptions hull_options;
-    hull_options.min_views = in_.any_mask() ? 1 : 2;
-    hull_options.views_may_miss = options_.views_may_miss.value_or(0);
-    hull_options.full_evidence = in_.full_evidence;
-    // Where hardly more views see a point than may leave it out, nothing would be known of it.
-    if (hull_options.views_may_miss > 0)
-      hull_options.min_views =
-          std::min(hull_options.views_may_miss + 2, std::max(int(in_.cameras.size()), 1));
-    Box box = *in_.scene.box;
-    box.min -= kBoxSlack * grid.voxel_size;
-    box.max += kBoxSlack * grid.voxel_size;
-    carving::HullReport counts;
-    Progress silent;
-    SparseVolume volume = carving::carve_silhouette(*context_, grid, box, in_.cameras, silhouettes,
-                                                    hull_options, silent, &counts);
-    const std::size_t thin =
-        carving::keep_thin_parts(volume, box, in_.cameras, silhouettes, hull_options);
-    const std::size_t inside = volume.inside_voxels();
-    const bool specks = grid.voxel_size == in_.grid.voxel_size && inside == thin &&
-                        thin < kFewestThinVoxels;  // coarse grids may hold no more of it
-    if (inside == 0 || specks)
-      throw Error(explain_empty_hull(*in_.scene.box, in_.views, silhouettes, grid.voxel_size));
-    report_.nodes_tested += counts.nodes_tested;
-    report_.bricks_evaluated += counts.bricks_evaluated;
-    hull_samples_ += counts.samples;
-    return volume;
-  }
-
   SparseVolume refine() {
-    refine::RefineOptions o;
-    o.noise_sigma = report_.noise_sigma;
-    if (options_.quality == Quality::kHigh) {
-      o.fine_iterations = kHighIterations;
-      o.photometric = kHighPasses;
-      o.fit.steps = kHighSteps;
-    }
-    if (report_.mask_confidence < 1) {
-      o.restore.least_views =
-          std::max(o.restore.least_views, int(in_.cameras.size()) / kDoubtingViews);
-      o.restore.least_inside = kDoubtfulRim;
-    }
-    tune(options_.tune, o, sharpen_);
-    o.bounded = bounded_ = find_bounded();
-    const refine::CheckpointFile checkpoint{
-        checkpoint_path(), job_identity(options_, in_.scene, in_.grid, report_.device)};
-    if (options_.fresh) remove_checkpoint();
-    refine::RefineReport counts;
-    SparseVolume volume = refine::refine_surface(
-        *context_, in_.grid, [&](const GridSpec& grid) { return hull_at(grid); },
-        in_.silhouettes_of_views(), *images_, in_.cameras, o, progress_, &counts, &checkpoint);
-    report_.resumed_levels = counts.resumed;
-    for (const refine::FitReport& fit : counts.fits)
-      report_.refine_fits.push_back(
-          {fit.seconds, fit.held_before, fit.held_after, fit.mean_move, fit.kept});
-    for (const refine::LevelReport& level : counts.levels) {
-      report_.refine_levels.push_back({level.voxel_size, level.seconds, level.surfels,
-                                       level.samples, level.bricks, level.restored, level.freed,
-                                       level.split, level.settled_pixels, level.settled_plain,
-                                       level.settled_flat, level.mean_move, level.evidence});
-      refine_samples_ += level.samples;
-    }
-    if (volume.inside_voxels() == 0 && !in_.any_mask())
-      throw Error(
-          "no surface was found: without masks the photographs must show texture that several of "
-          "them agree on; give masks (--masks), more views, or check the cameras (photohull info)");
-    if (volume.inside_voxels() == 0)
-      throw Error(
-          "refinement left nothing: the photographs disagree everywhere; check the cameras "
-          "(photohull info) or use --method hull");
-    const double evidence = counts.levels.back().evidence;
-    if (evidence < kLeastEvidence)
+    refine_ = std::make_unique<RefineStage>(options_, in_, *context_, report_, progress_);
+    bounded_ = hull_->bounded();
+    if (bounded_ && options_.surroundings == Surroundings::kOn)
       in_.warn(
-          concat("the photographs tell where the surface is on ", std::lround(100 * evidence),
-                 " % of it only (too little texture, or too few cameras that see the same): the "
-                 "rest is the hull's guess"));
-    return volume;
+          "--surroundings on: silhouettes bound the object, and what surrounds it is in none of "
+          "them; it is left out (--masks none reconstructs without silhouettes)");
+    return refine_->run(*hull_, *images_, bounded_);
   }
 
-  /// Do silhouettes bound what is to be found?
-  bool find_bounded() {
-    if (!in_.any_mask()) return false;
-    GridSpec grid = in_.grid;
-    const auto longest = [](const glm::ivec3& n) { return std::max({n.x, n.y, n.z}); };
-    while (longest(grid.voxels()) > refine::RefineOptions::kCoarsestVoxels)
-      grid = carving::coarser(grid);
-    const bool bounded =
-        carving::silhouettes_bound(hull_at(grid), *in_.scene.box, in_.silhouettes_of_views());
-    if (!bounded)
-      in_.warn(
-          "the masks do not bound the object (fewer than half of the views have one, or the box "
-          "cuts "
-          "off most of what they show): what no photograph tells of is left open, as without "
-          "masks");
-    return bounded;
+  SparseVolume sweep(const SparseVolume& hull) {
+    return sweep_hull(options_, hull, *images_, in_, *context_, report_, progress_, photo_samples_);
   }
 
-  fs::path checkpoint_path() const { return options_.output / ".photohull-checkpoint"; }
-
-  void remove_checkpoint() const {
-    std::error_code ignored;  // what cannot be removed belongs to another job, or to this one anew
-    fs::remove(checkpoint_path(), ignored);
-  }
-
-  SparseVolume carve_hull() {
-    if (!in_.any_mask() && options_.effective_method() == Method::kHull)
-      in_.warn(
-          "without masks the hull is the box clipped by the frusta: give masks or use "
-          "--method refine");
-    return hull_at(in_.grid);
-  }
-
-  SparseVolume carve_photo(const SparseVolume& hull) {
-    carving::PhotoOptions photo;
-    photo.method = options_.effective_method() == Method::kVoxelColoring
-                       ? carving::PhotoMethod::kVoxelColoring
-                       : carving::PhotoMethod::kSpaceCarving;
-    photo.noise_sigma = report_.noise_sigma;
-    photo.supersample = options_.supersample.value_or(photo.supersample);
-    photo.search_radius = options_.r_consistency.value_or(photo.search_radius);
-    photo.statistic = options_.consistency.value_or(photo.statistic);
-    photo.visibility = options_.visibility.value_or(photo.visibility);
-    tune(options_.tune, photo);
-    carving::PhotoReport counts;
-    SparseVolume volume = sweep(hull, photo, counts);
-    report_.sweeps = counts.sweeps;
-    report_.voxels_judged = counts.judged;
-    report_.voxels_carved = counts.carved;
-    report_.voxels_undecided = counts.undecided + counts.reverted;
-    photo_samples_ = counts.samples;
-    if (volume.inside_voxels() == 0)
-      throw Error(
-          "photo-consistency carved everything away: the photographs disagree everywhere; "
-          "check the cameras (photohull info) or use --method hull");
-    if (counts.judged == 0)
-      in_.warn("no voxel was seen by enough cameras to be judged: the result is the hull");
-    else if (report_.voxels_undecided >= counts.judged)
-      in_.warn(
-          "the photographs show too little texture to decide on any voxel: the result is the hull");
-    return volume;
-  }
-
-  projtex::Sampler sampler() const { return options_.sampler.value_or(projtex::kDefaultSampler); }
-
-  SparseVolume sweep(const SparseVolume& hull, const carving::PhotoOptions& photo,
-                     carving::PhotoReport& counts) {
-    report_.sampling = {projtex::to_string(sampler()), photo.supersample,
-                        carving::to_string(photo.statistic),
-                        visibility::to_string(photo.visibility), photo.search_radius};
-    if (sampler() == projtex::Sampler::kMipmap)
-      return carving::carve_photo(*context_, hull, *images_, in_.cameras, photo, progress_,
-                                  &counts);
-    const projtex::SampleImages images(in_.views, sampler());
-    return carving::carve_photo(*context_, hull, images, in_.cameras, photo, progress_, &counts);
+  void surround(const TriMesh& mesh) {
+    around_ = make_surroundings(
+        {options_, in_, *context_, *hull_, *refine_, *images_, report_, progress_}, mesh,
+        is_open());
   }
 
   /// Small pieces go, but for those that masks ask for.
@@ -373,7 +192,7 @@ class Job {
     if (options_.effective_method() == Method::kRefine) {
       const double detail = kDetail * carving::pixel_footprint(*in_.scene.box, in_.cameras);
       report_.sharpened_vertices = std::int64_t(sharpen_edges(
-          sharpen_, in_.grid.voxel_size, std::max(detail, in_.grid.voxel_size), mesh));
+          refine_->sharpen(), in_.grid.voxel_size, std::max(detail, in_.grid.voxel_size), mesh));
     }
     fit_stems(mesh);
     context_->release_deleted();  // stages to come need large pieces, and this one left small ones
@@ -425,6 +244,8 @@ class Job {
   void judge(const TriMesh& mesh, ResultFiles& files) {
     const CheckedResult result{.mesh = &mesh,
                                .box = &*in_.scene.box,
+                               .around = &around_.mesh,
+                               .around_box = &around_.box,
                                .voxel_size = in_.grid.voxel_size,
                                .hull = options_.effective_method() == Method::kHull,
                                .bounded = bounded_,
@@ -517,18 +338,19 @@ class Job {
     io::write_png(files.open("preview.png"), preview.width, preview.height, 3, preview.rgb);
   }
 
+  /// Without what changes no byte of the result.
   std::string option_line() const {
     std::string line;
     for (const auto& [name, value] : report_.options)
-      line += (line.empty() ? "" : " ") + name + "=" + value;
+      if (name != "threads") line += (line.empty() ? "" : " ") + name + "=" + value;
     return line;
   }
 
   void finish(const SparseVolume& volume, const TriMesh& mesh, double wall_seconds) {
     for (StageReport& stage : report_.stages) {
-      if (stage.name == "hull") stage.samples = hull_samples_;
+      if (stage.name == "hull") stage.samples = hull_->samples();
       if (stage.name == "photo") stage.samples = photo_samples_;
-      if (stage.name == "refine") stage.samples = refine_samples_;
+      if (stage.name == "refine") stage.samples = refine_->samples();
     }
     report_.voxels_kept = std::int64_t(volume.inside_voxels());
     report_.bricks_stored = std::int64_t(volume.bricks.size());
@@ -547,10 +369,12 @@ class Job {
   Inputs in_;
   std::unique_ptr<gpu::Context> context_;
   std::unique_ptr<projtex::ImageSet> images_;
-  SharpenOptions sharpen_;
+  std::unique_ptr<HullStage> hull_;
+  std::unique_ptr<RefineStage> refine_;
+  Around around_;
   bool bounded_ = false;               // do silhouettes bound the space that they leave?
   std::vector<float> views_that_see_;  ///< of the mesh's vertices
-  std::int64_t hull_samples_ = 0, photo_samples_ = 0, refine_samples_ = 0;
+  std::int64_t photo_samples_ = 0;
 };
 
 }  // namespace

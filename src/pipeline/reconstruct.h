@@ -28,9 +28,18 @@ enum class Method { kHull, kVoxelColoring, kSpaceCarving, kRefine };
 /// closed where there are silhouettes.
 enum class Unseen { kAuto, kOpen, kClosed };
 
+/// Where voxels lie: centred on the box, or from its lower corner on (carving/fit_grid.h), which is
+/// the same for every scene with that box and voxels of that size.
+enum class Lattice { kFit, kFixed };
+/// Whether what surrounds the box is reconstructed too, on coarser grids. Auto does so where the
+/// box was found (not given) and fewer than half of the views have silhouettes.
+enum class Surroundings { kAuto, kOn, kOff };
+
 const char* to_string(Quality quality);
 const char* to_string(Method method);
 const char* to_string(Unseen unseen);
+const char* to_string(Lattice lattice);
+const char* to_string(Surroundings surroundings);
 
 /// How far mesh.ply may be from the uniform mesh; 0 keeps the uniform one.
 struct MeshError {
@@ -54,6 +63,8 @@ struct ReconstructOptions {
   BoxOptions box;
   std::optional<int> resolution;     ///< voxels along the box's longest side, >= 2
   std::optional<double> voxel_size;  ///< world units, > 0; excludes `resolution`
+  /// kFixed needs one of the two, and a box that the scene or the user gives.
+  Lattice lattice = Lattice::kFit;
   Quality quality = Quality::kNormal;
   std::optional<Method> method;  ///< default: hull for draft, refine otherwise
   /// Default: off for draft; else kAuto where masks' outlines disagree (calib/refine_cameras.h).
@@ -72,6 +83,7 @@ struct ReconstructOptions {
   bool keep_views = false;  ///< use views that disagree with the others too
   MeshError mesh_error;
   Unseen unseen = Unseen::kAuto;
+  Surroundings surroundings = Surroundings::kOff;  ///< on: --method refine only
   /// How the sweep resamples photographs and what decides there; voxel coloring and space carving
   /// only.
   std::optional<projtex::Sampler> sampler;
@@ -92,6 +104,8 @@ struct ReconstructOptions {
   /// Throws UsageError naming the option.
   void validate() const;
   Method effective_method() const;
+  /// Does the box stay as it is, however much larger than the object it may be?
+  bool box_stands() const { return box.exact || lattice == Lattice::kFixed; }
 };
 
 using NamedValues = std::vector<std::pair<std::string, std::string>>;
@@ -99,8 +113,10 @@ using NamedValues = std::vector<std::pair<std::string, std::string>>;
 /// The options as they take effect, but for scene and output.
 NamedValues named_options(const ReconstructOptions& options);
 
-/// Voxel size in pixels' footprints when neither resolution nor voxel size is given.
-double footprint_factor(Quality quality);
+/// Voxel size in pixels' footprints when neither resolution nor voxel size is given. Outlines are
+/// known to a part of a pixel; without silhouettes depths of patches are all there is, which
+/// smaller voxels make no better.
+double footprint_factor(Quality quality, bool silhouettes);
 
 /// Sum of the weights of the stages that this job will announce to its Progress.
 double total_weight(const ReconstructOptions& options);

@@ -115,6 +115,20 @@ const char* to_string(Unseen unseen) {
   return "?";
 }
 
+const char* to_string(Lattice lattice) { return lattice == Lattice::kFixed ? "fixed" : "fit"; }
+
+const char* to_string(Surroundings surroundings) {
+  switch (surroundings) {
+    case Surroundings::kAuto:
+      return "auto";
+    case Surroundings::kOn:
+      return "on";
+    case Surroundings::kOff:
+      return "off";
+  }
+  return "?";
+}
+
 MeshError parse_mesh_error(const std::string& text) {
   MeshError error;
   char* end = nullptr;
@@ -151,14 +165,14 @@ std::optional<double> parse_mask_offset(const std::string& text) {
   return value;
 }
 
-double footprint_factor(Quality quality) {
+double footprint_factor(Quality quality, bool silhouettes) {
   switch (quality) {
     case Quality::kDraft:
       return 4.0;
     case Quality::kNormal:
-      return 1.5;
+      return silhouettes ? 1.5 : 2.0;
     case Quality::kHigh:
-      return 1.25;
+      return silhouettes ? 1.25 : 1.5;
   }
   return 1.5;
 }
@@ -177,6 +191,15 @@ void ReconstructOptions::validate() const {
     throw UsageError(concat("--resolution ", *resolution, ": at least 2"));
   if (voxel_size && !(std::isfinite(*voxel_size) && *voxel_size > 0))
     throw UsageError(concat("--voxel-size ", *voxel_size, ": must be finite and positive"));
+  if (lattice == Lattice::kFixed && !resolution && !voxel_size)
+    throw UsageError(
+        "--lattice fixed: give --voxel-size or --resolution, for the voxels of --quality follow "
+        "the "
+        "photographs");
+  if (lattice == Lattice::kFixed && box.find)
+    throw UsageError(
+        "--lattice fixed: --box auto follows the photographs; give the box's corners, or leave "
+        "--box out where the scene has one");
   if (!(std::isfinite(mesh_error.value) && mesh_error.value >= 0))
     throw UsageError(concat("--mesh-error ", mesh_error.value, ": must be finite, 0 or more"));
   if (noise && !(*noise >= 0 && *noise <= kMostNoise))
@@ -186,6 +209,9 @@ void ReconstructOptions::validate() const {
   if (max_memory && *max_memory < 1)
     throw UsageError(concat("--max-memory ", *max_memory, ": expected a positive size"));
   if (threads < 0) throw UsageError(concat("--threads ", threads, ": 0 (one a core) or more"));
+  if (surroundings == Surroundings::kOn && effective_method() != Method::kRefine)
+    throw UsageError(concat("--surroundings on: --method ", to_string(effective_method()),
+                            " has none; they are made by --method refine"));
   check_sweep_options(*this);
   check_tuning(tune, effective_method());
 }
@@ -205,12 +231,15 @@ NamedValues named_options(const ReconstructOptions& options) {
   if (!options.load.hold_out.empty()) list.emplace_back("hold_out", options.load.hold_out);
   if (options.box.find) list.emplace_back("box", "auto");
   if (options.box.scale != 1) list.emplace_back("box_scale", number(options.box.scale));
+  if (options.box.exact) list.emplace_back("box_exact", "true");
+  if (options.lattice != Lattice::kFit) list.emplace_back("lattice", to_string(options.lattice));
   if (options.refine_cameras)
     list.emplace_back("refine_cameras", to_string(*options.refine_cameras));
   list.emplace_back("photometric", to_string(options.photometric));
   list.emplace_back("mesh_error",
                     number(options.mesh_error.value) + (options.mesh_error.world_units ? "u" : ""));
   list.emplace_back("unseen", to_string(options.unseen));
+  list.emplace_back("surroundings", to_string(options.surroundings));
   list.emplace_back("masks", mask_option(options.load));
   list.emplace_back("mask_offset", options.mask_offset ? number(*options.mask_offset) : "auto");
   list.emplace_back("views_may_miss",

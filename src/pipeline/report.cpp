@@ -27,6 +27,12 @@ std::string Report::to_json() const {
   for (const LeftOutView& v : photographs_left_out)
     j["photographs"]["left_out"].push_back(
         {{"name", v.name}, {"reason", to_string(v.reason)}, {"detail", v.detail}});
+  j["inputs"] = ordered_json::array();
+  for (const InputFile& f : inputs)
+    j["inputs"].push_back({{"kind", f.kind},
+                           {"path", f.path.string()},
+                           {"bytes", f.bytes},
+                           {"xxh3_128", f.xxh3_128}});
   j["device"] = device;
   for (const auto& [name, value] : options) j["options"][name] = value;
   j["box"] = {
@@ -113,6 +119,14 @@ std::string Report::to_json() const {
                {"unseen_share", unseen_share},
                {"islands_removed", islands},
                {"islands_area_share", islands_area_share}};
+  j["surroundings"] = ordered_json::array();
+  for (const ShellReport& shell : surroundings)
+    j["surroundings"].push_back(
+        {{"box", {{"min", to_json_array(shell.box.min)}, {"max", to_json_array(shell.box.max)}}},
+         {"voxel_size", shell.voxel_size},
+         {"voxels", to_json_array(shell.voxels)},
+         {"triangles", shell.triangles},
+         {"area_share", shell.area_share}});
   if (mesh_error)
     j["mesh"]["error_voxels"] = {{"limit", mesh_error->limit},
                                  {"mean", mesh_error->mean},

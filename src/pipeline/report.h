@@ -12,6 +12,7 @@
 #include "core/box.h"
 #include "core/grid.h"
 #include "core/scene.h"
+#include "pipeline/input_hashes.h"
 
 namespace photohull::pipeline {
 
@@ -52,6 +53,15 @@ struct MeshErrorReport {
   double mean = 0, p95 = 0, p999 = 0, max = 0;
 };
 
+/// A coarser grid around the box (pipeline/surroundings.h).
+struct ShellReport {
+  Box box;
+  double voxel_size = 0;  ///< world units
+  glm::ivec3 voxels{0};
+  std::int64_t triangles = 0;  ///< before simplification
+  double area_share = 0;       ///< of the whole mesh's area, [0, 1]
+};
+
 /// How the plane sweep looked at the photographs.
 struct SamplingReport {
   std::string sampler;
@@ -88,6 +98,7 @@ struct MaskReport {
 struct Report {
   std::string version;
   std::string scene, format, device;
+  std::vector<InputFile> inputs;
   std::vector<std::pair<std::string, std::string>> options;
   int views = 0;
   int photographs_listed = 0;                     ///< by the scene's file
@@ -133,6 +144,7 @@ struct Report {
   std::int64_t uniform_triangles = 0;   ///< before simplification
   std::int64_t sharpened_vertices = 0;  ///< moved onto sharp edges, or onto what meets there
   std::optional<MeshErrorReport> mesh_error;
+  std::vector<ShellReport> surroundings;  ///< the innermost first; empty: none were made
   std::int64_t islands = 0;       ///< pieces of the open mesh that too few photographs support
   double islands_area_share = 0;  ///< of the open mesh's area, that went with them
   double unseen_share = 0;        ///< of the mesh's vertices

@@ -16,6 +16,7 @@ ResultFiles::ResultFiles(fs::path folder, std::vector<std::string> names)
         concat("--out ", folder_.string(), ": cannot make this folder (",
                fs::exists(folder_, ignored) ? "a file of that name exists" : error.message(),
                "); choose another one"));
+  lock_.emplace(folder_, "--out");
   for (const std::string& name : names_) AtomicFile probe(folder_ / name);
 }
 

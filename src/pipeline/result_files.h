@@ -3,10 +3,12 @@
 
 #include <filesystem>
 #include <list>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/atomic_file.h"
+#include "core/folder_lock.h"
 
 namespace photohull::pipeline {
 
@@ -16,8 +18,9 @@ namespace photohull::pipeline {
 /// older one goes before the first name is taken, and the new one comes last.
 class ResultFiles {
  public:
-  /// Makes the folder where it does not exist. Throws Error when that fails or when one of `names`
-  /// could not be written there: better now than after the work.
+  /// Makes the folder where it does not exist, and holds it. Throws Error when that fails, when
+  /// another job is at work there, or when one of `names` could not be written there: better now
+  /// than after the work.
   ResultFiles(std::filesystem::path folder, std::vector<std::string> names);
 
   /// A new file to write to; `name` is one of the names.
@@ -30,6 +33,7 @@ class ResultFiles {
  private:
   std::filesystem::path folder_;
   std::vector<std::string> names_;
+  std::optional<FolderLock> lock_;
   std::list<AtomicFile> files_;
 };
 

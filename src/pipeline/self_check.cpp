@@ -11,6 +11,7 @@
 #include "calib/silhouette.h"
 #include "carving/fit_grid.h"
 #include "raycast/ray_scene.h"
+#include "volume/join_meshes.h"
 
 namespace photohull::pipeline {
 namespace {
@@ -54,10 +55,22 @@ std::vector<assess::SilhouetteFit> compare_silhouettes(const CheckedResult& resu
   int known = 0;
   for (const assess::SilhouetteFit& fit : fits) {
     known += fit.foreground > 0;
-    s.missed += fit.missed, s.excess += fit.excess;
+    s.missed += fit.missed, s.excess += fit.excess, s.beyond_box += fit.beyond_box;
+    s.missed_width += fit.missed * fit.missed_width;
   }
-  if (known > 0) s.missed /= known, s.excess /= known;
+  if (s.missed > 0) s.missed_width /= s.missed;
+  if (known > 0) s.missed /= known, s.excess /= known, s.beyond_box /= known;
   return fits;
+}
+
+/// The photographs by all that was made, its surroundings too.
+assess::Explained explain(const CheckedResult& result, const RayScene& rays,
+                          const assess::ExplainOptions& options) {
+  if (!result.around || result.around->triangles.empty())
+    return assess::explain_photographs(*result.mesh, rays, *result.box, result.views, options);
+  TriMesh all = *result.mesh;
+  append_mesh(*result.around, all);
+  return assess::explain_photographs(all, RayScene(all), *result.around_box, result.views, options);
 }
 
 }  // namespace
@@ -82,6 +95,9 @@ assess::Signals gather_signals(const CheckedResult& result,
   s.hull = result.hull;
   s.stems = result.stems;
   s.pixel_size = carving::pixel_footprint(*result.box, cameras);
+  s.voxel_size = result.voxel_size;
+  const glm::dvec3 box = result.box->size();
+  s.resolution = int(std::lround(std::max({box.x, box.y, box.z}) / result.voxel_size));
   s.far = kFar * diagonal(mesh);
   s.cameras_moved = result.cameras_moved;
   s.cameras_moved_alike = result.cameras_moved_alike;
@@ -103,8 +119,7 @@ assess::Signals gather_signals(const CheckedResult& result,
   }
   const double noise = 255 * result.noise_sigma;  // square roots are close to sRGB
   if (!s.masks && !s.hull && s.pixel_size > 0)
-    s.explained = assess::explain_photographs(mesh, rays, *result.box, result.views,
-                                              {result.voxel_size, s.pixel_size, noise});
+    s.explained = explain(result, rays, {result.voxel_size, s.pixel_size, noise});
   assess::MatchOptions options;
   options.near = result.voxel_size;
   options.far = s.far;
@@ -144,6 +159,7 @@ std::string to_json(const assess::Verdict& verdict, const assess::Signals& s,
   ordered_json j = {{"level", assess::to_string(verdict.level)},
                     {"reasons", verdict.reasons},
                     {"notes", verdict.notes},
+                    {"coverage", verdict.coverage},
                     {"signals",
                      {{"mean_confidence", s.mean_confidence},
                       {"unsure", s.unsure},
@@ -153,7 +169,9 @@ std::string to_json(const assess::Verdict& verdict, const assess::Signals& s,
                       {"stems", s.stems},
                       {"silhouettes_contradict", s.contradiction},
                       {"silhouettes_missed", s.missed},
+                      {"silhouettes_missed_width", s.missed_width},
                       {"silhouettes_excess", s.excess},
+                      {"silhouettes_beyond_box", s.beyond_box},
                       {"pairs_seen", s.match.seen},
                       {"textured", s.match.textured},
                       {"matched", s.match.matched},

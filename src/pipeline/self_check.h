@@ -18,9 +18,11 @@ namespace photohull::pipeline {
 struct CheckedResult {
   const TriMesh* mesh = nullptr;
   const Box* box = nullptr;
-  double voxel_size = 0;  ///< world units
-  bool hull = false;      ///< made by silhouettes alone
-  bool bounded = false;   ///< do silhouettes bound it, so that it is judged by them?
+  const TriMesh* around = nullptr;  ///< what surrounds the box, if that was made
+  const Box* around_box = nullptr;  ///< and how far
+  double voxel_size = 0;            ///< world units
+  bool hull = false;                ///< made by silhouettes alone
+  bool bounded = false;             ///< do silhouettes bound it, so that it is judged by them?
   std::span<const View> views;
   std::span<const SilhouetteDistance> silhouettes;
   std::span<const Mask> widened;  ///< that `silhouettes` are of, where they are not the views' own

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/viewing_depth.h"
+
 namespace photohull::projtex {
 
 GridCamera to_grid(const Camera& camera, const GridSpec& grid) {
@@ -17,6 +19,11 @@ GridCamera to_grid(const Camera& camera, const GridSpec& grid) {
   out.width = k.width;
   out.height = k.height;
   return out;
+}
+
+double viewing_depth(const GridCamera& camera, const GridSpec& grid) {
+  return photohull::viewing_depth(camera.projection, camera.centre, camera.width, camera.height,
+                                  Box{glm::dvec3(0), glm::dvec3(grid.voxels() - 1)});
 }
 
 shaders::GpuView to_gpu_view(const GridCamera& camera, const glm::ivec2& array_size,

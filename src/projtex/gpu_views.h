@@ -21,6 +21,9 @@ struct GridCamera {
 
 GridCamera to_grid(const Camera& camera, const GridSpec& grid);
 
+/// Of the grid's box, in voxels (core/viewing_depth.h).
+double viewing_depth(const GridCamera& camera, const GridSpec& grid);
+
 /// The same in single precision for images that sit at the origin of layers of an array texture of
 /// `array_size` pixels. `sharpness` as ImageSet has it, in (0, 1].
 shaders::GpuView to_gpu_view(const GridCamera& camera, const glm::ivec2& array_size,

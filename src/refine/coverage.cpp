@@ -9,6 +9,7 @@ namespace photohull::refine {
 namespace {
 
 constexpr double kBefore = 3;  // voxels between a point and what it would hide
+constexpr std::size_t kVoxels = std::size_t(1) << 20;  // drawn at once
 
 }  // namespace
 
@@ -17,15 +18,19 @@ Coverage::Coverage(gpu::Context& context, const GridSpec& grid, std::span<const 
                    std::span<const carving::Silhouette> silhouettes)
     : silhouettes_(silhouettes) {
   for (const Camera& camera : cameras) cameras_.push_back(projtex::to_grid(camera, grid));
-  std::vector<glm::ivec4> list{glm::ivec4(int(voxels.size()), 0, 0, 0)};
-  for (const glm::ivec3& voxel : voxels) list.emplace_back(voxel, 0);
   visibility::DepthMaps maps(cameras_, grid);
   std::vector<shaders::GpuView> views;
   for (const auto& camera : cameras_)
     views.push_back(projtex::to_gpu_view(camera, glm::ivec2(camera.width, camera.height)));
   const gpu::Buffer view_buffer = gpu::Buffer::of(views);
   view_buffer.bind_storage(0);
-  maps.splat(context, gpu::Buffer::of(list), voxels.size());
+  const std::size_t batch = gpu::batch_size(sizeof(glm::ivec4), kVoxels);
+  for (std::size_t first = 0; first < voxels.size(); first += batch) {
+    const auto part = voxels.subspan(first, std::min(batch, voxels.size() - first));
+    std::vector<glm::ivec4> list{glm::ivec4(int(part.size()), 0, 0, 0)};
+    for (const glm::ivec3& voxel : part) list.emplace_back(voxel, 0);
+    maps.splat(context, gpu::Buffer::of(list), part.size());
+  }
   infos_ = maps.infos();
   for (std::size_t v = 0; v < cameras_.size(); ++v) depths_.push_back(maps.download(v));
 }

@@ -161,9 +161,10 @@ std::vector<shaders::FitResult> fit_patches(gpu::Context& context, const GridSpe
     out[i] = {glm::vec4(mesh.normals[i], 0),
               glm::vec4(0, shaders::kNoScore, shaders::kNoScore, shaders::kNoScore)};
   const std::vector<std::uint32_t> fitted = comparable(choices);
-  for (std::size_t first = 0; first < fitted.size(); first += kBatch) {
+  const std::size_t batch = gpu::batch_size(sizeof(shaders::MatchChoice), kBatch);
+  for (std::size_t first = 0; first < fitted.size(); first += batch) {
     const auto part = std::span<const std::uint32_t>(fitted).subspan(
-        first, std::min(kBatch, fitted.size() - first));
+        first, std::min(batch, fitted.size() - first));
     parameters.counts.x = int(part.size());
     const Buffer uniforms(sizeof parameters, &parameters);
     std::vector<shaders::BakeVertex> surfels;

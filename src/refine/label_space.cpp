@@ -17,7 +17,7 @@ using gpu::Buffer;
 
 // Both steps' rates: their product times the squared norm of the gradient, 12, is at most 1.
 constexpr float kRate = 0.288f;
-constexpr std::size_t kGroup = 64, kMostGroups = 32768;  // along a dispatch's x axis
+constexpr std::size_t kGroup = 64;  // threads
 
 }  // namespace
 
@@ -60,10 +60,9 @@ std::vector<float> label_space(gpu::Context& context, std::span<const glm::ivec3
   labels.bind_storage(2);
   flow.bind_storage(3);
   const std::size_t groups = gpu::group_count(evidence.size(), kGroup);
-  const std::size_t along = std::min(groups, kMostGroups);
   for (int i = 0; i < iterations; ++i) {
-    dual->dispatch(context, "refine_label_dual", along, gpu::group_count(groups, along));
-    primal->dispatch(context, "refine_label_primal", along, gpu::group_count(groups, along));
+    dual->dispatch(context, "refine_label_dual", groups);
+    primal->dispatch(context, "refine_label_primal", groups);
   }
   const auto found = labels.download<glm::vec2>(evidence.size());
   std::vector<float> out(found.size());

@@ -19,10 +19,9 @@ namespace {
 using gpu::Buffer;
 
 constexpr double kRadians = 0.017453292519943295;
-constexpr std::size_t kBatch = std::size_t(1) << 18;  // surfels on the device at once
-constexpr std::size_t kMostThreads = std::size_t(1)
-                                     << 21;            // of a dispatch: within every device's limit
-constexpr std::size_t kPoints = std::size_t(1) << 20;  // drawn at once
+constexpr std::size_t kBatch = std::size_t(1) << 18;        // surfels on the device at once
+constexpr std::size_t kMostThreads = std::size_t(1) << 21;  // of a dispatch
+constexpr std::size_t kPoints = std::size_t(1) << 20;       // drawn at once
 
 shaders::MatchParameters parameters_of(std::size_t views, double noise_sigma,
                                        const OffsetRange& range, const MatchOptions& o) {
@@ -49,10 +48,12 @@ std::vector<shaders::GpuView> views_on(const GridSpec& grid, const projtex::Imag
 }
 
 /// Draws points into the depth maps that are bound.
-void draw(gpu::Context& context, std::span<const shaders::BakeVertex> points, std::size_t views) {
-  const auto splat = gpu::Program::compute("render_splat_points.comp.glsl");
-  for (std::size_t first = 0; first < points.size(); first += kPoints) {
-    const std::size_t count = std::min(kPoints, points.size() - first);
+void draw(gpu::Context& context, const visibility::DepthMaps& maps,
+          std::span<const shaders::BakeVertex> points, std::size_t views) {
+  const auto splat = gpu::Program::compute("render_splat_points.comp.glsl", maps.defines());
+  const std::size_t batch = gpu::batch_size(sizeof(shaders::BakeVertex), kPoints);
+  for (std::size_t first = 0; first < points.size(); first += batch) {
+    const std::size_t count = std::min(batch, points.size() - first);
     const shaders::BakeParameters parameters{{int(count), int(views), 0, 0}, {}};
     const Buffer uniforms(sizeof parameters, &parameters);
     const Buffer part(count * sizeof(shaders::BakeVertex), &points[first]);
@@ -75,14 +76,16 @@ std::vector<shaders::MatchChoice> choose_views(gpu::Context& context, const Grid
   visibility::DepthMaps maps = render::occluder_maps(cameras, grid);
   views.bind_storage(0);
   maps.bind();
-  draw(context, surfels, gpu_views.size());
-  draw(context, render::points_between(mesh, surfels), gpu_views.size());
+  draw(context, maps, surfels, gpu_views.size());
+  draw(context, maps, render::points_between(mesh, surfels), gpu_views.size());
 
-  const auto program = gpu::Program::compute("refine_choose_views.comp.glsl");
+  const auto program = gpu::Program::compute("refine_choose_views.comp.glsl", maps.defines());
+  const std::size_t batch =
+      render::listed_batch(sizeof(shaders::MatchChoice), kBatch, cameras.size());
   shaders::MatchParameters parameters = parameters_of(cameras.size(), 0, {}, options);
   std::vector<shaders::MatchChoice> out(surfels.size());
-  for (std::size_t first = 0; first < surfels.size(); first += kBatch) {
-    const std::size_t count = std::min(kBatch, surfels.size() - first);
+  for (std::size_t first = 0; first < surfels.size(); first += batch) {
+    const std::size_t count = std::min(batch, surfels.size() - first);
     const auto part = std::span<const shaders::BakeVertex>(surfels).subspan(first, count);
     const Buffer points = Buffer::of(part);
     const Buffer lists = Buffer::of(render::list_views(part, gpu_views, parameters.visibility.w));
@@ -119,7 +122,9 @@ Matches match_patches(gpu::Context& context, const GridSpec& grid,
   const auto program = gpu::Program::compute("refine_match_patches.comp.glsl",
                                              bends.empty() ? "" : "#define PATCH_BENT\n");
   shaders::MatchParameters parameters = parameters_of(cameras.size(), noise_sigma, range, options);
-  const std::size_t batch = std::min(kBatch, kMostThreads / offsets);
+  const std::size_t most = std::clamp<std::size_t>(kMostThreads / offsets, 1, kBatch);
+  const std::size_t batch =
+      gpu::batch_size(std::max(sizeof(shaders::MatchChoice), offsets * sizeof(float)), most);
   for (std::size_t first = 0; first < matched.size(); first += batch) {
     const auto part = std::span<const std::uint32_t>(matched).subspan(
         first, std::min(batch, matched.size() - first));

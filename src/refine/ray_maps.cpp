@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/viewing_depth.h"
 #include "projtex/gpu_views.h"
 #include "refine/ray_partners.h"
 #include "refine/ray_search.h"
@@ -57,7 +58,8 @@ class RayMapper {
         surface_(surface),
         options_(options),
         cameras_(on_grid(cameras, hull.grid)),
-        partners_(choose_partners(cameras_, 0.5 * glm::dvec3(hull.grid.voxels()))),
+        partners_(choose_partners(cameras_, {glm::dvec3(0), glm::dvec3(hull.grid.voxels())},
+                                  options.nearest_partner)),
         search_(context, images, gpu_views(images), noise_sigma, options) {}
 
   /// View by view, so that memory is that of one view's rays.
@@ -100,8 +102,7 @@ class RayMapper {
 
   RayMap empty_map(std::size_t v) const {
     const auto& c = cameras_[v];
-    const glm::dvec3 middle = 0.5 * glm::dvec3(hull_.grid.voxels());
-    const double depth = (c.projection * glm::dvec4(middle, 1)).z;
+    const double depth = viewing_depth(c.projection, c.centre, c.width, c.height, grid_box());
     RayMap map;
     map.stride = std::max(kLeastStride, options_.ray_spacing * c.focal / std::max(depth, 1.0));
     map.width = int(std::ceil(c.width / map.stride));
@@ -110,6 +111,8 @@ class RayMapper {
     map.weight = map.depth;
     return map;
   }
+
+  Box grid_box() const { return {glm::dvec3(0), glm::dvec3(hull_.grid.voxels())}; }
 
   /// Calls visit(t) for places in the hull along a ray, from `t` voxels on, until it returns false.
   template <typename Visit>

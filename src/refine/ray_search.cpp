@@ -183,6 +183,17 @@ RaySearch::Scores RaySearch::match(std::span<const shaders::BakeVertex> surfels,
                                    const shaders::MatchChoice& partners, int offsets) const {
   const auto program =
       gpu::Program::compute("refine_match_patches.comp.glsl", "#define PATCH_RADIUS 1\n");
+  const std::size_t batch = gpu::batch_size(
+      std::max(sizeof(shaders::MatchChoice), std::size_t(offsets) * sizeof(float)), surfels.size());
+  Scores out;
+  for (std::size_t first = 0; first < surfels.size(); first += batch)
+    match(program, surfels.subspan(first, std::min(batch, surfels.size() - first)), partners,
+          offsets, out);
+  return out;
+}
+
+void RaySearch::match(const gpu::Program& program, std::span<const shaders::BakeVertex> surfels,
+                      const shaders::MatchChoice& partners, int offsets, Scores& out) const {
   const std::vector<shaders::MatchChoice> choices(surfels.size(), partners);
   shaders::MatchParameters p{};
   p.counts = {int(surfels.size()), int(views_.size()), offsets, 0};
@@ -202,7 +213,10 @@ RaySearch::Scores RaySearch::match(std::span<const shaders::BakeVertex> surfels,
   textures.bind_storage(5);
   images_.texture().bind(0);
   program.dispatch(context_, "refine_vote", gpu::group_count(samples, 64));
-  return {scores.download<float>(samples), textures.download<float>(surfels.size())};
+  const auto score = scores.download<float>(samples);
+  const auto texture = textures.download<float>(surfels.size());
+  out.score.insert(out.score.end(), score.begin(), score.end());
+  out.texture.insert(out.texture.end(), texture.begin(), texture.end());
 }
 
 void RaySearch::scores_along(std::span<const Ray> rays, const shaders::MatchChoice& partners,

@@ -76,6 +76,9 @@ class RaySearch {
   };
   Scores match(std::span<const shaders::BakeVertex> surfels, const shaders::MatchChoice& partners,
                int offsets) const;
+  /// Adds the scores of as many surfels as storage blocks hold.
+  void match(const gpu::Program& program, std::span<const shaders::BakeVertex> surfels,
+             const shaders::MatchChoice& partners, int offsets, Scores& out) const;
 
   gpu::Context& context_;
   const projtex::ImageSet& images_;

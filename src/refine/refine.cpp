@@ -110,6 +110,11 @@ class Refiner {
         report.levels = std::move(done->levels);
       }
     report.resumed = int(report.levels.size());
+    if (report.resumed > 0)
+      progress.note(concat("an interrupted run of this job had done ", report.resumed, " of ",
+                           grids.size(),
+                           " levels of the refinement: going on from there (--fresh "
+                           "starts anew)"));
     for (std::size_t level = report.levels.size(); level < grids.size(); ++level) {
       const auto start = std::chrono::steady_clock::now();
       LevelReport counts;

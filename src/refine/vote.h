@@ -17,9 +17,10 @@ struct VoteOptions {
   double last_spacing = 2.5;   ///< likewise at the last level, where voxels are smallest
   double again_score = 0.7;  ///< likewise: below, the surface explains nothing, a ray finds nothing
   double tap_spacing = 0.7;  ///< of the patches across the rays, voxels
-  double best_pairs = 0.5;   ///< share of the pairs of views that the score is the mean of
-  double least_score = 0.5;  ///< of the best sample on a ray; below, the ray says nothing
-  double distinct_by = 0.25;  ///< lead over the second best that gives a ray full weight
+  double nearest_partner = 4;  ///< degrees between a view and those that its rays are matched with
+  double best_pairs = 0.5;     ///< share of the pairs of views that the score is the mean of
+  double least_score = 0.5;    ///< of the best sample on a ray; below, the ray says nothing
+  double distinct_by = 0.25;   ///< lead over the second best that gives a ray full weight
   double band = 1.5;          ///< voxels; at most kBand: a ray's say ends that far behind its depth
   double least_weight = 1.5;  ///< sum of the rays' weights below which a voxel stays
   double again_weight = 2;    ///< likewise, for what vote_again adds

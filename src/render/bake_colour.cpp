@@ -21,7 +21,7 @@ using gpu::Buffer;
 
 constexpr std::size_t kBatch = std::size_t(1) << 20;  // 32 MiB of vertices a dispatch
 
-/// Some of the vertices on the device: as many as a storage block holds.
+/// Some of the vertices on the device.
 struct Batch {
   Batch(std::span<const shaders::BakeVertex> part, std::size_t views, double noise_sigma)
       : parameters_of{{int(part.size()), int(views), 0, 0}, {float(noise_sigma), 0, 0, 0}},
@@ -34,16 +34,18 @@ struct Batch {
   Buffer parameters, vertices;
 };
 
-/// Calls visit(first, part) for the vertices in parts of at most kBatch.
+/// Calls visit(first, part) for the vertices in parts of at most kBatch, fewer where a storage
+/// block does not hold them or their lists of views.
 template <typename Visit>
-void for_batches(std::span<const shaders::BakeVertex> vertices, Visit&& visit) {
-  for (std::size_t first = 0; first < vertices.size(); first += kBatch)
-    visit(first, vertices.subspan(first, std::min(kBatch, vertices.size() - first)));
+void for_batches(std::span<const shaders::BakeVertex> vertices, std::size_t views, Visit&& visit) {
+  const std::size_t batch = render::listed_batch(sizeof(shaders::BakeVertex), kBatch, views);
+  for (std::size_t first = 0; first < vertices.size(); first += batch)
+    visit(first, vertices.subspan(first, std::min(batch, vertices.size() - first)));
 }
 
 void splat(gpu::Context& context, const gpu::Program& program,
            std::span<const shaders::BakeVertex> points, std::size_t views, double noise_sigma) {
-  for_batches(points, [&](std::size_t, std::span<const shaders::BakeVertex> part) {
+  for_batches(points, views, [&](std::size_t, std::span<const shaders::BakeVertex> part) {
     const Batch batch(part, views, noise_sigma);
     program.dispatch(context, "render_splat_points",
                      gpu::group_count(part.size(), 64 * shaders::kSplatRun), views);
@@ -70,34 +72,35 @@ void bake_colour(gpu::Context& context, const GridSpec& grid, const projtex::Ima
   maps.bind();
   std::vector<shaders::BakeVertex> vertices = render::to_voxels(grid, mesh);
   {
-    const auto program = gpu::Program::compute("render_splat_points.comp.glsl");
+    const auto program = gpu::Program::compute("render_splat_points.comp.glsl", maps.defines());
     splat(context, program, vertices, cameras.size(), noise_sigma);
     splat(context, program, render::points_between(mesh, vertices), cameras.size(), noise_sigma);
   }
 
-  const gpu::Program bake = gpu::Program::compute("render_bake_vertices.comp.glsl");
+  const gpu::Program bake = gpu::Program::compute("render_bake_vertices.comp.glsl", maps.defines());
   const std::size_t total = mesh.positions.size();
   mesh.colours.assign(total, glm::vec3(0));
   mesh.confidence.assign(total, 0);
   std::vector<render::SurfaceEvidence> said(total);
   images.texture().bind(0);
-  for_batches(vertices, [&](std::size_t first, std::span<const shaders::BakeVertex> part) {
-    progress.check_cancelled();
-    const Batch batch(part, cameras.size(), noise_sigma);
-    const Buffer lists = Buffer::of(render::list_views(part, gpu_views));
-    const Buffer baked(part.size() * sizeof(shaders::BakeResult));
-    baked.bind_storage(2);
-    lists.bind_storage(3);
-    bake.dispatch(context, "render_bake_vertices",
-                  gpu::group_count(part.size(), shaders::kBakeGroup));
-    const auto results = baked.download<shaders::BakeResult>(part.size());
-    for (std::size_t i = 0; i < part.size(); ++i) {
-      const glm::vec4& e = results[i].evidence;
-      mesh.colours[first + i] = glm::vec3(results[i].colour);
-      said[first + i] = {results[i].colour.w, e.x, e.y, e.z, e.w};
-    }
-    progress.update(double(first + part.size()) / double(total));
-  });
+  for_batches(vertices, cameras.size(),
+              [&](std::size_t first, std::span<const shaders::BakeVertex> part) {
+                progress.check_cancelled();
+                const Batch batch(part, cameras.size(), noise_sigma);
+                const Buffer lists = Buffer::of(render::list_views(part, gpu_views));
+                const Buffer baked(part.size() * sizeof(shaders::BakeResult));
+                baked.bind_storage(2);
+                lists.bind_storage(3);
+                bake.dispatch(context, "render_bake_vertices",
+                              gpu::group_count(part.size(), shaders::kBakeGroup));
+                const auto results = baked.download<shaders::BakeResult>(part.size());
+                for (std::size_t i = 0; i < part.size(); ++i) {
+                  const glm::vec4& e = results[i].evidence;
+                  mesh.colours[first + i] = glm::vec3(results[i].colour);
+                  said[first + i] = {results[i].colour.w, e.x, e.y, e.z, e.w};
+                }
+                progress.update(double(first + part.size()) / double(total));
+              });
   vertices = {};
   std::vector<render::PooledEvidence> pooled = render::pool_evidence(mesh, said);
   BakeReport counts;

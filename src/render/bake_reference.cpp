@@ -107,10 +107,20 @@ void splat_point(const glm::dvec3& position, const glm::dvec3& normal, BakeView&
   const glm::dvec3 p = to_pixel(view.camera, position);
   if (p.z <= 1 || glm::dot(view.camera.centre - position, normal) < 0) return;
   const glm::ivec4& size = view.depth_info.size;
-  const int x = std::min(int((p.x + 0.5) * view.depth_info.scale.x), size.x - 1);
-  const int y = std::min(int((p.y + 0.5) * view.depth_info.scale.x), size.y - 1);
-  double& depth = view.depths[std::size_t(y) * size.x + x];
-  depth = std::min(depth, p.z);
+  const double scale = view.depth_info.scale.x;
+  const glm::dvec2 middle = (glm::dvec2(p) + 0.5) * scale;
+  const glm::ivec2 last = glm::ivec2(size) - 1;
+  glm::ivec2 low = glm::min(glm::ivec2(middle), last), high = low;
+  const double half = std::min(0.5 * view.camera.focal / p.z * scale, double(shaders::kSplatReach));
+  if (half > 0.5) {
+    low = glm::max(glm::ivec2(glm::floor(middle - half)), 0);
+    high = glm::min(glm::ivec2(glm::floor(middle + half)), last);
+  }
+  for (int y = low.y; y <= high.y; ++y)
+    for (int x = low.x; x <= high.x; ++x) {
+      double& depth = view.depths[std::size_t(y) * size.x + x];
+      depth = std::min(depth, p.z);
+    }
 }
 
 BakedVertex bake_vertex(std::span<const BakeView> views, double noise_sigma,

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "gpu/limits.h"
+
 namespace photohull::render {
 namespace {
 
@@ -48,6 +50,12 @@ bool may_face(const Group& group, const glm::vec3& eye, float flattest) {
 }
 
 }  // namespace
+
+std::size_t listed_batch(std::size_t vertex_bytes, std::size_t most, std::size_t views) {
+  constexpr std::size_t kGroup = shaders::kBakeGroup;
+  const std::size_t group_bytes = std::max(kGroup * vertex_bytes, (views + 1) * 4);
+  return kGroup * gpu::batch_size(group_bytes, most / kGroup);
+}
 
 std::vector<std::uint32_t> list_views(std::span<const shaders::BakeVertex> vertices,
                                       std::span<const shaders::GpuView> views, float least_cosine) {

@@ -18,4 +18,8 @@ std::vector<std::uint32_t> list_views(std::span<const shaders::BakeVertex> verti
                                       std::span<const shaders::GpuView> views,
                                       float least_cosine = shaders::kBakeMinCosine);
 
+/// How many vertices, in whole groups, a dispatch may take that has their lists and `vertex_bytes`
+/// for each in storage blocks: at most `most` (gpu::batch_size).
+std::size_t listed_batch(std::size_t vertex_bytes, std::size_t most, std::size_t views);
+
 }  // namespace photohull::render

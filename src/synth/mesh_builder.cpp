@@ -143,6 +143,13 @@ void MeshBuilder::add_box(const glm::dvec3& low, const glm::dvec3& high) {
                 [](const glm::dvec3& p) { return p; });
 }
 
+void MeshBuilder::add_hollow(const glm::dvec3& low, const glm::dvec3& high) {
+  const std::size_t before = mesh_.triangles.size();
+  add_box(low, high);
+  for (std::size_t t = before; t < mesh_.triangles.size(); ++t)
+    std::swap(mesh_.triangles[t][1], mesh_.triangles[t][2]);
+}
+
 void MeshBuilder::add_tube(const std::function<glm::dvec3(double)>& center,
                            const std::function<double(double)>& radius, int steps, int columns,
                            const glm::dvec3& side) {

@@ -27,6 +27,8 @@ class MeshBuilder {
   void add_extrusion(const std::vector<glm::dvec2>& polygon, double low, double high,
                      const std::function<glm::dvec3(const glm::dvec3&)>& place);
   void add_box(const glm::dvec3& low, const glm::dvec3& high);
+  /// A box of air within what was added: its triangles look inwards.
+  void add_hollow(const glm::dvec3& low, const glm::dvec3& high);
   /// A tube with round ends about a curve; `center(s)` and `radius(s)` for s in [0, 1]. The
   /// curve must not run along `side`, and the tube not meet itself.
   void add_tube(const std::function<glm::dvec3(double)>& center,

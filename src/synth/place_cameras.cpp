@@ -49,7 +49,21 @@ std::vector<glm::dvec3> directions(const CameraSpec& c) {
     for (int i = 0; i < c.count; ++i)
       all.push_back(direction(azimuth + start + span * i / steps, glm::radians(c.elevation)));
   }
+  if (c.layout == "within")
+    for (int i = 0; i < c.count; ++i)
+      all.push_back(direction(azimuth + 2 * kPi * i / c.count, glm::radians(c.elevation)));
   return all;
+}
+
+/// What the i-th camera looks at: the middle, or where it is turned to.
+glm::dvec3 target_of(const CameraSpec& c, const glm::dvec3& middle, const glm::dvec3& eye,
+                     std::size_t i) {
+  if (c.layout != "within") return middle;
+  const double turn = glm::radians(c.turns[i % c.turns.size()]), pitch = glm::radians(c.pitch);
+  const glm::dvec2 ahead = normalize(glm::dvec2(middle - eye));
+  return eye + std::cos(pitch) * glm::dvec3(std::cos(turn) * ahead.x - std::sin(turn) * ahead.y,
+                                            std::sin(turn) * ahead.x + std::cos(turn) * ahead.y,
+                                            -std::tan(pitch));
 }
 
 Pose look_at(const glm::dvec3& eye, const glm::dvec3& target, double roll) {
@@ -106,6 +120,7 @@ std::vector<LensCamera> place_cameras(const Spec& spec, const Surface& surface) 
   const CameraSpec& c = spec.cameras;
   const double width = spec.image.width, height = spec.image.height;
   std::vector<LensCamera> all;
+  const bool within = c.layout == "within";  // what surrounds a camera does not fit a frame
   double largest = 0;
   for (const glm::dvec3& d : directions(c)) {
     const std::size_t i = all.size();
@@ -117,18 +132,20 @@ std::vector<LensCamera> place_cameras(const Spec& spec, const Surface& surface) 
       throw Error(concat("cameras: the camera of view ", i,
                          " is inside the object; raise cameras.distance or cameras.distances"));
     const double roll = glm::radians(c.roll) * (2 * Random(spec.seed, 0x7011, i).uniform() - 1);
-    lens.camera.cam_from_world = look_at(eye, target, roll);
+    lens.camera.cam_from_world = look_at(eye, target_of(c, target, eye, i), roll);
     const double focal = c.focals[i % c.focals.size()];
     lens.camera.intrinsics.fx = focal;
-    largest = std::max(largest,
-                       focal * half_extent(surface, lens.camera.cam_from_world, width / height, i));
+    if (!within)
+      largest = std::max(
+          largest, focal * half_extent(surface, lens.camera.cam_from_world, width / height, i));
     all.push_back(lens);
   }
   const DegradationSpec& g = spec.degradations;
   for (LensCamera& lens : all) {
     Intrinsics& k = lens.camera.intrinsics;
     k.width = spec.image.width, k.height = spec.image.height;
-    k.fx = k.fy = k.fx * c.fill * height / 2 / largest;
+    k.fx = k.fy = k.fx * (within ? width / 2 / std::tan(glm::radians(c.field_of_view) / 2)
+                                 : c.fill * height / 2 / largest);
     k.cx = (width - 1) / 2 + c.principal_offset.x;
     k.cy = (height - 1) / 2 + c.principal_offset.y;
     if (g.k1 != 0 || g.k2 != 0 || g.p1 != 0 || g.p2 != 0)

@@ -17,6 +17,7 @@ TriMesh make_block(const ShapeValues& v);
 TriMesh make_steps(const ShapeValues& v);
 TriMesh make_arch(const ShapeValues& v);
 TriMesh make_rods(const ShapeValues& v);
+TriMesh make_room(const ShapeValues& v);
 
 // shapes_grown.cpp
 TriMesh make_leaves(const ShapeValues& v);

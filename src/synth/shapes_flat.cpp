@@ -148,4 +148,22 @@ TriMesh make_rods(const ShapeValues& v) {
   return builder.take();
 }
 
+TriMesh make_room(const ShapeValues& v) {
+  const glm::dvec3 half(v.at("width") / 2, v.at("depth") / 2, v.at("height") / 2);
+  const double wall = v.at("wall") * v.at("width"), gap = 2e-4 * half.x;
+  MeshBuilder builder;
+  builder.add_box(-half - wall, half + wall);
+  builder.add_hollow(-half, half);
+  // In shares of the room's halves; what stands on the floor or at a wall does not touch it.
+  const auto furniture = [&](const glm::dvec3& low, const glm::dvec3& high) {
+    builder.add_box(glm::max(low * half, -half + gap), glm::min(high * half, half - gap));
+  };
+  furniture({-0.2, -0.25, -0.5}, {0.25, 0.2, -0.44});   // the table's top
+  furniture({-0.03, -0.06, -1}, {0.07, 0.04, -0.501});  // and its leg
+  furniture({-0.75, 0.7, -1}, {-0.2, 1, 0.3});          // a cupboard
+  furniture({0.6, -0.8, -1}, {0.75, -0.62, 1});         // a column
+  furniture({0.55, 0.5, -1}, {0.9, 0.8, -0.55});        // a box
+  return builder.take();
+}
+
 }  // namespace photohull::synth

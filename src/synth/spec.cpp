@@ -82,6 +82,8 @@ void check_together(const Spec& s, const std::string& source) {
     fail("name: expected 1 to 100 characters without slashes, quotes or line breaks");
   if (s.cameras.layout == "rings" && s.cameras.rings.empty())
     fail("cameras.rings: expected one ring at least, found none");
+  if (s.cameras.layout == "within" && s.cameras.turns.empty())
+    fail("cameras.turns: expected one angle at least, found none");
   if (s.cameras.lowest > s.cameras.highest)
     fail("cameras.lowest: must not be above cameras.highest");
   if (s.cameras.distance <= 0) fail("cameras.distance: must be more than 0");

@@ -83,14 +83,19 @@ struct Ring {
 };
 
 struct CameraSpec {
-  std::string layout = "rings";  ///< "rings", "hemisphere" or "arc"
+  std::string layout = "rings";  ///< "rings", "hemisphere", "arc" or "within"
   std::vector<Ring> rings = {{18, 10, 0}, {18, 40, 0.5}};
-  int count = 36;                       ///< hemisphere and arc
-  double lowest = 0, highest = 80;      ///< hemisphere: degrees of elevation
-  double arc = 90;                      ///< degrees that the arc spans
-  double azimuth = 0;                   ///< degrees: of ring views 0, of the arc's middle
-  double crowding = 1;                  ///< rings: azimuths as its power of the share; 1 even
-  double elevation = 15;                ///< of the arc
+  int count = 36;                   ///< hemisphere, arc and within
+  double lowest = 0, highest = 80;  ///< hemisphere: degrees of elevation
+  double arc = 90;                  ///< degrees that the arc spans
+  double azimuth = 0;               ///< degrees: of ring views 0, of the arc's middle
+  double crowding = 1;              ///< rings: azimuths as its power of the share; 1 even
+  double elevation = 15;            ///< of the arc, and of the places of within
+  /// within: degrees that cameras turn from looking at the middle, dealt out in turn, and that they
+  /// look down
+  std::vector<double> turns = {0};
+  double pitch = 0;
+  double field_of_view = 75;            ///< within: degrees across the frame's width
   double distance = 1.8;                ///< from the middle of the box, in its diagonals
   std::vector<double> distances = {1};  ///< factors of the distance, dealt out in turn
   std::vector<double> focals = {1};     ///< factors of the focal length, dealt out in turn

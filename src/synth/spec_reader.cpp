@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/nearest_name.h"
 
 namespace photohull::synth {
 
@@ -12,21 +13,6 @@ using Json = nlohmann::json;
 namespace {
 
 constexpr std::size_t kLongestList = 100000;
-
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t above = row[j];
-      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] != b[j - 1])});
-      diagonal = above;
-    }
-  }
-  return row.back();
-}
 
 std::string joined(const std::vector<std::string>& words) {
   std::string all;
@@ -42,17 +28,6 @@ std::string shown(const Json& j) {
 }
 
 }  // namespace
-
-std::string nearest_word(const std::string& word, const std::set<std::string>& candidates) {
-  if (word.size() > 100) return "";
-  std::string best;
-  std::size_t least = std::max<std::size_t>(2, word.size() / 2) + 1;
-  for (const std::string& candidate : candidates) {
-    const std::size_t distance = edit_distance(word, candidate);
-    if (distance < least) least = distance, best = candidate;
-  }
-  return best;
-}
 
 SpecReader::SpecReader(const Json& root, std::string source)
     : object_(&root), source_(std::move(source)) {
@@ -143,9 +118,9 @@ void SpecReader::choice(const char* name, std::string& value, std::vector<std::s
   std::string text_value = value;
   text(name, text_value);
   if (std::find(choices.begin(), choices.end(), text_value) == choices.end()) {
-    const std::string near = nearest_word(text_value, {choices.begin(), choices.end()});
+    const auto near = nearest_name(text_value, choices);
     fail(path(name), "expected one of " + joined(choices) + ", found \"" + text_value + "\"" +
-                         (near.empty() ? "" : "; did you mean " + near + "?"));
+                         (near ? "; did you mean " + *near + "?" : ""));
   }
   value = text_value;
 }
@@ -191,10 +166,10 @@ void SpecReader::shape(GeometrySpec& geometry) {
 void SpecReader::finish() const {
   for (const auto& [name, value] : object_->items()) {
     if (known_.count(name)) continue;
-    const std::string near = nearest_word(name, known_);
+    const std::vector<std::string> known(known_.begin(), known_.end());
+    const auto near = nearest_name(name, known);
     fail(path(name), "there is no such field" +
-                         (near.empty() ? "; known are " + joined({known_.begin(), known_.end()})
-                                       : "; did you mean " + near + "?"));
+                         (near ? "; did you mean " + *near + "?" : "; known are " + joined(known)));
   }
 }
 

@@ -80,8 +80,4 @@ class SpecReader {
   std::set<std::string> known_;
 };
 
-/// The candidate nearest in edit distance (Levenshtein 1966), where it is near enough to be meant;
-/// empty otherwise.
-std::string nearest_word(const std::string& word, const std::set<std::string>& candidates);
-
 }  // namespace photohull::synth

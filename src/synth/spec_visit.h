@@ -52,7 +52,7 @@ void visit_light(Visitor& v, LightSpec& l) {
 
 template <typename Visitor>
 void visit_cameras(Visitor& v, CameraSpec& c) {
-  v.choice("layout", c.layout, {"rings", "hemisphere", "arc"});
+  v.choice("layout", c.layout, {"rings", "hemisphere", "arc", "within"});
   v.objects("rings", c.rings, [&](Ring& r) {
     v.integer("count", r.count, 1, kMostViews);
     v.number("elevation", r.elevation, -89.9, 89.9);
@@ -65,6 +65,9 @@ void visit_cameras(Visitor& v, CameraSpec& c) {
   v.number("azimuth", c.azimuth, -360, 360);
   v.number("crowding", c.crowding, 1, 20);
   v.number("elevation", c.elevation, -89.9, 89.9);
+  v.numbers("turns", c.turns, -360, 360);
+  v.number("pitch", c.pitch, -80, 80);
+  v.number("field_of_view", c.field_of_view, 5, 150);
   v.number("distance", c.distance, 0, 1000);
   v.numbers("distances", c.distances, 0.01, 100);
   v.numbers("focals", c.focals, 0.01, 100);

@@ -11,47 +11,65 @@ namespace {
 /// Texels per pixel such that a voxel at the grid's centre covers one texel; never finer than
 /// pixels.
 double texels_per_pixel(const projtex::GridCamera& camera, const GridSpec& grid) {
-  const glm::dvec3 centre = 0.5 * glm::dvec3(grid.voxels() - 1);
-  const double depth = (camera.projection * glm::dvec4(centre, 1)).z;
+  const double depth = projtex::viewing_depth(camera, grid);
   const double pixels_per_voxel = depth > 1 ? camera.focal / depth : 1.0;
   return std::clamp(1.0 / pixels_per_voxel, 1.0 / 64, 1.0);
 }
 
 }  // namespace
 
-DepthMaps::DepthMaps(std::span<const projtex::GridCamera> cameras, const GridSpec& grid)
-    : splat_(gpu::Program::compute("visibility_splat_voxels.comp.glsl")) {
-  int texels = 0;
+DepthMaps::DepthMaps(std::span<const projtex::GridCamera> cameras, const GridSpec& grid) {
+  std::size_t texels = 0;
+  glm::ivec2 largest(1);
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     const double scale = texels_per_pixel(cameras[i], grid);
     const int width = std::max(1, int(std::ceil(cameras[i].width * scale)));
     const int height = std::max(1, int(std::ceil(cameras[i].height * scale)));
-    infos_.push_back({{width, height, texels, int(i)}, {float(scale), 0, 0, 0}});
-    texels += width * height;
+    infos_.push_back({{width, height, int(texels), int(i)}, {float(scale), 0, 0, 0}});
+    texels += std::size_t(width) * height;
+    largest = glm::max(largest, {width, height});
+  }
+  if (texels * 4 <= std::size_t(gpu::current_limits().ssbo_bytes)) {
+    depths_ = gpu::Buffer(texels * 4);
+  } else {
+    layers_ =
+        gpu::TextureArray(gpu::TextureFormat::kR32ui, largest.x, largest.y, int(cameras.size()));
+    for (auto& info : infos_) info.size.z = info.size.w;
   }
   info_buffer_ = gpu::Buffer::of(infos_);
-  depths_ = gpu::Buffer(std::size_t(texels) * 4);
+  splat_ = gpu::Program::compute("visibility_splat_voxels.comp.glsl", defines());
   clear();
 }
 
 void DepthMaps::clear() {
-  depths_.fill(std::bit_cast<unsigned>(std::numeric_limits<float>::infinity()));
+  const auto nothing = std::bit_cast<unsigned>(std::numeric_limits<float>::infinity());
+  if (layers_.id())
+    layers_.fill(nothing);
+  else
+    depths_.fill(nothing);
 }
 
 void DepthMaps::bind() const {
   info_buffer_.bind_storage(8);
-  depths_.bind_storage(9);
+  if (layers_.id())
+    layers_.bind_read_write(2);
+  else
+    depths_.bind_storage(9);
 }
 
 void DepthMaps::splat(gpu::Context& context, const gpu::Buffer& voxels, std::size_t count) {
   bind();
   voxels.bind_storage(6);
-  splat_.dispatch(context, "visibility_splat_voxels", gpu::group_count(count, 64), infos_.size());
+  splat_->dispatch(context, "visibility_splat_voxels", gpu::group_count(count, 64), infos_.size());
 }
 
 std::vector<float> DepthMaps::download(std::size_t map) const {
   const glm::ivec4 size = infos_[map].size;
-  return depths_.download<float>(std::size_t(size.x) * size.y, std::size_t(size.z));
+  const std::size_t texels = std::size_t(size.x) * size.y;
+  if (!layers_.id()) return depths_.download<float>(texels, std::size_t(size.z));
+  std::vector<float> out(texels);  // the same bits
+  layers_.read_layer(size.z, size.x, size.y, texels * 4, out.data());
+  return out;
 }
 
 }  // namespace photohull::visibility

@@ -1,6 +1,7 @@
 // Depth maps of voxels from the input cameras [Williams78].
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "gpu/buffer.h"
 #include "gpu/context.h"
 #include "gpu/program.h"
+#include "gpu/texture.h"
 #include "projtex/gpu_views.h"
 #include "shared/sweep.h"
 
@@ -17,12 +19,15 @@ namespace photohull::visibility {
 class DepthMaps {
  public:
   /// Maps for `cameras` (in the grid's frame) that look at `grid`. Nothing hides anything yet.
+  /// Throws Error when the device cannot hold them.
   DepthMaps(std::span<const projtex::GridCamera> cameras, const GridSpec& grid);
 
   /// Forgets all that was drawn.
   void clear();
-  /// Storage blocks 8 (infos) and 9 (depths) of include/depth_map.glsl.
+  /// Storage blocks 8 (infos) and 9 (depths), or image 2, of include/depth_map.glsl.
   void bind() const;
+  /// What programs that use the maps are compiled with: where the depths are.
+  const char* defines() const { return layers_.id() ? "#define DEPTH_MAPS_LAYERED\n" : ""; }
   /// Draws the first `count` voxels of `voxels` (ivec4, preceded by a header of 16 bytes whose
   /// first word is the count) into all maps. Cameras must be bound to storage block 0.
   void splat(gpu::Context& context, const gpu::Buffer& voxels, std::size_t count);
@@ -34,7 +39,8 @@ class DepthMaps {
  private:
   std::vector<shaders::DepthMapInfo> infos_;
   gpu::Buffer info_buffer_, depths_;
-  gpu::Program splat_;
+  gpu::TextureArray layers_;  ///< in place of depths_, where a storage block is too small
+  std::optional<gpu::Program> splat_;
 };
 
 namespace reference {

@@ -5,6 +5,8 @@
 namespace photohull::visibility {
 namespace {
 
+constexpr std::size_t kSamples = std::size_t(1) << 20;  // on the device at once
+
 std::size_t texel_bytes(const gpu::TextureArray& texture, std::size_t each) {
   return texture.id() ? std::size_t(texture.width()) * texture.height() * texture.layers() * each
                       : 0;
@@ -75,22 +77,28 @@ void VisibilityMap::bind() const {
 
 std::vector<float> visible(gpu::Context& context, const VisibilityMap& map,
                            std::span<const Sample> samples) {
-  if (samples.empty()) return {};
-  std::vector<shaders::Receiver> receivers;
-  receivers.reserve(samples.size());
-  for (const Sample& s : samples)
-    receivers.push_back({glm::vec4(s.position - map.origin_, 1),
-                         glm::vec4(s.normal, 0),
-                         glm::vec4(s.step_x, 0),
-                         glm::vec4(s.step_y, 0),
-                         {s.id, 0, 0, 0}});
-  const gpu::Buffer receiver_buffer = gpu::Buffer::of(receivers), fractions(samples.size() * 4);
+  const std::size_t batch = gpu::batch_size(sizeof(shaders::Receiver), kSamples);
+  std::vector<float> out;
+  out.reserve(samples.size());
   map.bind();
-  receiver_buffer.bind_storage(0);
-  fractions.bind_storage(1);
-  map.test_->set("count", int(samples.size()));
-  map.test_->dispatch(context, "visibility_test_receivers", gpu::group_count(samples.size(), 64));
-  return fractions.download<float>(samples.size());
+  for (std::size_t first = 0; first < samples.size(); first += batch) {
+    std::vector<shaders::Receiver> receivers;
+    for (const Sample& s : samples.subspan(first, std::min(batch, samples.size() - first)))
+      receivers.push_back({glm::vec4(s.position - map.origin_, 1),
+                           glm::vec4(s.normal, 0),
+                           glm::vec4(s.step_x, 0),
+                           glm::vec4(s.step_y, 0),
+                           {s.id, 0, 0, 0}});
+    const gpu::Buffer receiver_buffer = gpu::Buffer::of(receivers), fractions(receivers.size() * 4);
+    receiver_buffer.bind_storage(0);
+    fractions.bind_storage(1);
+    map.test_->set("count", int(receivers.size()));
+    map.test_->dispatch(context, "visibility_test_receivers",
+                        gpu::group_count(receivers.size(), 64));
+    const auto found = fractions.download<float>(receivers.size());
+    out.insert(out.end(), found.begin(), found.end());
+  }
+  return out;
 }
 
 }  // namespace photohull::visibility

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "calib/silhouette.h"
+#include "core/clip_ray.h"
 #include "meshes.h"
 #include "support/silhouettes.h"
 
@@ -38,6 +40,45 @@ TEST(SilhouetteCheck, SharesAreThoseOfTheAreas) {
     EXPECT_NEAR(fit.excess, 1 - 0.49 / 0.81, 0.03);
     EXPECT_EQ(fit.missed, 0);
   }
+}
+
+TEST(SilhouetteCheck, WhatTheBoxCutsOffIsBeyondIt) {
+  const test::Outline outline = test::sphere_outline(kCameras[0], {0, 0, 0}, 0.7);
+  const std::vector<CheckedSilhouette> one{{&outline.distance, &outline.distance}};
+  const RayScene rays(test::sphere_mesh({0, 0, 0}, 0.7, 60));
+  const auto beyond = [&](const Box& box) {
+    return check_silhouettes(rays, box, std::span(kCameras).first(1), one, 1.5)[0].beyond_box;
+  };
+  EXPECT_EQ(beyond(kBox), 0);
+  const Box half{{-1, -1, -1}, {1, 1, -0.2}};
+  double foreground = 0, cut = 0;
+  for (int y = 0; y < outline.distance.height; ++y)
+    for (int x = 0; x < outline.distance.width; ++x) {
+      if (outline.distance.pixels[std::size_t(y * outline.distance.width + x)] > -1.5f) continue;
+      foreground += 1;
+      cut += !clip_ray(half, kCameras[0].center(), kCameras[0].ray({x, y}));
+    }
+  EXPECT_GT(cut, 0.05 * foreground);
+  EXPECT_NEAR(beyond(half), cut / foreground, 0.01);
+}
+
+// Petioles are wider than lines, and narrower than twice the tolerance of coarse voxels.
+TEST(SilhouetteCheck, PartsNarrowerThanTheToleranceAreMissedByTheirWidth) {
+  const Camera& camera = kCameras[0];
+  Mask mask{120, 90, std::vector<std::uint8_t>(120 * 90, 0)};
+  for (int y = 20; y < 70; ++y)
+    for (const int x : {40, 80})
+      for (int k = 0; k < 4; ++k) mask.coverage[std::size_t(y * 120 + x + k)] = 255;
+  const SilhouetteDistance distance = silhouette_distance(mask);
+  TriMesh plate;  // over the one on the left
+  for (const glm::dvec2& p : {glm::dvec2(30, 10), {55, 10}, {55, 80}, {30, 80}})
+    plate.positions.emplace_back(camera.center() + 5.0 * camera.ray(p));
+  plate.triangles = {{0, 1, 2}, {0, 2, 3}};
+  const std::vector<CheckedSilhouette> one{{&distance, &distance}};
+  const SilhouetteFit fit =
+      check_silhouettes(RayScene(plate), kBox, std::span(kCameras).first(1), one, 5)[0];
+  EXPECT_NEAR(fit.missed, 0.5, 0.02);
+  EXPECT_NEAR(fit.missed_width, 4, 1);
 }
 
 // A lattice of the whole picture would have two or three places in this foreground: one that falls

@@ -11,6 +11,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 /// Twenty views of a textured object, all in order.
 Signals in_order() {
@@ -105,11 +106,51 @@ TEST(Verdict, EveryFaultHasItsReason) {
          "20 % of the silhouettes empty");
   expect(with([](Signals& s) { s.missed = 0.5; }), Level::kFailed, "50 % of the silhouettes empty");
   expect(with([](Signals& s) { s.excess = 0.2; }), Level::kDoubtful, "lies on background");
-  expect(with([](Signals& s) { s.unseen = 0.5; }), Level::kDoubtful, "no view sees 50 %");
+  expect(with([](Signals& s) { s.unseen = 0.6; }), Level::kDoubtful, "no view sees 60 %");
   expect(with([](Signals& s) { s.unsure = 0.5, s.match.matched = 0.67; }), Level::kDoubtful,
          "confidence is below one half");
   EXPECT_EQ(with([](Signals& s) { s.unsure = 0.9; }).level, Level::kGood);  // colours alone differ
   expect(with([](Signals& s) { s.at_box = 0.5; }), Level::kDoubtful, "lies on the box's sides");
+}
+
+// An object that stands on a table is not worse where it is seen.
+TEST(Verdict, CoverageIsAStatementOfItsOwn) {
+  Signals s = in_order();
+  EXPECT_EQ(judged(s).coverage, "98 % of the surface is seen, 95 % by three views or more");
+  s.unseen = 0.38, s.few_views = 0.4;
+  EXPECT_EQ(judged(s).level, Level::kGood);
+  EXPECT_THAT(judged(s).coverage, HasSubstr("62 % of the surface is seen, 60 % by three views"));
+  EXPECT_THAT(judged(s).coverage, HasSubstr("add views there"));
+}
+
+TEST(Verdict, ABoxThatCutsTheObjectOffIsTheFirstReason) {
+  Signals s = in_order();
+  s.beyond_box = 0.2;
+  EXPECT_EQ(judged(s).level, Level::kGood);  // wanted so, perhaps: nothing is wrong in the box
+  EXPECT_THAT(judged(s).notes, ElementsAre(HasSubstr("20 % of what the masks show lies beyond")));
+  s.missed = 0.1, s.missed_width = 30, s.contradiction = 0.1;
+  EXPECT_EQ(judged(s).level, Level::kDoubtful);
+  EXPECT_THAT(judged(s).reasons.front(), HasSubstr("the box cuts the object off"));
+  s.beyond_box = 0.02;
+  EXPECT_THAT(judged(s).reasons.front(), Not(HasSubstr("box")));
+  s.at_box = 0.1;  // a smaller piece that is cut off as well
+  EXPECT_THAT(judged(s).reasons.front(), HasSubstr("the box cuts the object off"));
+}
+
+TEST(Verdict, PartsThinnerThanVoxelsNameTheResolutionThatShowsThem) {
+  Signals s = in_order();
+  s.pixel_size = 0.01, s.voxel_size = 0.03, s.resolution = 100;
+  s.missed = 0.1, s.missed_width = 3;
+  const Verdict v = judged(s);
+  EXPECT_EQ(v.level, Level::kDoubtful);
+  EXPECT_THAT(v.reasons.front(), HasSubstr("about 3 px wide"));
+  EXPECT_THAT(v.reasons.front(), HasSubstr("--resolution 200"));
+  s.missed_width = 0.4;  // voxels below half a pixel would show nothing more
+  EXPECT_THAT(judged(s).reasons.front(), HasSubstr("--resolution 600"));
+  s.missed_width = 30;
+  expect(judged(s), Level::kDoubtful, "silhouettes empty");
+  s.missed_width = 1, s.voxel_size = 0.005;
+  expect(judged(s), Level::kDoubtful, "silhouettes empty");
 }
 
 TEST(Verdict, PlainSurfaceIsFineWhereSilhouettesShowIt) {
@@ -203,6 +244,17 @@ TEST(Verdict, NamesTheViewsThatAreExplainedLeast) {
   const Verdict v = judged(s);
   EXPECT_EQ(v.level, Level::kGood);
   EXPECT_THAT(v.notes, ElementsAre(HasSubstr("least in view7 (0 %)")));
+}
+
+TEST(Verdict, NamesPhotographsThatAreOfSomethingElse) {
+  Signals s = without_silhouettes({{Place::kExplained, 100}});
+  for (const int i : {3, 7})
+    for (PlaceAt& p : s.explained.views[std::size_t(i)].places) p.place = Place::kDisagreeing;
+  s.explained.counts[std::size_t(Place::kExplained)] -= 200;
+  s.explained.counts[std::size_t(Place::kDisagreeing)] += 200;
+  const Verdict v = judged(s);
+  EXPECT_EQ(v.level, Level::kDoubtful);
+  EXPECT_THAT(v.reasons, ElementsAre(HasSubstr("view3, view7: other views show something else")));
 }
 
 /// A hull of an object that is concave in places.

@@ -239,6 +239,29 @@ TEST_F(PrepareViews, RejectsInvertedMasks) {
   EXPECT_THAT(error_of_prepare(), HasSubstr("white must be the object"));
 }
 
+TEST_F(PrepareViews, RejectsInvertedMasksOfThinObjects) {
+  // A stem two pixels wide: the middle of an inverted mask is mostly foreground, too.
+  const Mask inverted = paint_mask(kWidth, kHeight, [](double x, double y) {
+    return std::abs(x - 31) < 1 && y > 8 && y < 40 ? 0.0 : 1.0;
+  });
+  for (const char* name : {"a.png", "b.png", "c.png"}) {
+    add_view(name, clay_disc());
+    add_mask(inverted);
+  }
+  EXPECT_THAT(error_of_prepare(), HasSubstr("masks look inverted: in 3 of 3"));
+  EXPECT_THAT(error_of_prepare(), HasSubstr("--masks none"));
+}
+
+TEST_F(PrepareViews, TakesFullMasksThatCutAThingOutOfSomeViews) {
+  for (const char* name : {"a.png", "b.png", "c.png", "d.png"}) {
+    add_view(name, clay_disc());
+    add_mask(name[0] < 'c' ? kFull : paint_mask(kWidth, kHeight, [](double x, double y) {
+      return std::hypot(x - 12, y - 12) < 4 ? 0.0 : 1.0;
+    }));
+  }
+  EXPECT_EQ(prepare().views.size(), 4u);
+}
+
 TEST_F(PrepareViews, NamesFilesOfWrongSize) {
   add_view("a.png", clay_disc());
   scene_.views[0].camera.intrinsics.width = 65;

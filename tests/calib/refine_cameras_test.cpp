@@ -223,7 +223,6 @@ TEST_F(RefineCameras, ViewsThatAreHeldHoldTheOthers) {
   for (std::size_t i = 0; i < off.size(); ++i)
     if (off[i] == 0) options.held.push_back(int(i));
   const CameraRefinement found = refine_cameras(views_, options, progress_);
-  const glm::dvec3 point(0.1, 0.2, 0.3);
   int moved = 0;
   for (std::size_t i = 0; i < off.size(); ++i) {
     if (off[i] == 0) {
@@ -233,6 +232,9 @@ TEST_F(RefineCameras, ViewsThatAreHeldHoldTheOthers) {
       continue;
     }
     ++moved;
+    // On the side that the view shows: before a flat side a turn and a move look alike, and what
+    // lies deeper is told by nothing.
+    const glm::dvec3 point = 0.4 * glm::normalize(truth_[i].center());
     const glm::dvec2 right = *truth_[i].project(point);
     EXPECT_GT(glm::distance(*views_[i].camera.project(point), right), 1.5);
     EXPECT_LT(glm::distance(*found.cameras[i].project(point), right), 0.3);

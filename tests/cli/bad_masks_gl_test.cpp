@@ -66,6 +66,20 @@ TEST_F(BadMasks, MissingOnesAreNamedAndTheirViewsUsedWithout) {
   fail(1, reconstruct({"--masks", path("cutouts"), "--strict"}), {said, "--strict"});
 }
 
+TEST_F(BadMasks, ThoseOfZeroAndOneAreUnderstood) {
+  const auto report = [&] { return nlohmann::json::parse(read_bytes(path("out/report.json"))); };
+  succeed(reconstruct({"--method", "hull"}));
+  const double right = report()["voxels_kept"];
+  for (int view = 0; view < kViews; ++view) {
+    std::vector<std::uint8_t> ones = io::read_mask(mask_file(view)).coverage;
+    for (std::uint8_t& value : ones) value = value >= 128;
+    io::write_png(mask_file(view), kWidth, kHeight, 1, ones);
+  }
+  const Finished run = succeed(reconstruct({"--method", "hull"}));
+  EXPECT_THAT(run.err, HasSubstr("16 masks have no other values than 0 and 1"));
+  EXPECT_NEAR(report()["voxels_kept"], right, 0.02 * right);
+}
+
 TEST_F(BadMasks, HolesInThemAreMendedUnlessTheyAreToBeKept) {
   // Discs of 4 pixels' radius out of the sphere's middle, in every view.
   for (int view = 0; view < kViews; ++view) {

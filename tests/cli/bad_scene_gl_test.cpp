@@ -116,8 +116,10 @@ TEST_F(BadScene, Box) {
   refuse({"no camera has the box from --box"}, {"--views", "0-1", "--box", "0 0 100 1 1 101"});
   refuse({"a pixel is 0.027", "check the box's units"},
          {"--box", "0.1 -0.2 0.3 0.101 -0.199 0.301", "--quality", "draft"});
-  // With masks such a box is made smaller.
+  // With masks such a box is made smaller; without them it may be a room, but for hulls.
   refuse({"camera view", "inside the box from --box"},
+         {"--box", "-9 -9 -9 9 9 9", "--masks", "none", "--method", "hull"});
+  refuse({"no surface was found", "cameras stand inside the box from --box"},
          {"--box", "-9 -9 -9 9 9 9", "--masks", "none"});
 }
 

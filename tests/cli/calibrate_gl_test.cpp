@@ -111,6 +111,72 @@ TEST_F(CalibrateCommand, TurntablesBecomeScenes) {
   EXPECT_NEAR(std::acos((a.x * b.x + a.y * b.y) / (a.x * a.x + a.y * a.y)) / kRadian, 20, 1e-4);
 }
 
+TEST_F(CalibrateCommand, ABoardWithColumnsAndRowsSwappedIsRefusedAndTheRightOneNamed) {
+  for (int i = 0; i < 6; ++i)
+    save(photograph(lens_, pose_of(i, {4, 3}, 10), charuco(8, 6)), concat("boards/", i, ".png"));
+  const auto calibrate = [&](const char* columns, const char* rows) {
+    return run({"calibrate", path("boards"), "--board", "charuco", "--columns", columns, "--rows",
+                rows, "--lens", "pinhole", "--out", path("c.json")},
+               false);
+  };
+  const Finished swapped = calibrate("6", "8");
+  EXPECT_EQ(swapped.code, 1);
+  EXPECT_THAT(swapped.err, HasSubstr("with --columns 8 --rows 6 the boards fit to 0."));
+  EXPECT_FALSE(std::filesystem::exists(path("c.json")));
+  const Finished corners = calibrate("7", "5");  // counted as on a chessboard
+  EXPECT_EQ(corners.code, 1);
+  EXPECT_THAT(corners.err, HasSubstr("with --columns 8 --rows 6"));
+  const Finished right = calibrate("8", "6");
+  EXPECT_EQ(right.code, 0) << right.err;
+  EXPECT_THAT(right.err, testing::Not(HasSubstr("warning")));
+  EXPECT_LT(read("c.json")["object_error"], 0.3);
+  EXPECT_EQ(read("c.json")["warnings"], json::array());
+}
+
+TEST_F(CalibrateCommand, ChessboardsCountedInSquaresAreNamed) {
+  for (int i = 0; i < 5; ++i)
+    save(photograph(lens_, pose_of(i, {3, 1.5}, 11), chess(7, 4)), concat("boards/", i, ".png"));
+  const Finished found = run({"calibrate", path("boards"), "--columns", "8", "--rows", "5",
+                              "--lens", "pinhole", "--out", path("c.json")},
+                             false);
+  EXPECT_EQ(found.code, 1);
+  EXPECT_THAT(found.err, HasSubstr("with --columns 7 --rows 4"));
+}
+
+TEST_F(CalibrateCommand, AFlatBoardOnATurntableNeedsAKnownLens) {
+  const glm::dvec3 axis = glm::normalize(glm::dvec3(0.02, -0.8, -0.6)), point(0, 0, 11);
+  const glm::dvec3 x = glm::normalize(glm::cross(axis, glm::dvec3(0, 0, 1)));
+  const glm::dmat3 flat(x, -glm::cross(axis, x), -axis);
+  for (int i = 0; i < 9; ++i) {
+    const glm::dmat3 r = glm::mat3_cast(glm::angleAxis(20 * i * kRadian, axis)) * flat;
+    save(photograph(lens_, {r, point - r * glm::dvec3(3, 1.5, 0)}, chess(7, 4)),
+         concat("table/", i, ".png"));
+  }
+  const Arguments table = {"calibrate",       path("table"), "--turntable", "--step", "20",
+                           "--columns",       "7",           "--rows",      "4",      "--out",
+                           path("table.json")};
+  const Finished refused = run(table, false);
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("lean the board on the table"));
+  EXPECT_THAT(refused.out, HasSubstr("at the object"));  // the numbers are shown all the same
+  EXPECT_FALSE(std::filesystem::exists(path("table.json")));
+  // The lens from boards that are tilted.
+  for (int i = 0; i < 8; ++i)
+    save(photograph(lens_, pose_of(i, {3, 1.5}, 11), chess(7, 4)), concat("lens/", i, ".png"));
+  ASSERT_EQ(run({"calibrate", path("lens"), "--out", path("lens.json")}).code, 0);
+  Arguments known = table;
+  known.insert(known.end(), {"--lens-from", path("lens.json")});
+  const Finished found = run(known, false);
+  ASSERT_EQ(found.code, 0) << found.err;
+  const json result = read("table.json");
+  EXPECT_EQ(result["lens_known"], true);
+  EXPECT_EQ(result["camera_matrix"], read("lens.json")["camera_matrix"]);
+  const glm::dvec3 direction(result["turntable"]["axis"][0], result["turntable"]["axis"][1],
+                             result["turntable"]["axis"][2]);
+  EXPECT_LT(std::acos(std::min(1.0, std::abs(glm::dot(direction, axis)))) / kRadian, 0.3);
+  EXPECT_LT(result["object_error"], 0.5);
+}
+
 TEST_F(CalibrateCommand, OptionsThatDoNotFitAreRefused) {
   save(paint_srgb(32, 24, [](double, double) { return glm::vec3(0.5f); }), "plain/1.png");
   const std::string out = path("c.json");
@@ -132,7 +198,11 @@ TEST_F(CalibrateCommand, OptionsThatDoNotFitAreRefused) {
   refused(2, {"calibrate", plain, "--out", out, "--rig", "{camera}/{moment}", "--board", "circles"},
           "half a turn");
   refused(1, {"convert", plain, "--images", plain, "--to", "nvm", "--out", path("s")},
+          "no scene found here");
+  refused(1,
+          {"convert", plain, "--images", plain, "--step", "5", "--to", "nvm", "--out", path("s")},
           "no file of photohull calibrate");
+  refused(2, {"calibrate", plain, "--out", out, "--lens", "brown", "--lens-from", plain}, "--lens");
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 

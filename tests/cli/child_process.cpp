@@ -72,6 +72,14 @@ Channel open_terminal() {
     const rlimit limit{*options.file_size_limit, *options.file_size_limit};
     ::setrlimit(RLIMIT_FSIZE, &limit);
   }
+  if (options.data_limit) {
+    const rlimit limit{*options.data_limit, *options.data_limit};
+    ::setrlimit(RLIMIT_DATA, &limit);
+  }
+  if (options.cpu_seconds) {
+    const rlimit limit{*options.cpu_seconds, *options.cpu_seconds};
+    ::setrlimit(RLIMIT_CPU, &limit);
+  }
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::signal(signal, SIG_DFL);
   for (const std::string& variable : options.environment)
     ::putenv(const_cast<char*>(variable.c_str()));

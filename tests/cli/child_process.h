@@ -14,6 +14,10 @@ struct RunOptions {
   bool error_terminal = false;
   /// No file may grow beyond this many bytes: writes fail as on a full disk.
   std::optional<rlim_t> file_size_limit;
+  /// The child's data may not grow beyond this many bytes: allocations fail.
+  std::optional<rlim_t> data_limit;
+  /// The child is killed when it has used so many seconds of a processor, which fails the test.
+  std::optional<rlim_t> cpu_seconds;
   /// Standard output goes to this file (/dev/full, say) instead of a pipe.
   std::string output_file;
   /// `signal` is sent once, so many seconds after this text has come on standard error.

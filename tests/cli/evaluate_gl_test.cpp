@@ -45,6 +45,71 @@ class Evaluate : public testing::Test {
   ScratchFolder folder_;
 };
 
+TEST_F(Evaluate, AnotherFrameIsToldAndAlignedOnDemand) {
+  // Ten times as large, turned by a quarter about z, and away; its sides are unlike.
+  std::string text, moved;
+  const double sides[3] = {1, 2, 4};
+  for (int i = 0; i < 8; ++i) {
+    const double p[3] = {i & 1 ? sides[0] : 0, i & 2 ? sides[1] : 0, i & 4 ? sides[2] : 0};
+    const auto line = [](double x, double y, double z) {
+      return "v " + std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z) + "\n";
+    };
+    text += line(p[0], p[1], p[2]);
+    moved += line(100 - 10 * p[1], 10 * p[0], 10 * p[2] - 7);
+  }
+  const std::string faces = box_obj(1).substr(box_obj(1).find("f "));
+  write_text(folder_ / "truth.obj", text + faces);
+  write_text(folder_ / "away.obj", moved + faces);
+  const Finished away = evaluate({"--json"}, "away.obj");
+  ASSERT_EQ(away.code, 0) << away.err;
+  const json off = json::parse(away.out);
+  EXPECT_EQ(off["f"][0]["f"], 0);
+  EXPECT_FALSE(off.contains("alignment"));
+  EXPECT_THAT(std::string(off["warnings"][0]), HasSubstr("--align"));
+  const json j = json::parse(evaluate({"--json", "--align"}, "away.obj").out);
+  EXPECT_EQ(j["f"][0]["f"], 1);
+  EXPECT_EQ(j["warnings"], json::array());
+  EXPECT_NEAR(j["alignment"]["scale"], 0.1, 1e-6);
+  EXPECT_LT(j["alignment"]["rms"], 1e-5);
+  EXPECT_EQ(j["alignment"]["rotation"].size(), 3u);
+  EXPECT_THAT(evaluate({"--align"}, "away.obj").out,
+              HasSubstr("aligned     scaled by 0.1, turned by"));
+  fail(2, run_photohull({"evaluate", path("result.obj"), "--align", "--photos", "x"}), "--align");
+}
+
+TEST_F(Evaluate, PointsServeAsTruth) {
+  std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 2402\nproperty float x\nproperty float y\n"
+      "property float z\nend_header\n";
+  int count = 0;
+  for (int i = 0; i <= 20; ++i)
+    for (int j = 0; j <= 20; ++j)
+      for (int k = 0; k <= 20; ++k)
+        if (i % 20 == 0 || j % 20 == 0 || k % 20 == 0) {
+          ply += std::to_string(i / 20.0) + " " + std::to_string(j / 20.0) + " " +
+                 std::to_string(k / 20.0) + "\n";
+          ++count;
+        }
+  ASSERT_EQ(count, 2402);
+  write_text(folder_ / "scan.ply", ply);
+  const Arguments by_scan = {"evaluate",       path("truth.obj"), "--truth",
+                             path("scan.ply"), "--samples",       "5000"};
+  const Finished text = run_photohull(by_scan);
+  ASSERT_EQ(text.code, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("the nearest of 2402 points, which are 0.05 apart"));
+  EXPECT_THAT(text.out, HasSubstr("IoU not known: the truth has no faces"));
+  Arguments as_json = by_scan;
+  as_json.push_back("--json");
+  const json j = json::parse(run_photohull(as_json).out);
+  EXPECT_EQ(j["truth_mode"], "points");
+  EXPECT_EQ(j["completeness"], 1);
+  EXPECT_LT(j["accuracy"], 0.04);
+  EXPECT_GT(j["accuracy"], 0.01);  // of places between the points
+  Arguments picture = by_scan;
+  picture.insert(picture.end(), {"--error-image", path("e.png")});
+  fail(1, run_photohull(picture), "has no faces; --error-image");
+}
+
 TEST_F(Evaluate, TextAndJsonTellTheSame) {
   const Finished text = evaluate({});
   ASSERT_EQ(text.code, 0) << text.err;

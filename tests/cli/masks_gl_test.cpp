@@ -54,6 +54,10 @@ TEST_F(MasksCommand, OnePlateServesAFixedCamera) {
       json::parse(succeed(masks({"--masks", out(), "--compare", path("cutouts"), "--json"})).out);
   EXPECT_EQ(given["views"][5]["iou"], j["views"][5]["iou"]);
   EXPECT_EQ(given["views"][5]["confidence"], 1.0);
+  std::filesystem::remove(mask_file(5));
+  const Finished lacking = run_photohull(masks({"--masks", out(), "--compare", path("cutouts")}));
+  EXPECT_EQ(lacking.code, 1);
+  EXPECT_THAT(lacking.err, testing::HasSubstr("there is no mask for view5.png"));
 }
 
 TEST_F(MasksCommand, ReportsSayHowSureTheMasksAre) {

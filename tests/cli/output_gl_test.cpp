@@ -3,6 +3,7 @@
 
 #include <csignal>
 
+#include "core/folder_lock.h"
 #include "sphere_scene.h"
 
 namespace photohull::test {
@@ -105,6 +106,41 @@ TEST_F(Output, ABarOnATerminal) {
   EXPECT_THAT(run.out, StartsWith("{"));
   EXPECT_THAT(run.err, ContainsRegex("\\[#*\\.*\\] +[0-9]+ % refine, [0-9]+ s left"));
   EXPECT_THAT(run.err, testing::EndsWith("\r\033[K"));  // the line is given back clean
+}
+
+TEST_F(Output, PlainLinesOnATerminalThatTakesNoEscapeSequences) {
+  for (const char* plain : {"TERM=dumb", "NO_COLOR=1"}) {
+    RunOptions terminal;
+    terminal.error_terminal = true;
+    terminal.environment = {"TERM=xterm", plain};
+    const Finished run = succeed(reconstruct({"--method", "hull"}), terminal);
+    EXPECT_THAT(run.err, AllOf(Not(HasSubstr("\033")), HasSubstr("] hull"))) << plain;
+  }
+}
+
+TEST_F(Output, ASecondJobIntoTheSameFolderIsRefused) {
+  put_earlier_results();
+  {
+    const FolderLock first(out(), "--out");
+    fail(1, reconstruct({"--method", "hull"}),
+         {"--out " + out(), "another photohull is at work there"});
+    expect_earlier_results();
+    succeed({"reconstruct", scene(), "--out", path("other"), "--method", "hull"});
+  }
+  succeed(reconstruct({"--method", "hull"}));
+}
+
+TEST_F(Output, AJobThatGoesOnSaysSo) {
+  RunOptions stopped;
+  stopped.signal = SIGINT;
+  stopped.signal_after = " refine\n";
+  const fs::path checkpoint = fs::path(out()) / ".photohull-checkpoint";
+  for (double delay = 0.5; !fs::exists(checkpoint) && delay < 60; delay *= 1.5) {
+    stopped.signal_delay_seconds = delay;
+    stopped.may_end_before_signal = true;
+    ASSERT_EQ(run_photohull(long_job(), stopped).code, 130);
+  }
+  EXPECT_THAT(succeed(long_job()).err, HasSubstr("note: an interrupted run of this job had done"));
 }
 
 TEST_F(Output, AnErrorOnATerminalStandsOnALineOfItsOwn) {

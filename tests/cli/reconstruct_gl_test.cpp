@@ -1,5 +1,6 @@
 // Reconstructions that work: what is written, and what the options do to it.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -72,7 +73,7 @@ TEST_F(Reconstruct, ReportHasTheDocumentedFields) {
     "thin_parts": {"line_pixels": 1, "looked_at": 1, "unexplained": 1, "placed": 1, "restored_pixels": 1, "stem_vertices": 1},
     "photo": {"sweeps": 1, "voxels_judged": 1, "voxels_carved": 1, "voxels_undecided": 1},
     "resumed_levels": 0, "refine": [], "refine_fits": [], "mesh": {"vertices": 1, "triangles": 1, "uniform_triangles": 1,
-    "sharpened_vertices": 1, "unseen_share": 0.1}, "photometric": {"used": true}, "sharpness": []})");
+    "sharpened_vertices": 1, "unseen_share": 0.1}, "photometric": {"used": true}, "sharpness": [], "inputs": [], "surroundings": []})");
   const json fields = schema.flatten();
   for (const auto& [key, value] : fields.items()) {
     const json::json_pointer pointer(key);
@@ -362,14 +363,71 @@ TEST_F(Reconstruct, VoxelSizeIsTaken) {
 }
 
 TEST_F(Reconstruct, SameBytesInEveryRunWhateverTheThreads) {
-  succeed(reconstruct({"--threads", "1"}));
-  const std::string mesh = read_bytes(path("out/mesh.ply"));
-  succeed(reconstruct({"--threads", "2"}));
-  EXPECT_TRUE(mesh == read_bytes(path("out/mesh.ply")));
-  const std::string volume = read_bytes(path("out/volume.vdb"));
-  succeed(reconstruct({"--threads", "2"}));
-  EXPECT_TRUE(mesh == read_bytes(path("out/mesh.ply")));
-  EXPECT_TRUE(volume == read_bytes(path("out/volume.vdb")));
+  for (const std::string method : {"hull", "voxel-coloring", "space-carving", "refine"}) {
+    std::string mesh, volume;
+    for (const std::string threads : {"1", "2", "3", "2"}) {
+      succeed(reconstruct({"--method", method, "--threads", threads}));
+      if (mesh.empty()) {
+        mesh = read_bytes(path("out/mesh.ply"));
+        volume = read_bytes(path("out/volume.vdb"));
+      }
+      EXPECT_TRUE(mesh == read_bytes(path("out/mesh.ply"))) << method << ", " << threads;
+      EXPECT_TRUE(volume == read_bytes(path("out/volume.vdb"))) << method << ", " << threads;
+    }
+  }
+}
+
+TEST_F(Reconstruct, ABoxTakenExactlyCutsTheSurface) {
+  const Arguments half = {"--method", "hull", "--box", "0.1 -1.2 -0.7 1.1 0.8 1.3"};
+  const auto lowest = [&](Arguments more) {
+    more.insert(more.begin(), half.begin(), half.end());
+    succeed(reconstruct(more));
+    double least = 1e9;
+    const TriMesh cut = mesh();
+    for (std::size_t i = 0; i < cut.positions.size(); ++i) least = std::min(least, cut.world(i).x);
+    return least;
+  };
+  EXPECT_LT(lowest({}), 0.1 - 0.01);  // half a voxel of slack
+  EXPECT_NEAR(lowest({"--box-exact"}), 0.1, 1e-6);
+  EXPECT_EQ(report()["options"]["box_exact"], "true");
+  EXPECT_EQ(open_edges(mesh()), 0u);
+}
+
+TEST_F(Reconstruct, ABoxTakenExactlyIsNotMadeSmaller) {
+  const Arguments large = {"--method",     "hull", "--box", "-2.3 -2.3 -2.3 2.3 2.3 2.3",
+                           "--resolution", "200"};
+  succeed(reconstruct(large));
+  EXPECT_THAT(report()["box"]["source"], HasSubstr("made smaller by the silhouettes"));
+  for (const std::vector<std::string>& stands :
+       {std::vector<std::string>{"--box-exact"}, {"--lattice", "fixed"}}) {
+    Arguments more = large;
+    more.insert(more.end(), stands.begin(), stands.end());
+    // What few views see of so large a box may fail the result's own checks; the files are there.
+    EXPECT_THAT(run_photohull(reconstruct(more)).code, testing::AnyOf(0, 3));
+    EXPECT_EQ(report()["box"]["source"], "--box");
+    EXPECT_DOUBLE_EQ(report()["grid"]["voxel_size"], 4.6 / 200);
+  }
+}
+
+// Two boxes whose corners are whole voxels apart, and other views: the same voxels.
+TEST_F(Reconstruct, AFixedLatticeFollowsBoxAndSizeAlone) {
+  const Arguments fixed = {"--method", "hull", "--lattice", "fixed", "--voxel-size", "0.0625"};
+  const auto grid_of = [&](Arguments more) {
+    more.insert(more.begin(), fixed.begin(), fixed.end());
+    succeed(reconstruct(more));
+    return report()["grid"];
+  };
+  const json all = grid_of({"--box", "-1 -1.25 -0.75 1 1 1.5"});
+  for (int axis = 0; axis < 3; ++axis)
+    EXPECT_DOUBLE_EQ(all["origin"][axis].get<double>(),
+                     (std::array{-1.0, -1.25, -0.75})[std::size_t(axis)] - 2.5 * 0.0625);
+  EXPECT_EQ(read_vdb_surface(path("out/volume.vdb")).grid.voxel_size, 0.0625);
+  const json fewer = grid_of({"--box", "-1 -1.25 -0.75 1 1 1.5", "--views", "0-9"});
+  EXPECT_EQ(fewer["origin"], all["origin"]);
+  EXPECT_EQ(fewer["voxels"], all["voxels"]);
+  const json part = grid_of({"--box", "-0.5 -1.25 -0.75 1 1 1.5"});
+  EXPECT_DOUBLE_EQ(part["origin"][0].get<double>() - all["origin"][0].get<double>(), 0.5);
+  EXPECT_EQ(part["origin"][1], all["origin"][1]);
 }
 
 // llvmpipe with vectors half as wide stands for another device: threads run in other groups.

@@ -1,7 +1,10 @@
 // The command line itself: help, info, devices, and everything that is wrong usage.
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "io/image_file.h"
+#include "io/load_scene.h"
+#include "io/write_scene.h"
 #include "sphere_scene.h"
 
 namespace photohull::test {
@@ -78,6 +81,72 @@ TEST_F(Usage, InfoEstimatesTheJobThatIsAskedFor) {
               HasSubstr("would take more memory than it may (1 MiB; --max-memory)"));
 }
 
+TEST_F(Usage, InfoTellsWhatItKnowsWhereTheBoxCannotBeUsed) {
+  // Points of the sphere, and a few of its surroundings.
+  for (int i = 0; i < 400; ++i) {
+    const double z = (i + 0.5) / 200 - 1, turn = 2.4 * i, r = std::sqrt(1 - z * z);
+    scene_.points.push_back(kCentre +
+                            kRadius * glm::dvec3(r * std::cos(turn), r * std::sin(turn), z));
+  }
+  for (int i = 0; i < 4; ++i) scene_.points.push_back(kCentre + glm::dvec3(30 + i, 5 * i, -20));
+  scene_.box.reset();
+  io::write_scene(scene_, SceneFormat::kColmapText, path("colmap"));
+  // Nothing of it is in any picture.
+  const Arguments arguments = {"info", path("colmap"), "--box", "0 0 100 1 1 101"};
+  const Finished run = run_photohull(arguments);
+  EXPECT_EQ(run.code, 1);
+  EXPECT_THAT(run.err, HasSubstr("no camera has the box from --box on its image"));
+  for (const char* part :
+       {"views          16", "box            (0 0 100) to (1 1 101)", "cameras at ",
+        "sparse points  404", "   0 to 100 %", "  25 to  75 %", "suggestion     --box \""})
+    EXPECT_THAT(run.out, HasSubstr(part));
+  Arguments as_json = arguments;
+  as_json.push_back("--json");
+  const json info = json::parse(run_photohull(as_json).out);
+  EXPECT_THAT(std::string(info["failure"]), HasSubstr("no camera has the box"));
+  EXPECT_EQ(info["points"]["count"], 404);
+  EXPECT_GT(info["points"]["extents"][0]["max"][0], 30);
+  EXPECT_FALSE(info.contains("memory_bytes"));
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR(info["points"]["extents"][2]["max"][axis], kCentre[axis] + 0.9 * kRadius, 0.1);
+    const double low = info["suggested_box"]["min"][axis],
+                 high = info["suggested_box"]["max"][axis];
+    EXPECT_LT(low, kCentre[axis] - kRadius);
+    EXPECT_GT(high, kCentre[axis] + kRadius);
+    EXPECT_LT(high - low, 3 * kRadius);
+  }
+  // Without points, the cameras tell where they look.
+  const json bare =
+      json::parse(run_photohull({"info", scene(), "--box", "0 0 100 1 1 101", "--json"}).out);
+  EXPECT_EQ(bare["points"]["count"], 0);
+  for (int axis = 0; axis < 3; ++axis)
+    EXPECT_NEAR(
+        (double(bare["suggested_box"]["min"][axis]) + double(bare["suggested_box"]["max"][axis])) /
+            2,
+        kCentre[axis], 0.05);
+  // What serves says nothing of this.
+  EXPECT_FALSE(json::parse(succeed({"info", scene(), "--json"}).out).contains("suggested_box"));
+}
+
+TEST_F(Usage, SwappedCornersOfTheBoxAreSortedAndTold) {
+  const Finished run = succeed({"info", scene(), "--box", "0.9 -1 -0.5 -0.7 0.6 1.1"});
+  EXPECT_THAT(run.out, HasSubstr("box            (-0.7 -1 -0.5) to (0.9 0.6 1.1), from --box"));
+  EXPECT_THAT(run.out, HasSubstr("warning: the corners of --box are swapped along x"));
+}
+
+TEST_F(Usage, PhotographsElsewhereServeEveryCommand) {
+  std::filesystem::rename(folder_ / "images", folder_ / "elsewhere");
+  fail(1, {"info", scene()}, {"not found", "--images"});
+  const std::string there = path("elsewhere");
+  succeed({"info", scene(), "--images", there});
+  succeed({"convert", scene(), "--images", there, "--to", "transforms", "--out", path("t")});
+  succeed({"masks", scene(), "--images", there, "--out", path("m")});
+  succeed(reconstruct({"--images", there, "--method", "hull"}));
+  succeed(
+      {"evaluate", out() + "/mesh.ply", "--photos", scene(), "--images", there, "--views", "0"});
+  EXPECT_EQ(io::load_scene(folder_ / "t").views[0].image.parent_path(), folder_ / "elsewhere");
+}
+
 TEST_F(Usage, InfoFindsABoxThatTheSceneDoesNotGive) {
   std::filesystem::remove(folder_ / "bbox.txt");
   EXPECT_THAT(succeed({"info", scene()}).out, HasSubstr("found: "));
@@ -112,7 +181,10 @@ TEST_F(Usage, BoxesThatAreOutOfRange) {
   for (const char* bad : {"0", "-1", "nan", "0.01", "1000"})
     refuse({"--box-scale", bad}, {"--box-scale", "a factor from 0.05 to 20"});
   refuse({"--box", "automatic"}, {"--box", "expected auto or six numbers"});
-  fail(1, {"info", scene(), "--box", "0 0 40 1 1 41"}, {"no camera has the box from --box"});
+  const Finished info = run_photohull({"info", scene(), "--box", "0 0 40 1 1 41"});
+  EXPECT_EQ(info.code, 1);
+  EXPECT_THAT(info.err, HasSubstr("no camera has the box from --box"));
+  EXPECT_THAT(info.out, HasSubstr("suggestion"));
 }
 
 TEST_F(Usage, InfoDrawsTheBox) {
@@ -146,6 +218,60 @@ TEST_F(Usage, ParserErrorsAreOneLine) {
   refuse({"--resolutoin", "32"}, {"--resolutoin"});
   refuse({"surplus"}, {"surplus"});
   refuse({"--resolution"}, {"--resolution"});
+}
+
+TEST_F(Usage, NamesThatMayHaveBeenMeant) {
+  fail(2, {"recosntruct", scene()}, {"no command recosntruct", "did you mean reconstruct?"});
+  fail(2, {"bench", "sampleing"}, {"no command sampleing", "did you mean sampling?"});
+  fail(2, {"--versoin"}, {"no option --versoin", "did you mean --version?"});
+  refuse({"--resolutoin", "32"},
+         {"no option --resolutoin of photohull reconstruct", "did you mean --resolution?"});
+  refuse({"--qualty=high"}, {"no option --qualty", "did you mean --quality?"});
+  // What is missing may be misspelt.
+  fail(2, {"reconstruct", scene(), "--outt", out()}, {"no option --outt", "did you mean --out?"});
+  refuse({"--enigma", "32"}, {"no option --enigma", "see --help"});
+}
+
+TEST_F(Usage, VersionAsJson) {
+  const json version = json::parse(succeed({"--version", "--json"}).out);
+  EXPECT_THAT(succeed({"--version"}).out,
+              "photohull " + version["version"].get<std::string>() + "\n");
+  EXPECT_FALSE(version["commit"].get<std::string>().empty());
+  for (const char* library : {"OpenVDB", "OpenCV", "Ceres", "OpenImageIO", "embree", "TBB"})
+    EXPECT_THAT(version["libraries"][library].get<std::string>(), testing::ContainsRegex("^[0-9]"))
+        << library;
+  EXPECT_FALSE(version["device"]["renderer"].get<std::string>().empty());
+  fail(2, {"--json"}, {"a command is missing"});
+  fail(2, {"--json", "devices"}, {"--json stands behind the command"});
+}
+
+TEST_F(Usage, PlansAreCheckedBeforeTheFirstRun) {
+  write_bytes(path("gt.ply"), "");
+  const std::string head = R"({"scenes": [{"path": ".", "name": "ball"}], "resolutions": [16], )";
+  const auto refuse_plan = [&](const std::string& rest, const std::vector<std::string>& parts) {
+    write_bytes(path("plan.json"), head + rest + "}");
+    fail(1, {"chart", path("plan.json"), "--out", out()}, parts);
+    EXPECT_FALSE(std::filesystem::exists(out()));
+  };
+  refuse_plan(R"("methods": ["hull", "magic"])", {"plan.json", "ball: magic 16", "--method magic"});
+  refuse_plan(R"("methods": ["hull"], "arguments": ["--qualty", "draft"])",
+              {"plan.json", "ball: hull 16", "no option --qualty", "did you mean --quality?"});
+  refuse_plan(R"("methods": ["hull"], "arguments": ["--sampler", "ewa"])", {"--sampler"});
+  refuse_plan(R"("variants": [{"name": "both", "arguments": ["--voxel-size", "1"]}])",
+              {"ball: both 16", "exclude each other"});
+  write_bytes(path("stress.json"), R"({"scenes": [{"name": "ball", "spec": {}}],
+      "arguments": ["--metod", "hull"],
+      "axes": [{"name": "noise", "fields": ["degradations.read_noise"], "strengths": [0.1]}]})");
+  fail(1, {"stress", path("stress.json"), "--out", out()}, {"stress.json", "--metod"});
+}
+
+TEST_F(Usage, FixedLatticesNeedWhatDoesNotFollowThePhotographs) {
+  refuse({"--lattice", "loose"}, {"--lattice loose", "fit, fixed"});
+  fail(2, {"reconstruct", scene(), "--out", out(), "--lattice", "fixed"},
+       {"--lattice fixed", "--voxel-size or --resolution"});
+  refuse({"--lattice", "fixed", "--box", "auto"}, {"--lattice fixed", "--box auto"});
+  std::filesystem::remove(folder_ / "bbox.txt");
+  fail(1, reconstruct({"--lattice", "fixed"}), {"--lattice fixed", "give --box"});
 }
 
 TEST_F(Usage, NumbersOutOfRange) {
@@ -215,6 +341,16 @@ TEST_F(Usage, Views) {
   refuse({"--views", "5-2"}, {"--views", "backwards"});
   refuse({"--views", "1,,2"}, {"--views", "empty item"});
   refuse({"--views", ""}, {"--views"});
+}
+
+TEST_F(Usage, AClosedPipeEndsQuietly) {
+  const auto pipe = [&](const std::string& command) {
+    return run_program(
+        {"bash", "-c",
+         "(sleep 1; " PHOTOHULL_PROGRAM " " + command + "; echo \"code $?\" >&2) | true; sleep 2"});
+  };
+  EXPECT_EQ(pipe("info " + scene()).err, "code 0\n");
+  EXPECT_EQ(pipe("reconstruct --help").err, "code 0\n");
 }
 
 TEST_F(Usage, AFullStandardOutputIsAFailure) {

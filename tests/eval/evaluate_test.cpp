@@ -45,27 +45,72 @@ TEST(Evaluate, AShiftedPlateIsOffByTheShift) {
   EvaluateOptions options = few();
   options.absolute = {d - 1e-6, d + 1e-6};
   const Evaluation above = evaluate(plate(-50, -50, d, 100, 7), truth, options);
-  for (const double value : {above.all.accuracy, above.all.to_truth.mean, above.all.to_truth.median,
-                             above.all.to_truth.rms, above.all.to_truth.max, above.all.mean_signed,
-                             above.to_result.mean, above.hausdorff95, above.chamfer})
+  for (const double value :
+       {above.all.accuracy, above.all.to_truth.mean, above.all.to_truth.median,
+        above.all.to_truth.rms, above.all.to_truth.max, above.all.mean_signed.value(),
+        above.to_result.mean, above.hausdorff95, above.chamfer})
     EXPECT_NEAR(value, d, 1e-6);
   EXPECT_EQ(above.all.absolute[0].f, 0);
   EXPECT_EQ(above.all.absolute[1].f, 1);
   EXPECT_NEAR(above.all.absolute[1].threshold, d / (100 * std::sqrt(2)), 1e-7);
   EXPECT_NEAR(above.all.normals->mean, 0, 1e-6);
   const Evaluation below = evaluate(plate(-50, -50, -d, 100, 7), truth, options);
-  EXPECT_NEAR(below.all.mean_signed, -d, 1e-6);
+  EXPECT_NEAR(below.all.mean_signed.value(), -d, 1e-6);
   EXPECT_FALSE(below.volume.known);
+}
+
+TEST(Evaluate, PointsAsTruthGiveDistancesWithoutSigns) {
+  TriMesh points = test::sphere({1, 2, 3}, 1, 6);
+  points.triangles.clear();
+  const Truth truth(points);
+  const Evaluation e = evaluate(test::sphere({1, 2, 3}, 1.05, 6), truth, few());
+  EXPECT_TRUE(e.truth_is_points);
+  EXPECT_NEAR(e.all.to_truth.median, 0.05, 2e-3);  // the points are 0.02 apart
+  EXPECT_NEAR(e.to_result.median, 0.05, 3e-4);
+  EXPECT_NEAR(e.chamfer, 0.05, 2e-3);
+  EXPECT_FALSE(e.all.mean_signed);
+  EXPECT_FALSE(e.all.normals);
+  EXPECT_THAT(e.volume.reason, HasSubstr("the truth has no faces"));
+  const auto j = nlohmann::json::parse(to_json(e));
+  EXPECT_EQ(j["truth_mode"], "points");
+  EXPECT_TRUE(j["mean_signed"].is_null());
+  EXPECT_EQ(j["gt_faces"], 0);
+  // Half of the result is missing: so are half of the points.
+  TriMesh half = test::sphere({1, 2, 3}, 1, 6);
+  std::erase_if(half.triangles, [&](const auto& t) { return half.positions[t[0]].z < 0; });
+  const Evaluation missing = evaluate(half, truth, few());
+  EXPECT_NEAR(missing.completeness, 0.5, 0.03);
+  EXPECT_GT(missing.all.scores[3].precision, 0.95);
+}
+
+TEST(Evaluate, FramesThatHaveNothingToDoWithEachOtherAreTold) {
+  const Truth truth(test::sphere({1, 2, 3}, 1, 4));
+  const auto warnings = [&](const TriMesh& result) {
+    std::string all;
+    for (const std::string& text : evaluate(result, truth, few()).warnings) all += text;
+    return all;
+  };
+  EXPECT_EQ(warnings(test::sphere({1.3, 2, 3}, 1.2, 4)), "");
+  EXPECT_THAT(warnings(test::sphere({1, 2, 3}, 1000, 4)), HasSubstr("1000 times as large"));
+  EXPECT_THAT(warnings(test::sphere({1, 2, 3}, 0.2, 4)), HasSubstr("0.2 times as large"));
+  EXPECT_THAT(warnings(test::sphere({1, 4, 3}, 1, 4)), HasSubstr("lies elsewhere"));
+  // A part of the truth, and debris far away.
+  TriMesh part = test::sphere({1, 2, 3}, 1, 4);
+  std::erase_if(part.triangles, [&](const auto& t) { return part.positions[t[0]].x < 0; });
+  EXPECT_EQ(warnings(part), "");
+  EXPECT_EQ(
+      warnings(test::together(test::sphere({1, 2, 3}, 1, 4), test::sphere({50, 2, 3}, 0.05, 1))),
+      "");
 }
 
 TEST(Evaluate, AGrownSphereIsOutsideByItsGrowth) {
   const Truth truth(test::sphere({1, 2, 3}, 1, 6));
   const Evaluation grown = evaluate(test::sphere({1, 2, 3}, 1.05, 6), truth, few());
   EXPECT_NEAR(grown.all.accuracy, 0.05, 3e-4);  // facets are that far below the sphere
-  EXPECT_NEAR(grown.all.mean_signed, 0.05, 3e-4);
+  EXPECT_NEAR(grown.all.mean_signed.value(), 0.05, 3e-4);
   EXPECT_NEAR(grown.volume.iou, 1 / std::pow(1.05, 3), 2e-3);
   const Evaluation shrunk = evaluate(test::sphere({1, 2, 3}, 0.95, 6), truth, few());
-  EXPECT_NEAR(shrunk.all.mean_signed, -0.05, 3e-4);
+  EXPECT_NEAR(shrunk.all.mean_signed.value(), -0.05, 3e-4);
 }
 
 TEST(Evaluate, HalfASphereIsHalfComplete) {

@@ -43,13 +43,30 @@ TEST(ReadTruth, ScenesWithAndWithoutVisibility) {
   EXPECT_THAT(read_truth(folder / "gt.ply").note, HasSubstr("all surface counts"));
 }
 
+TEST(ReadTruth, FilesOfPointsAreTakenForPoints) {
+  const ScratchFolder folder;
+  TriMesh points = test::plate(0, 0, 0, 2, 4);
+  points.triangles.clear();
+  write_ply(folder / "scan.ply", points);
+  const Truth truth = read_truth(folder / "scan.ply");
+  EXPECT_TRUE(truth.is_points());
+  EXPECT_DOUBLE_EQ(truth.spacing(), 0.5);
+  EXPECT_DOUBLE_EQ(truth.distance({0, 0.5, -3}), 3);
+  EXPECT_THAT(truth.note, HasSubstr("the nearest of 25 points, which are 0.5 apart"));
+  write_ply(folder / "gt.ply", points);
+  EXPECT_TRUE(read_truth((folder / "gt.ply").parent_path()).is_points());
+  EXPECT_FALSE(Truth(test::plate(0, 0, 0, 2, 4)).is_points());
+  TriMesh one;
+  one.positions = {{0, 0, 0}};
+  write_ply(folder / "gt.ply", one);
+  EXPECT_THAT(error_of(folder / "gt.ply"), HasSubstr("neither faces nor points"));
+}
+
 TEST(ReadTruth, WhatIsMissingIsNamed) {
   const ScratchFolder folder;
   const std::filesystem::path scene = (folder / "x").parent_path();
   EXPECT_THAT(error_of(folder / "nothing"), HasSubstr("nothing"));
   EXPECT_THAT(error_of(scene), HasSubstr("has no gt.ply"));
-  write_ply(folder / "gt.ply", two_points());
-  EXPECT_THAT(error_of(scene), HasSubstr("gt.ply: it has no faces"));
   TriMesh flat = test::plate(0, 0, 0, 1, 1);
   flat.triangles = {{0, 1, 1}};
   write_ply(folder / "gt.ply", flat);

@@ -28,6 +28,18 @@ TEST_F(BufferTest, KeepsWhatItWasMadeFrom) {
   }
 }
 
+TEST_F(BufferTest, LargerThanAStorageBlockIsRefusedWhereAKernelWouldReadIt) {
+  Limits low = context_.limits();
+  low.ssbo_bytes = 1000;
+  const Buffer fits(1000), larger(1001);
+  set_current_limits(&low);
+  EXPECT_NO_THROW(fits.bind_storage(0));
+  EXPECT_THROW(larger.bind_storage(0), Error);
+  EXPECT_NO_THROW(larger.bind_uniform(0));
+  set_current_limits(&context_.limits());
+  EXPECT_NO_THROW(larger.bind_storage(0));
+}
+
 TEST_F(BufferTest, WritesAndReadsRanges) {
   Buffer buffer(40);
   buffer.fill(0xffffffffu);

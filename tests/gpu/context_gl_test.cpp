@@ -15,7 +15,7 @@ TEST(Context, OffersWhatTheKernelsNeed) {
   EXPECT_GE(context.limits().ssbo_bytes, 16 << 20);
   EXPECT_GE(context.limits().texture_size, 8192);
   EXPECT_GE(context.limits().texture_layers, 256);
-  EXPECT_GE(context.limits().groups_x, 65535);
+  for (const std::int64_t groups : context.limits().groups) EXPECT_GE(groups, 65535);
   EXPECT_FALSE(context.device().renderer.empty());
   EXPECT_TRUE(context.device().problem.empty());
 }

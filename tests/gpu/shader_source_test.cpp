@@ -19,6 +19,15 @@ int occurrences(const std::string& text, const std::string& what) {
   return count;
 }
 
+// Program::dispatch splits launches; a kernel that asked the built-in indices would not notice.
+TEST(EmbeddedShaders, AskForTheirPlaceInTheWholeDispatch) {
+  for (const EmbeddedShader& shader : embedded_shaders()) {
+    if (shader.path == "include/dispatch.glsl") continue;
+    for (const char* index : {"gl_GlobalInvocationID", "gl_WorkGroupID", "gl_NumWorkGroups"})
+      EXPECT_THAT(std::string(shader.text), Not(HasSubstr(index))) << shader.path;
+  }
+}
+
 TEST(ExpandShader, BeginsWithTheVersionThenTheDefines) {
   EXPECT_THAT(expand_shader("carving_score_columns.comp.glsl", "#define N 3\n"),
               StartsWith("#version 450 core\n#define N 3\n#line 1 "));

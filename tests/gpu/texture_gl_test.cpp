@@ -42,6 +42,25 @@ TEST_F(TextureTest, SmallerUploadsLieAtTheOrigin) {
   EXPECT_EQ(out, std::vector<std::uint8_t>({1, 2, 3, 9, 4, 5, 6, 9, 9, 9, 9, 9, 9, 9, 9, 9}));
 }
 
+TEST_F(TextureTest, MoreThanTheDeviceHasIsRefusedByName) {
+  Limits low = context_.limits();
+  low.texture_size = 64, low.texture_layers = 3;
+  set_current_limits(&low);
+  EXPECT_NO_THROW(TextureArray(TextureFormat::kR8, 64, 64, 3));
+  const auto message = [](int width, int height, int layers) -> std::string {
+    try {
+      TextureArray(TextureFormat::kR8, width, height, layers);
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "";
+  };
+  for (const std::string& text : {message(65, 4, 1), message(4, 65, 1)})
+    EXPECT_NE(text.find("--image-scale"), std::string::npos) << text;
+  EXPECT_NE(message(4, 4, 4).find("--views"), std::string::npos) << message(4, 4, 4);
+  set_current_limits(&context_.limits());
+}
+
 TEST_F(TextureTest, LevelsReachDownToOnePixel) {
   EXPECT_EQ(TextureArray(TextureFormat::kR8, 64, 32, 1, 0).levels(), 7);
   EXPECT_EQ(TextureArray(TextureFormat::kR8, 65, 1, 1, 0).levels(), 7);

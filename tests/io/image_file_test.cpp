@@ -169,6 +169,52 @@ TEST_F(ImageFile, MaskComesFromLuminanceOrVaryingAlpha) {
   EXPECT_THAT(read_mask(folder_ / "ya.png").coverage, ElementsAre(0, 255));
 }
 
+TEST_F(ImageFile, MasksOfOnesAreLabels) {
+  write_png(folder_ / "ones.png", 3, 1, 1, std::vector<std::uint8_t>{0, 1, 0});
+  const FileMask ones = read_mask(folder_ / "ones.png");
+  EXPECT_THAT(ones.coverage, ElementsAre(0, 255, 0));
+  EXPECT_TRUE(ones.from_ones);
+  write_png(folder_ / "rgb.png", 2, 1, 3, std::vector<std::uint8_t>{1, 1, 1, 0, 0, 0});
+  EXPECT_THAT(read_mask(folder_ / "rgb.png").coverage, ElementsAre(255, 0));
+  write_png(folder_ / "faint.png", 3, 1, 1, std::vector<std::uint8_t>{0, 1, 2});
+  const FileMask faint = read_mask(folder_ / "faint.png");
+  EXPECT_THAT(faint.coverage, ElementsAre(0, 1, 2));
+  EXPECT_FALSE(faint.from_ones);
+  write_png(folder_ / "empty.png", 2, 1, 1, std::vector<std::uint8_t>{0, 0});
+  EXPECT_FALSE(read_mask(folder_ / "empty.png").from_ones);
+}
+
+TEST_F(ImageFile, WebPAndAvifAreReadAsTheyAreStored) {
+  for (const char* name : {"p.webp", "p.avif"}) {
+    if (!OIIO::ImageInput::create(name)) continue;  // the sentence below is for these
+    OIIO::ImageSpec spec = spec_of(32, 16, 3, OIIO::TypeDesc::UINT8);
+    spec.attribute("compression", "lossless");
+    const std::vector<std::uint8_t> grey(32 * 16 * 3, 120);
+    const auto writer = OIIO::ImageOutput::create((folder_ / name).string());
+    if (!writer) continue;
+    write_raw(folder_ / name, spec, grey);
+    fs::rename(folder_ / name, folder_ / "p.jpg");  // the signature tells
+    const ColourImage image = read_image(folder_ / "p.jpg");
+    EXPECT_EQ(image.width, 32) << name;
+    EXPECT_EQ(image.height, 16) << name;
+    EXPECT_NEAR(image.bytes[0], 120, 2) << name;
+    EXPECT_EQ(image.bytes[3], 255) << name;
+    EXPECT_NEAR(read_image(folder_ / "p.jpg", 0.5).bytes[0], 120, 2) << name;
+  }
+}
+
+TEST_F(ImageFile, OrientationIsToldAndNotApplied) {
+  OIIO::ImageSpec spec = spec_of(32, 16, 3, OIIO::TypeDesc::UINT8);
+  spec.attribute("Orientation", 6);
+  write_raw(folder_ / "o.jpg", spec, std::vector<std::uint8_t>(32 * 16 * 3, 120));
+  const ImageSize size = read_image_size(folder_ / "o.jpg");
+  EXPECT_EQ(size.width, 32);
+  EXPECT_EQ(size.height, 16);
+  EXPECT_EQ(size.orientation, 6);
+  write_png(folder_ / "n.png", 2, 1, 1, std::vector<std::uint8_t>{0, 0});
+  EXPECT_EQ(read_image_size(folder_ / "n.png").orientation, 1);
+}
+
 TEST_F(ImageFile, DeepMasksAreQuantised) {
   write_raw<std::uint16_t>(folder_ / "16.png", spec_of(3, 1, 1, OIIO::TypeDesc::UINT16),
                            {0, 32768, 65535});
@@ -188,7 +234,8 @@ TEST_F(ImageFile, MissingOrForeignFilesAreNamed) {
   EXPECT_THAT(error_of([&] { read_image(folder_ / "gone.png"); }), HasSubstr("gone.png"));
   const fs::path text = put("text.png", "this is no image at all");
   EXPECT_THAT(error_of([&] { read_image(text); }),
-              testing::AllOf(HasSubstr("text.png"), HasSubstr("cannot be read as an image")));
+              testing::AllOf(HasSubstr("text.png"), HasSubstr("cannot be read as an image"),
+                             HasSubstr("PNG, JPEG, TIFF, OpenEXR")));
   EXPECT_THAT(error_of([&] { read_image(folder_); }), HasSubstr("no such image file"));
 }
 

@@ -138,6 +138,24 @@ TEST_F(LoadScene, MasksAreFoundBesideTheImagesFolder) {
   EXPECT_THAT(scene.warnings, IsEmpty());
 }
 
+TEST_F(LoadScene, MasksMayBeCalledNameMask) {
+  put_image("masks/a_mask.png");
+  put_image("masks/b_mask.jpg");
+  put_image("masks/c.png");
+  Scene scene = load_scene(folder_);
+  EXPECT_EQ(scene.views[0].mask, folder_ / "masks/a_mask.png");
+  EXPECT_EQ(scene.views[1].mask, folder_ / "masks/b_mask.jpg");
+  EXPECT_EQ(scene.views[2].mask, folder_ / "masks/c.png");
+  fs::remove_all(folder_ / "masks");
+  // Without such a folder beside the photographs.
+  put_image("images/a_mask.png");
+  put_image("images/c_mask.png");
+  scene = load_scene(folder_);
+  EXPECT_EQ(scene.views[0].mask, folder_ / "images/a_mask.png");
+  EXPECT_EQ(scene.views[2].mask, folder_ / "images/c_mask.png");
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("no mask for 1 of 3 views (b.png)")));
+}
+
 TEST_F(LoadScene, AMaskDirectoryMayLackSome) {
   LoadSceneOptions options;
   options.masks = MaskSource::kDirectory;
@@ -211,6 +229,52 @@ TEST_F(LoadScene, BoxOptionComesFirst) {
   const Scene scene = load_scene(folder_, options);
   EXPECT_EQ(scene.box_source, "--box");
   EXPECT_EQ(scene.box->max, glm::dvec3(1, 2, 3));
+}
+
+TEST_F(LoadScene, SwappedCornersOfTheBoxOptionAreSortedAndTold) {
+  LoadSceneOptions options;
+  options.box = Box{{1, 0, 3}, {0, 2, 0}};
+  Scene scene = load_scene(folder_, options);
+  EXPECT_EQ(scene.box->min, glm::dvec3(0, 0, 0));
+  EXPECT_EQ(scene.box->max, glm::dvec3(1, 2, 3));
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("--box are swapped along x, z")));
+  options.box = Box{{0, 0, 0}, {1, 2, 3}};
+  EXPECT_THAT(load_scene(folder_, options).warnings, IsEmpty());
+}
+
+TEST_F(LoadScene, PhotographsElsewhereAreFoundByTheOption) {
+  fs::rename(folder_ / "images", folder_ / "moved");
+  EXPECT_THAT(error_with({}), AllOf(HasSubstr("not found"), HasSubstr("--images says where")));
+  LoadSceneOptions options;
+  options.images = folder_ / "moved";
+  const Scene scene = load_scene(folder_, options);
+  EXPECT_EQ(scene.views[1].image, folder_ / "moved" / "b.png");
+  EXPECT_TRUE(scene.left_out.empty());
+  // Nowhere else: copies of another size must not slip in.
+  put_image("images/b.png");
+  fs::remove(folder_ / "moved" / "b.png");
+  EXPECT_THAT(error_with(options), HasSubstr("not found (b.png; looked in"));
+  options.images = folder_ / "nowhere";
+  EXPECT_THAT(error_with(options), AllOf(HasSubstr("nowhere"), HasSubstr("--images")));
+}
+
+TEST_F(LoadScene, FormatsWhoseCamerasNeedPhotographsFindThemElsewhereToo) {
+  for (const SceneFormat format : {SceneFormat::kRealityCapture, SceneFormat::kMatlab}) {
+    const fs::path folder = folder_ / to_string(format);
+    Scene square = example_scene(folder_ / "images");
+    for (SourceView& view : square.views) {
+      Intrinsics& k = view.camera.intrinsics;
+      k.fy = k.fx, k.skew = 0;
+      view.distortion = {};
+    }
+    write_scene(square, format, folder);
+    const Scene beside = load_scene(folder);
+    fs::rename(folder_ / "images", folder_ / "moved");
+    LoadSceneOptions options;
+    options.images = folder_ / "moved";
+    EXPECT_LT(largest_shift(beside, load_scene(folder, options)), 1e-9) << to_string(format);
+    fs::rename(folder_ / "moved", folder_ / "images");
+  }
 }
 
 TEST_F(LoadScene, BadBoxFilesAreNamed) {

@@ -4,6 +4,8 @@
 
 #include "io/board_images.h"
 #include "io/load_scene.h"
+#include "io/read_lens.h"
+#include "io/write_scene.h"
 #include "scene_fixture.h"
 
 namespace photohull::io {
@@ -166,6 +168,50 @@ TEST_F(ReadCalibration, DamagedAndForeignFilesAreRefused) {
     EXPECT_NE(error_of([&] { load_scene(put("calib.json", whole.substr(0, length)), options); }),
               "");
   }
+}
+
+TEST_F(ReadCalibration, LensesAreReadFromCalibrations) {
+  json camera = lens_entry();
+  camera["photohull_calibration"] = "camera";
+  const fs::path file = put("camera.json", camera.dump());
+  const CameraLens lens = read_lens(file, 8, 6);
+  EXPECT_EQ(lens.intrinsics.fy, 11);
+  EXPECT_EQ(lens.distortion.coefficients[0], -0.1);
+  // Of pictures twice as large: pixel centres scale about the corner.
+  const CameraLens twice = read_lens(file, 16, 12);
+  EXPECT_EQ(twice.intrinsics.fx, 20);
+  EXPECT_NEAR(twice.intrinsics.cx, 2 * (3.6 + 0.5) - 0.5, 1e-12);
+  EXPECT_THAT(error_of([&] { read_lens(file, 6, 8); }),
+              AllOf(HasSubstr("for pictures of 8 x 6"), HasSubstr("6 x 8")));
+  const fs::path rigs = put("rig.json", rig().dump());
+  EXPECT_EQ(read_lens(rigs, 8, 6, "right").intrinsics.fx, 10);
+  EXPECT_THAT(error_of([&] { read_lens(rigs, 8, 6, "top"); }),
+              AllOf(HasSubstr("left, right"), HasSubstr("none is called top")));
+  EXPECT_THAT(error_of([&] { read_lens(rigs, 8, 6); }), HasSubstr("--rig"));
+  EXPECT_THAT(error_of([&] { read_lens(folder_ / "nowhere.json", 8, 6); }), HasSubstr("nowhere"));
+}
+
+TEST_F(ReadCalibration, LensesAreReadFromScenesWithoutTheirPhotographs) {
+  put_image("images/a.png"), put_image("images/b.png"), put_image("images/c.png");
+  Scene scene = example_scene(folder_ / "images");
+  write_scene(scene, SceneFormat::kTransforms, folder_ / "several");
+  EXPECT_THAT(error_of([&] { read_lens(folder_ / "several", 8, 6); }), HasSubstr("several lenses"));
+  for (SourceView& view : scene.views)
+    view.camera.intrinsics = scene.views[0].camera.intrinsics,
+    view.distortion = scene.views[0].distortion;
+  write_scene(scene, SceneFormat::kTransforms, folder_ / "one");
+  fs::remove_all(folder_ / "images");
+  const CameraLens lens = read_lens(folder_ / "one", 8, 6);
+  EXPECT_NEAR(lens.intrinsics.fx, scene.views[0].camera.intrinsics.fx, 1e-9);
+  EXPECT_NEAR(lens.intrinsics.cx, scene.views[0].camera.intrinsics.cx, 1e-9);
+}
+
+TEST_F(ReadCalibration, ACalibrationAndItsPhotographsAreAScene) {
+  put_image("images/left.png");
+  put_image("images/right.png");
+  LoadSceneOptions options;
+  options.images = folder_ / "images";
+  EXPECT_EQ(load_scene(put("calib.json", rig().dump()), options).views.size(), 2u);
 }
 
 class BoardImages : public TemporaryFolder {};

@@ -209,6 +209,21 @@ TEST_F(ReducedImage, AMaskIsTheAlphaThatVaries) {
   EXPECT_EQ(read_mask(folder_ / "constant.png", 0.25).coverage[0], 9);
 }
 
+TEST_F(ReducedImage, MasksOfOnesKeepTheirCoverage) {
+  std::vector<std::uint8_t> ones;
+  for (int i = 0; i < 16 * 16; ++i) ones.push_back(i % 16 < 6);
+  write_png(folder_ / "ones.png", 16, 16, 1, ones);
+  const FileMask mask = read_mask(folder_ / "ones.png", 0.25);
+  EXPECT_TRUE(mask.from_ones);
+  EXPECT_EQ(mask.coverage[0], 255);
+  EXPECT_NEAR(mask.coverage[1], 127.5, 1);
+  EXPECT_EQ(mask.coverage[2], 0);
+  for (std::uint8_t& value : ones) value *= 2;
+  write_png(folder_ / "twos.png", 16, 16, 1, ones);
+  EXPECT_FALSE(read_mask(folder_ / "twos.png", 0.25).from_ones);
+  EXPECT_EQ(read_mask(folder_ / "twos.png", 0.25).coverage[0], 2);
+}
+
 /// A blurred spot where a camera sees a point lies where the scaled camera sees it.
 TEST_F(ReducedImage, ScaledCamerasSeeTheSameContent) {
   Camera camera;

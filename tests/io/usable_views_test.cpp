@@ -1,4 +1,6 @@
 // Photographs that are missing, damaged or of another size than their cameras are for.
+#include <OpenImageIO/imageio.h>
+
 #include <fstream>
 #include <set>
 
@@ -141,6 +143,14 @@ TEST_F(UsableViews, OneHasAnotherShape) {
                                   "are swapped: a program has probably turned it by its EXIF"),
                         HasSubstr("v4.png: it is 32 x 26, but its camera is for 32 x 24)"))));
   EXPECT_EQ(scene.left_out.at(1).reason, LeftOutView::Reason::kSize);
+  EXPECT_THAT(scene.warnings[0], testing::Not(HasSubstr("tag is")));
+  OIIO::ImageSpec spec(kHeight, kWidth, 3, OIIO::TypeDesc::UINT8);
+  spec.attribute("Orientation", 6);
+  const auto jpeg = OIIO::ImageOutput::create("turned.jpg");
+  const std::vector<std::uint8_t> grey(std::size_t(kHeight * kWidth * 3), 90);
+  ASSERT_TRUE(jpeg && jpeg->open((folder_ / image(3)).string(), spec) &&
+              jpeg->write_image(OIIO::TypeDesc::UINT8, grey.data()) && jpeg->close());
+  EXPECT_THAT(load_scene(folder_).warnings.at(0), HasSubstr("EXIF orientation tag is 6"));
   put_image(image(3), kHeight / 2, kWidth / 2);  // turned and scaled
   EXPECT_THAT(load_scene(folder_).warnings.at(0), HasSubstr("sides are swapped"));
 }

@@ -124,21 +124,41 @@ TEST(FindBox, TakesTheFacadeThatSeveralParallelViewsSee) {
   EXPECT_THAT(found.source, HasSubstr("look at the same"));
 }
 
-TEST(FindBox, HoldsNoCamera) {
-  // A courtyard from within.
+const Box kCourtyard{{-6, -6, -1}, {6, 6, 4}};
+
+/// A courtyard from within, seen all around.
+std::vector<View> courtyard_views() {
   std::vector<View> views;
   for (int i = 0; i < 12; ++i) {
     const double a = 2 * std::numbers::pi * i / 12;
     for (const double from : {0.0, 0.6})
       views.push_back(looking({from, -from, 1}, {5 * std::cos(a), 5 * std::sin(a), 1}));
   }
+  return views;
+}
+
+TEST(FindBox, HoldsNoCameraUnlessNearlyAllStandWithin) {
+  std::vector<View> views = courtyard_views();
+  for (int i = 0; i < 5; ++i) views.push_back(looking({16, 3.0 * i - 6, 1}, {0, 3.0 * i - 6, 1}));
   Points points(views);
-  points.scatter({{-6, -6, -1}, {6, 6, 4}}, 3000);
+  points.scatter(kCourtyard, 3000);
   const FoundBox found = find(views, points);
   for (const View& view : views) EXPECT_FALSE(found.box.contains(view.camera.center()));
   EXPECT_GT(found.points.size(), 100u);
   ASSERT_EQ(found.warnings.size(), 1u);
   EXPECT_THAT(found.warnings[0], HasSubstr("cameras stand among what they show"));
+}
+
+TEST(FindBox, RoomHoldsItsCameras) {
+  const std::vector<View> views = courtyard_views();
+  Points points(views);
+  points.scatter(kCourtyard, 3000);
+  const FoundBox found = find(views, points);
+  for (const View& view : views) EXPECT_TRUE(found.box.contains(view.camera.center()));
+  EXPECT_GT(found.box.min.x, -7.5);
+  EXPECT_LT(found.box.max.x, 7.5);
+  EXPECT_THAT(found.source, HasSubstr("as in a room"));
+  EXPECT_THAT(found.warnings, IsEmpty());
 }
 
 /// A silhouette of the ball of radius 0.5 around (0, 0, 0.3).

@@ -210,6 +210,32 @@ TEST_F(PlanJob, MemoryAsksForSmallerOnesUnlessForced) {
   EXPECT_EQ(plan(whole.cost.bytes - 1).scales[0], 1);
 }
 
+TEST_F(PlanJob, VoxelsCountBeforeMasksAreSeen) {
+  // Default voxels, and masks that may be made from the background or not.
+  const auto reading = [&](std::int64_t limit, const Box& box = kBox, bool known = false) {
+    return plan_reading(options_, scene_, box, known, limit);
+  };
+  const Plan whole = plan(kNoLimit);
+  EXPECT_EQ(reading(kNoLimit).scales[0], 1);
+  EXPECT_EQ(reading(kNoLimit).cost.bytes, whole.cost.bytes);
+  const Plan less = reading(whole.cost.bytes - 1);
+  EXPECT_EQ(less.scales, std::vector<double>(12, 0.5));
+  EXPECT_EQ(less.wanted, std::vector<double>(12, 1.0));
+  EXPECT_LT(less.cost.bytes, whole.cost.bytes);
+  // Where all of the box fits at no scale, what masks leave of it may: photographs alone count.
+  const Plan least = plan(less.cost.bytes - 1);
+  ASSERT_GT(least.cost.bytes, less.cost.bytes - 1);
+  EXPECT_LT(reading(less.cost.bytes - 1).cost.bytes, least.cost.bytes);
+  EXPECT_EQ(reading(less.cost.bytes - 1, kBox, true).cost.bytes, least.cost.bytes);
+  EXPECT_EQ(reading(less.cost.bytes - 1).scales, least.scales);
+  // Of such a box no lattice can be made.
+  const Box huge{kBox.min * 10.0, kBox.max * 10.0};
+  options_.image_scale = 1;
+  options_.voxel_size = 1e-3;
+  EXPECT_THROW(reading(kNoLimit, huge, true), Error);
+  EXPECT_EQ(reading(kNoLimit, huge).scales[0], 1);
+}
+
 /// Photographs that cannot be decoded are never looked at.
 TEST(MaxMemory, RefusesBeforeDecoding) {
   const ScratchFolder folder;

@@ -23,7 +23,8 @@ class StoppingProgress : public Progress {
     if (fraction >= stop_at_) request_cancellation();
   }
   void warn(const std::string& message) override { warnings.push_back(message); }
-  std::vector<std::string> warnings;
+  void note(const std::string& message) override { notes.push_back(message); }
+  std::vector<std::string> warnings, notes;
 
  private:
   double stop_at_;
@@ -46,6 +47,7 @@ class CheckpointedRefine : public testing::Test {
     StoppingProgress progress(2);
     SparseVolume volume = run(progress, file);
     warnings_ = progress.warnings;
+    notes_ = progress.notes;
     return volume;
   }
   void run_until(double fraction) {
@@ -57,15 +59,18 @@ class CheckpointedRefine : public testing::Test {
   ScratchFolder folder_;
   CheckpointFile file_{folder_ / "checkpoint", "a job"};
   RefineReport report_;
-  std::vector<std::string> warnings_;
+  std::vector<std::string> warnings_, notes_;
 };
 
 TEST_F(CheckpointedRefine, GoesOnAndEndsTheSame) {
   const SparseVolume whole = run_through(nullptr);
+  EXPECT_TRUE(notes_.empty());
   const std::size_t levels = report_.levels.size();
   run_until(0.7);  // two of three levels
   const SparseVolume resumed = run_through(&file_);
   EXPECT_EQ(report_.resumed, 2);
+  ASSERT_EQ(notes_.size(), 1u);
+  EXPECT_NE(notes_[0].find("2 of 3 levels"), std::string::npos) << notes_[0];
   ASSERT_EQ(report_.levels.size(), levels);
   EXPECT_GT(report_.levels.front().surfels, 100);
   EXPECT_EQ(resumed.table, whole.table);

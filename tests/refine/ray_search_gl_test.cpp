@@ -30,7 +30,8 @@ class RaySearchTest : public WallScene {
     });
     for (const Camera& camera : projtex::cameras_of(views_))
       cameras_.push_back(projtex::to_grid(camera, test::kGrid));
-    partners_ = choose_partners(cameras_, 0.5 * dvec3(test::kGrid.voxels()));
+    partners_ = choose_partners(cameras_, {dvec3(0), dvec3(test::kGrid.voxels())},
+                                VoteOptions{}.nearest_partner);
     // From the middle view through points of the plane that lie well before the wall.
     const dvec3 eye = cameras_[kView].centre;
     for (int y = 0; y < kEdge; ++y)

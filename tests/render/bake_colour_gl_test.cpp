@@ -87,7 +87,7 @@ class BakeAgainstReference : public ::testing::TestWithParam<int> {};
 TEST_P(BakeAgainstReference, AgreesOnRandomPoints) {
   test::Rng rng(GetParam());
   std::vector<View> views = random_views(rng, GetParam());
-  TriMesh mesh = random_points(rng, 3000);
+  TriMesh mesh = random_points(rng, 4000);
   for (View& view : views)
     if (std::uniform_int_distribution(0, 1)(rng))
       view.sharpness = std::uniform_real_distribution(0.5, 1.3)(rng);

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "pipeline/reconstruct.h"
 #include "synth/spec.h"
@@ -12,9 +14,14 @@ namespace photohull::test {
 /// Any built-in shape, material, background, cameras and some degradations; pictures of at most 80
 /// pixels. The same number gives the same scene.
 synth::Spec random_spec(std::uint64_t number);
+/// The same as JSON.
+std::string random_spec_text(std::uint64_t number);
 
 /// Any method at 12 to 32 voxels with some of the options.
 pipeline::ReconstructOptions random_job(std::uint64_t number, const std::filesystem::path& scene,
                                         const std::filesystem::path& output);
+
+/// Options of `photohull reconstruct` with values in their ranges; together they may be refused.
+std::vector<std::string> random_arguments(std::uint64_t number);
 
 }  // namespace photohull::test

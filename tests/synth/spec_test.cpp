@@ -135,7 +135,8 @@ TEST(Spec, EveryDatasetParses) {
     const Spec spec = read_spec(entry.path());
     EXPECT_EQ(spec.name, entry.path().stem().string());
     EXPECT_GE(view_count(spec.cameras), 18) << spec.name;
-    EXPECT_LE(view_count(spec.cameras), 36) << spec.name;
+    // A place in a room is seen by a part of the cameras only: it takes more of them.
+    EXPECT_LE(view_count(spec.cameras), spec.cameras.layout == "within" ? 48 : 36) << spec.name;
     ++count;
   }
   EXPECT_GE(count, 12);

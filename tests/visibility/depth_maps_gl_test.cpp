@@ -107,6 +107,25 @@ TEST_F(DepthMapsTest, RandomVoxelsFromRandomCameras) {
   }
 }
 
+TEST_F(DepthMapsTest, MapsThatNoStorageBlockHoldsAreTheSameInAnImage) {
+  gpu::Limits low = context_.limits();
+  low.ssbo_bytes = 8192;
+  const std::vector<GridCamera> cameras = random_cameras(6);
+  const std::vector<ivec3> voxels = random_voxels(300, cameras);
+  DepthMaps buffer(cameras, grid_);
+  splat(buffer, cameras, voxels);
+  gpu::set_current_limits(&low);
+  EXPECT_GT(compare(cameras, voxels), 1000);
+  DepthMaps image(cameras, grid_);
+  splat(image, cameras, voxels);
+  gpu::set_current_limits(&context_.limits());
+  EXPECT_STREQ(buffer.defines(), "");
+  EXPECT_STREQ(image.defines(), "#define DEPTH_MAPS_LAYERED\n");
+  for (std::size_t i = 0; i < cameras.size(); ++i) EXPECT_EQ(image.download(i), buffer.download(i));
+  image.clear();
+  for (const float depth : image.download(2)) EXPECT_TRUE(std::isinf(depth));
+}
+
 TEST_F(DepthMapsTest, AnEmptyListDrawsNothing) { EXPECT_EQ(compare(random_cameras(3), {}), 0); }
 
 TEST_F(DepthMapsTest, ASingleVoxel) {

@@ -1,0 +1,106 @@
+#!/usr/bin/env python3
+"""How the verdict calls every synthetic scene, against how good the result is.
+
+    bench/verdict_scenes.py build/release/photohull out/verdict_scenes [--resolution 96] [--only NAME ...]
+
+Each spec of datasets/synthetic is photographed small, with two seeds, and reconstructed in several ways
+(VARIANTS). results.json of the folder holds for each run F at 0.5 % of the diagonal, of the parts that are
+seen, the verdict with its reasons, and the signals that it rests on. Runs that are there are not repeated.
+The table at the end counts the calls, apart for the half of the scenes on which limits were fitted (every
+second one by name, seed 1) and for the other half; docs/stability.md has it.
+"""
+import argparse
+import json
+import pathlib
+import shutil
+import subprocess
+
+SPECS = pathlib.Path(__file__).resolve().parent.parent / "datasets" / "synthetic"
+VARIANTS = {
+    "default": [],
+    "draft": ["--quality", "draft"],
+    "coarse": ["--resolution", "40"],
+    "hull": ["--method", "hull"],
+    "no masks": ["--masks", "none"],
+    "every third view": None,
+    "small box": ["--box-scale", "0.7", "--box-exact"],
+}
+
+
+def spec_json(path):
+    lines = [line for line in path.read_text().splitlines() if not line.strip().startswith("//")]
+    return json.loads("\n".join(lines))
+
+
+def arguments_of(variant, views, resolution):
+    if variant == "every third view":
+        return ["--views", f"spread:{max(5, views // 3)}", "--resolution", str(resolution)]
+    given = VARIANTS[variant]
+    return given if "--quality" in given or "--resolution" in given else given + ["--resolution", str(resolution)]
+
+
+def call(command):
+    return subprocess.run([str(word) for word in command], capture_output=True, text=True)
+
+
+def measure(program, scene, out, arguments):
+    done = call([program, "reconstruct", scene, "--out", out, "--json", *arguments])
+    if done.returncode not in (0, 3):
+        return {"exit": done.returncode, "error": done.stderr.strip().splitlines()[-1:]}
+    report = json.loads(done.stdout)
+    judged = json.loads(call([program, "evaluate", out / "mesh.ply", "--truth", scene, "--json"]).stdout)
+    at = {f["t"]: f["f"] for f in judged["f"]}
+    seen = {f["t"]: f["f"] for f in judged["seen"]["f"]}
+    verdict = report["verdict"]
+    return {"exit": done.returncode, "f": at[0.005], "f_seen": seen[0.005], "level": verdict["level"],
+            "reasons": verdict["reasons"], "signals": verdict["signals"], "cpu_seconds": report["cpu_seconds"]}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program")
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("--resolution", type=int, default=96)
+    parser.add_argument("--size", default="320x240")
+    parser.add_argument("--seeds", default="1,2")
+    parser.add_argument("--only", nargs="*", default=[])
+    parser.add_argument("--variants", default=",".join(VARIANTS))
+    options = parser.parse_args()
+    options.folder.mkdir(parents=True, exist_ok=True)
+    file = options.folder / "results.json"
+    results = json.loads(file.read_text()) if file.exists() else {}
+    for path in sorted(SPECS.glob("*.json")):
+        if options.only and path.stem not in options.only:
+            continue
+        for seed in options.seeds.split(","):
+            missing = [v for v in options.variants.split(",") if f"{path.stem}|{seed}|{v}" not in results]
+            if not missing:
+                continue
+            scene = options.folder / "scene"
+            shutil.rmtree(scene, ignore_errors=True)
+            call([options.program, "synthesize", path, "--size", options.size, "--seed", seed, "--out", scene])
+            views = len(json.loads((scene / "transforms.json").read_text())["frames"])
+            for variant in missing:
+                arguments = arguments_of(variant, views, options.resolution)
+                result = measure(options.program, scene, options.folder / "out", arguments)
+                results[f"{path.stem}|{seed}|{variant}"] = result
+                file.write_text(json.dumps(results, indent=1))
+                print(path.stem, seed, variant, result.get("level"), round(100 * result.get("f_seen", 0), 1),
+                      result.get("reasons", result.get("error"))[:1], flush=True)
+    summary(results)
+
+
+def summary(results):
+    names = sorted({key.split("|")[0] for key in results})
+    fitted = {key for key in results if key.split("|")[1] == "1" and names.index(key.split("|")[0]) % 2 == 0}
+    for title, chosen in [("fitted on", fitted), ("judged on", set(results) - fitted)]:
+        print(f"\n{title}:\n\n| F of what is seen, 0.5 % | good | doubtful | failed | refused |\n|---|---|---|---|---|")
+        for low, high in [(0, 0.8), (0.8, 0.95), (0.95, 2)]:
+            runs = [results[key] for key in chosen if "f" in results[key] and low <= results[key]["f_seen"] < high]
+            counts = [sum(r["level"] == level for r in runs) for level in ("good", "doubtful", "failed")]
+            print(f"| {100 * low:.0f} to {min(100, 100 * high):.0f} % |", " | ".join(map(str, counts)), "| 0 |")
+        print("| no result | 0 | 0 | 0 |", sum("f" not in results[key] for key in chosen), "|")
+
+
+if __name__ == "__main__":
+    main()

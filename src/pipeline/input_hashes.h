@@ -1,0 +1,25 @@
+// Digests of what a job read, so that its figures can be traced to their inputs.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/scene.h"
+
+namespace photohull::pipeline {
+
+struct InputFile {
+  std::string kind;  ///< "scene", "photograph", "mask" or "background"
+  std::filesystem::path path;
+  std::int64_t bytes = 0;
+  std::string xxh3_128;  ///< 32 hexadecimal digits, as `xxhsum -H2` prints
+};
+
+/// The scene's files (cameras, and the box where a file beside them has it), then each view's
+/// photograph, mask and photograph of the background. Files that cannot be read are left out: the
+/// job itself says what it needs of them.
+std::vector<InputFile> hash_inputs(const Scene& scene);
+
+}  // namespace photohull::pipeline
