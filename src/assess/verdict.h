@@ -33,6 +33,7 @@ struct Signals {
   double unseen = 0;               ///< share of the surface that no view sees
   double few_views = 0;            ///< share of the surface that fewer than three views see
   double at_box = 0;               ///< share of the surface, seen, that lies on the box's sides
+  double hull_beyond = 1;          ///< share of the hull's surface that goes on beyond the box
   MatchEvidence match;
   Explained explained;  ///< without places unless no view has a silhouette
 };

@@ -222,7 +222,7 @@ struct MaskChannel {
   void add(float mean) {
     coverage.push_back(std::uint8_t(mean + 0.5f));
     if (high <= 1)
-      labels.push_back(std::uint8_t(255 * mean + 0.5f));
+      labels.push_back(std::uint8_t(255 * std::min(mean, 1.0f) + 0.5f));
     else if (!labels.empty())
       labels = {};
   }

@@ -16,6 +16,7 @@ namespace {
 constexpr double kBoxSlack = 0.5;              // voxels that the surface may stand out of the box
 constexpr std::size_t kFewestThinVoxels = 32;  // a hull of fewer, all of them thin, is none
 constexpr int kPhotometricVoxels = 160;  // along the box, of the hull that gains are measured on
+constexpr int kBoundingMargin = 2;       // coarse voxels around the box
 constexpr int kCheckVoxels = 64;         // and of that on which is seen whether they differ
 
 }  // namespace
@@ -62,14 +63,25 @@ SparseVolume HullStage::carve_alone() {
   return carve(in_.grid);
 }
 
-bool HullStage::bounded() {
-  if (!in_.any_mask()) return false;
+const HullStage::Bounds& HullStage::bounds() {
+  if (bounds_) return *bounds_;
   GridSpec grid = in_.grid;
   const auto longest = [](const glm::ivec3& n) { return std::max({n.x, n.y, n.z}); };
   while (longest(grid.voxels()) > refine::RefineOptions::kCoarsestVoxels)
     grid = carving::coarser(grid);
-  const bool bounded =
-      carving::silhouettes_bound(carve(grid), *in_.scene.box, in_.silhouettes_of_views());
+  // Outside the box an object that only fills it ends, and one that the box cuts off goes on.
+  const double margin = kBoundingMargin * grid.voxel_size;
+  const Box room{in_.scene.box->min - margin, in_.scene.box->max + margin};
+  const SparseVolume hull = carve_box(carving::fit_grid(room, grid.voxel_size), room);
+  if (hull.inside_voxels() == 0) carve(grid);  // tells why
+  bounds_ = Bounds{carving::silhouettes_bound(hull, room, in_.silhouettes_of_views()),
+                   carving::share_at_box(hull, room)};
+  return *bounds_;
+}
+
+bool HullStage::bounded() {
+  if (!in_.any_mask()) return false;
+  const bool bounded = bounds().all;
   if (!bounded)
     in_.warn(
         "the masks do not bound the object (fewer than half of the views have one, or the box "
@@ -77,6 +89,8 @@ bool HullStage::bounded() {
         "masks");
   return bounded;
 }
+
+double HullStage::share_beyond() { return in_.any_mask() ? bounds().share_beyond : 1; }
 
 void HullStage::correct_photometric(Progress& progress) {
   const auto hull_of = [&](int voxels, auto&& work) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "carving/hull.h"
 #include "core/grid.h"
@@ -25,17 +26,27 @@ class HullStage {
   SparseVolume carve_alone();
   /// Do silhouettes bound what is to be found? Warns where there are some that do not.
   bool bounded();
+  /// Share of the hull's surface that goes on beyond the box's sides; 1 without silhouettes.
+  double share_beyond();
   /// Gains measured on the hull, if the photographs' differ.
   void correct_photometric(Progress& progress);
 
   std::int64_t samples() const { return samples_; }
 
  private:
+  struct Bounds {
+    bool all = false;  ///< carving::silhouettes_bound
+    double share_beyond = 0;
+  };
+  /// By a coarse hull of a slightly larger box.
+  const Bounds& bounds();
+
   const ReconstructOptions& options_;
   Inputs& in_;
   gpu::Context& context_;
   Report& report_;
   std::int64_t samples_ = 0;
+  std::optional<Bounds> bounds_;
 };
 
 /// A quick look before gains are solved for; tells the report where they do not differ.

@@ -249,6 +249,7 @@ class Job {
                                .voxel_size = in_.grid.voxel_size,
                                .hull = options_.effective_method() == Method::kHull,
                                .bounded = bounded_,
+                               .share_beyond = hull_->share_beyond(),
                                .views = in_.views,
                                .silhouettes = in_.silhouettes,
                                .widened = in_.widened,

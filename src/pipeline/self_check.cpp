@@ -104,6 +104,7 @@ assess::Signals gather_signals(const CheckedResult& result,
   s.mask_confidence = result.mask_confidence;
   s.contradiction = result.contradiction;
   s.masks = result.bounded;
+  s.hull_beyond = result.share_beyond;
   for (const assess::SurfaceProbe& p : probes)
     s.mean_confidence += double(p.confidence) / double(probes.size());
   s.unsure = share_of(probes, [](const auto& p) { return p.confidence < 0.5f; });
@@ -166,6 +167,7 @@ std::string to_json(const assess::Verdict& verdict, const assess::Signals& s,
                       {"unseen", s.unseen},
                       {"few_views", s.few_views},
                       {"at_box", s.at_box},
+                      {"hull_beyond_box", s.hull_beyond},
                       {"stems", s.stems},
                       {"silhouettes_contradict", s.contradiction},
                       {"silhouettes_missed", s.missed},

@@ -23,6 +23,7 @@ struct CheckedResult {
   double voxel_size = 0;            ///< world units
   bool hull = false;                ///< made by silhouettes alone
   bool bounded = false;             ///< do silhouettes bound it, so that it is judged by them?
+  double share_beyond = 1;          ///< HullStage::share_beyond
   std::span<const View> views;
   std::span<const SilhouetteDistance> silhouettes;
   std::span<const Mask> widened;  ///< that `silhouettes` are of, where they are not the views' own

@@ -153,7 +153,7 @@ std::vector<Pose> on_table(const Pose& at_zero, const glm::dvec3& axis, const gl
 
 class Turntable : public testing::Test {
  protected:
-  const Truth truth_;
+  const Truth truth_{};
   const glm::dvec3 axis_ = glm::normalize(glm::dvec3(0.1, -0.9, -0.4)), point_{0.5, 1, 13};
   const Pose first_ = pose_of(1, {4, 2.5}, 13);
 

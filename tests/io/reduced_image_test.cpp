@@ -95,7 +95,8 @@ TEST_F(ReducedImage, SixteenBitsAndFloatsInTilesToo) {
   write(folder_ / "tiled.tif", spec, real);
   const std::pair<const char*, bool> files[] = {
       {"deep.png", true}, {"real.exr", false}, {"tiled.tif", false}};
-  for (const auto& [name, srgb] : files) {
+  for (const auto& [name, is_srgb] : files) {
+    const bool srgb = is_srgb;  // a lambda may not capture the other (before clang 16)
     const ColourImage image = read_image(folder_ / name, 0.25);
     ASSERT_EQ(image.encoding, ColourImage::Encoding::kLinearHalf);
     for (int y = 0; y < image.height; ++y)
