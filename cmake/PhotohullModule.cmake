@@ -30,7 +30,8 @@ endfunction()
 # photohull_test(NAME SOURCES files... LIBS libs... [LABELS labels...] [SHARDS count])
 # One test program. ctest runs it whole, or in SHARDS parts that may run side by side: loading the
 # libraries takes a program half a second, which a process for every TEST would pay each time.
-# Labels: unit (all of these are built by the target unit_tests), gl, golden, slow.
+# Labels: unit, gl, golden, slow. The target unit_tests builds those of the first, program_tests the
+# others and the program.
 function(photohull_test name)
   cmake_parse_arguments(ARG "" "SHARDS" "SOURCES;LIBS;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
@@ -42,6 +43,8 @@ function(photohull_test name)
   photohull_precompile(${name} photohull_test_support)
   if("unit" IN_LIST ARG_LABELS)
     add_dependencies(unit_tests ${name})
+  else()
+    add_dependencies(program_tests ${name})
   endif()
   if(NOT ARG_SHARDS)
     set(ARG_SHARDS 1)

@@ -25,6 +25,17 @@ constexpr Limits kMissed{0.04, 0.3};          // of the silhouettes
 constexpr Limits kExcess{0.06, 0.3};          // of the surface's projection
 constexpr Limits kContradiction{0.02, 0.5};   // of the silhouettes' rays
 constexpr Limits kFewViews{0.45, INFINITY};   // of the surface, seen by fewer than three
+// Of the surface: texture that is not found again, and what else has little confidence. Fitted on
+// half of the scenes of bench/verdict_scenes.py (docs/stability.md). With silhouettes results are
+// at most 0.25 where F at 0.5 % is above 95, and 0.31 to 0.41 at 60 to 69; without them nothing
+// else holds the surface: at most 0.16 above 95, 0.21 to 0.34 at 60 to 78.
+constexpr Limits kUnconfirmed{0.27, INFINITY};
+constexpr Limits kUnconfirmedOpen{0.19, INFINITY};
+constexpr double kUnsureWeight = 0.7;  // of what has little confidence, beside what is not found
+constexpr double kRestored = 0.5;      // of what lines of silhouettes show, put into the masks
+constexpr double kManyStems = 0.3;     // of the surface
+constexpr double kCoarseVoxels = 2;    // times half a percent of the diagonal
+constexpr double kGoesOn = 0.02;       // of a hull's surface, beyond the box's sides
 // Of what the photographs show without silhouettes, from runs with --masks none: scenes as they
 // are, and at 128 voxels with cameras turned by 1 to 20 pixels and with wrong boxes (the table in
 // docs/stability.md). Unexplained: at most 0.18 where F at 0.5 % is above 90, 0.27 to 0.34 at 54 to
@@ -101,39 +112,76 @@ class Judge {
     const Level level = value > limits.failed ? Level::kFailed : Level::kDoubtful;
     // What is worst comes first.
     if (level > verdict_.level)
-      verdict_.reasons.insert(verdict_.reasons.begin(), reason);
+      verdict_.reasons.insert(verdict_.reasons.begin() + causes_, reason);
     else
       verdict_.reasons.push_back(reason);
     verdict_.level = std::max(verdict_.level, level);
   }
 
+  /// Takes a reason of which others are consequences: it stays before them.
+  void name_cause(const std::string& reason) {
+    verdict_.reasons.insert(verdict_.reasons.begin() + causes_++, reason);
+    verdict_.level = std::max(verdict_.level, Level::kDoubtful);
+  }
+
+  /// Is the surface cut off by the box's sides, and does it not only touch them?
+  bool cut_by_box() const { return s_.at_box > kAtBox.doubtful && s_.hull_beyond > kGoesOn; }
+
   /// What the box cuts off leaves silhouettes empty and makes them contradict each other.
   void box() {
-    const bool cut = s_.at_box > kAtBox.doubtful;
+    if (cut_share() > kCutOff.doubtful) name_cause(cut_off());
+    const bool cut = cut_by_box();
     if (!s_.masks || s_.beyond_box <= (cut ? kBeyondCut : kBeyondBox)) return;
     const std::string beyond =
         concat(percent(s_.beyond_box), " of what the masks show lies beyond the box");
     if (cut || s_.missed > kMissed.doubtful || s_.contradiction > kContradiction.doubtful)
-      weigh(1, {0, INFINITY},
-            concat(beyond,
-                   ": the box cuts the object off; make it larger (--box-scale) or let it "
-                   "be found (--box auto)"));
+      name_cause(concat(beyond,
+                        ": the box cuts the object off; make it larger (--box-scale) or let it "
+                        "be found (--box auto)"));
     else
       verdict_.notes.push_back(beyond + " (--box-scale makes it larger)");
   }
 
+  /// Of what the photographs show in the box and just outside it: what is outside.
+  double cut_share() const {
+    const Explained& e = s_.explained;
+    return double(e.count(Place::kCut)) / std::max(1, e.count(Place::kCut) + e.told());
+  }
+
+  std::string cut_off() const {
+    return concat(percent(cut_share()),
+                  " of what the photographs show there stands just outside the box: make the box "
+                  "larger (--box-scale) if it belongs to the object");
+  }
+
+  /// Stems that masks lack have the width that photographs suggest; those that voxels are too large
+  /// for have the voxels'.
+  void stems() {
+    if (s_.stems_restored > kRestored)
+      name_cause(concat(percent(std::min(1.0, s_.stems_restored)),
+                        " of the thin parts were put back from the photographs, for the masks lack "
+                        "them: their width is a guess; make masks that show them, or photograph "
+                        "from nearer"));
+    if (s_.stems > kManyStems && s_.voxel_size > kCoarseVoxels * s_.far)
+      name_cause(concat(percent(s_.stems),
+                        " of the surface are stems, and voxels are wider than one percent of its "
+                        "diagonal: use --resolution ",
+                        std::lround(s_.resolution * s_.voxel_size / s_.far)));
+  }
+
   /// Parts that silhouettes show and voxels are too large for.
   void thin_parts() {
+    stems();
     const double width = s_.missed_width * s_.pixel_size;
     if (!s_.masks || !(s_.missed > kMissed.doubtful) || !(width > 0) ||
         width > kThinVoxels * s_.voxel_size)
       return;
     const double voxel = std::max(width / kThinVoxels, kFinestPixels * s_.pixel_size);
     if (voxel >= s_.voxel_size) return;
-    weigh(1, {0, INFINITY},
-          concat("parts that the masks show about ", pixels(s_.missed_width),
-                 " wide are missing, for they are thinner than ", kThinVoxels,
-                 " voxels: use --resolution ", std::lround(s_.resolution * s_.voxel_size / voxel)));
+    name_cause(concat("parts that the masks show about ", pixels(s_.missed_width),
+                      " wide are missing, for they are thinner than ", kThinVoxels,
+                      " voxels: use --resolution ",
+                      std::lround(s_.resolution * s_.voxel_size / voxel)));
   }
 
   void cameras() {
@@ -187,6 +235,15 @@ class Judge {
           concat("on ", percent(unmatched),
                  " of the surface there is texture that no second view shows: cameras, focus, "
                  "gloss or moving parts may be the cause"));
+    // Where nearly all is found again, confidence is low because colours differ.
+    const double doubted =
+        s_.match.matched < kEnoughMatched ? std::max(0.0, s_.unsure - s_.unseen) : 0;
+    if (unmatched <= kUnmatched.doubtful && (doubted == 0 || s_.unsure <= kUnsure.doubtful))
+      weigh(unmatched + kUnsureWeight * doubted, s_.masks ? kUnconfirmed : kUnconfirmedOpen,
+            concat("the photographs do not confirm much of the surface: on ", percent(unmatched),
+                   " of it there is texture that no second view shows, on ", percent(doubted),
+                   " of it confidence is below one half. Folds and hollows that few views look "
+                   "into do this, noise and blur too: add views that look in, or sharper ones"));
     weigh(s_.match.beyond_far, kFarOff,
           concat("two views put ", percent(s_.match.beyond_far),
                  " of what they both show more than 0.5 % of the diagonal off the surface: look at "
@@ -247,7 +304,7 @@ class Judge {
     if (s_.match.matched < kEnoughMatched)  // else colours differ, and the surface is right
       weigh(s_.unsure, kUnsure,
             concat("confidence is below one half on ", percent(s_.unsure), " of the surface"));
-    weigh(s_.at_box, kAtBox,
+    weigh(cut_by_box() ? s_.at_box : 0, kAtBox,
           concat(percent(s_.at_box),
                  " of the surface lies on the box's sides: the box cuts the object off (make --box "
                  "larger), or nothing tells where it ends"));
@@ -336,12 +393,6 @@ class Judge {
             : concat("the model explains ", percent(e.explained()),
                      " of the texture that the photographs show in the box, as far as they tell: ",
                      why_unexplained(), where));
-    const double cut = double(e.count(Place::kCut)) / std::max(1, e.count(Place::kCut) + e.told());
-    const std::string cut_off =
-        concat(percent(cut),
-               " of what the photographs show there stands just outside the box: make the box "
-               "larger (--box-scale) if it belongs to the object");
-    weigh(cut, kCutOff, cut_off);
     weigh(
         bare, kBare,
         concat("on ", percent(bare),
@@ -359,12 +410,14 @@ class Judge {
                  " of the photographs' area in the box is plain, and on ", percent(bare),
                  " of the rest no views agree on any depth: background that few views share, or "
                  "surface too glossy or too far from the views"));
-    if (cut > kWorthNoting && cut <= kCutOff.doubtful) verdict_.notes.push_back(cut_off);
+    if (cut_share() > kWorthNoting && cut_share() <= kCutOff.doubtful)
+      verdict_.notes.push_back(cut_off());
   }
 
   const Signals& s_;
   const std::vector<std::string>& n_;
   Verdict verdict_;
+  std::ptrdiff_t causes_ = 0;  ///< reasons in front that others follow from
 };
 
 }  // namespace

@@ -16,6 +16,7 @@ struct Signals {
   int views = 0;                   ///< that were used
   bool masks = false;              ///< has any view a silhouette?
   double stems = 0;                ///< share of the mesh's vertices that silhouettes' lines placed
+  double stems_restored = 0;       ///< of what silhouettes show of stems: put into eaten masks
   bool hull = false;               ///< is the surface the silhouettes' alone (--method hull)?
   double mask_confidence = 0;      ///< 1 for masks that were given
   double pixel_size = 0;           ///< world units that a pixel covers at the object

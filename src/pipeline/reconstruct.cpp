@@ -242,25 +242,28 @@ class Job {
   }
 
   void judge(const TriMesh& mesh, ResultFiles& files) {
-    const CheckedResult result{.mesh = &mesh,
-                               .box = &*in_.scene.box,
-                               .around = &around_.mesh,
-                               .around_box = &around_.box,
-                               .voxel_size = in_.grid.voxel_size,
-                               .hull = options_.effective_method() == Method::kHull,
-                               .bounded = bounded_,
-                               .share_beyond = hull_->share_beyond(),
-                               .views = in_.views,
-                               .silhouettes = in_.silhouettes,
-                               .widened = in_.widened,
-                               .lines = in_.lines,
-                               .mask_confidence = report_.mask_confidence,
-                               .noise_sigma = report_.noise_sigma,
-                               .stems = double(report_.thin.stem_vertices) /
-                                        double(std::max<std::size_t>(mesh.positions.size(), 1)),
-                               .contradiction = in_.contradiction,
-                               .cameras_moved = in_.cameras_moved,
-                               .cameras_moved_alike = in_.cameras_moved_alike};
+    const CheckedResult result{
+        .mesh = &mesh,
+        .box = &*in_.scene.box,
+        .around = &around_.mesh,
+        .around_box = &around_.box,
+        .voxel_size = in_.grid.voxel_size,
+        .hull = options_.effective_method() == Method::kHull,
+        .bounded = bounded_,
+        .share_beyond = hull_->share_beyond(),
+        .views = in_.views,
+        .silhouettes = in_.silhouettes,
+        .widened = in_.widened,
+        .lines = in_.lines,
+        .mask_confidence = report_.mask_confidence,
+        .noise_sigma = report_.noise_sigma,
+        .stems = double(report_.thin.stem_vertices) /
+                 double(std::max<std::size_t>(mesh.positions.size(), 1)),
+        .stems_restored = double(report_.thin.restored_pixels) /
+                          double(std::max<std::int64_t>(report_.thin.line_pixels, 1)),
+        .contradiction = in_.contradiction,
+        .cameras_moved = in_.cameras_moved,
+        .cameras_moved_alike = in_.cameras_moved_alike};
     std::vector<assess::SilhouetteFit> fits;
     const assess::Signals signals = gather_signals(result, &fits);
     std::vector<std::string> names;

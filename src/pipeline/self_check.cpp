@@ -94,6 +94,7 @@ assess::Signals gather_signals(const CheckedResult& result,
   s.views = int(result.views.size());
   s.hull = result.hull;
   s.stems = result.stems;
+  s.stems_restored = result.stems_restored;
   s.pixel_size = carving::pixel_footprint(*result.box, cameras);
   s.voxel_size = result.voxel_size;
   const glm::dvec3 box = result.box->size();
@@ -169,6 +170,7 @@ std::string to_json(const assess::Verdict& verdict, const assess::Signals& s,
                       {"at_box", s.at_box},
                       {"hull_beyond_box", s.hull_beyond},
                       {"stems", s.stems},
+                      {"stems_restored", s.stems_restored},
                       {"silhouettes_contradict", s.contradiction},
                       {"silhouettes_missed", s.missed},
                       {"silhouettes_missed_width", s.missed_width},

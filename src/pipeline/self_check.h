@@ -29,8 +29,9 @@ struct CheckedResult {
   std::span<const Mask> widened;  ///< that `silhouettes` are of, where they are not the views' own
   std::span<const std::vector<LinePoint>> lines;  ///< of the views' masks
   double mask_confidence = 0;
-  double noise_sigma = 0;    ///< of the images, on square roots of full scale
-  double stems = 0;          ///< share of the mesh's vertices that lines placed
+  double noise_sigma = 0;     ///< of the images, on square roots of full scale
+  double stems = 0;           ///< share of the mesh's vertices that lines placed
+  double stems_restored = 0;  ///< share of the lines' pixels that eaten masks had lost
   double contradiction = 0;  ///< of the silhouettes (assess::SilhouetteConsistency::uncovered_left)
   double cameras_moved = 0;  ///< pixels, by --refine-cameras
   double cameras_moved_alike = 0;  ///< pixels, of it what all views have in common

@@ -37,6 +37,13 @@ std::vector<std::string> names() {
 
 Verdict judged(const Signals& s) { return judge(s, names()); }
 
+/// Of a result that is in order but for what `change` does.
+Verdict with(auto&& change) {
+  Signals s = in_order();
+  change(s);
+  return judged(s);
+}
+
 void expect(const Verdict& v, Level level, const char* reason) {
   EXPECT_EQ(v.level, level);
   EXPECT_THAT(v.reasons, ElementsAre(HasSubstr(reason)));
@@ -84,11 +91,6 @@ TEST(Verdict, ResidualsCountByWhatTheyCoverOfTheObject) {
 }
 
 TEST(Verdict, EveryFaultHasItsReason) {
-  const auto with = [](auto change) {
-    Signals s = in_order();
-    change(s);
-    return judged(s);
-  };
   expect(with([](Signals& s) { s.cameras_moved = 3; }), Level::kDoubtful, "moved by 3 px");
   EXPECT_EQ(with([](Signals& s) { s.cameras_moved = 2; }).level, Level::kGood);
   expect(with([](Signals& s) { s.cameras_moved = 2, s.cameras_moved_alike = 1.9; }),
@@ -111,6 +113,37 @@ TEST(Verdict, EveryFaultHasItsReason) {
          "confidence is below one half");
   EXPECT_EQ(with([](Signals& s) { s.unsure = 0.9; }).level, Level::kGood);  // colours alone differ
   expect(with([](Signals& s) { s.at_box = 0.5; }), Level::kDoubtful, "lies on the box's sides");
+}
+
+TEST(Verdict, SeveralSignsAtOnceAreDoubtful) {
+  const auto folded = [](Signals& s) {
+    s.unsure = s.unseen + 0.18, s.match.matched = 0.69, s.match.textured = 0.8;
+  };
+  Signals s = in_order();
+  folded(s);
+  const Verdict both = judged(s);
+  EXPECT_EQ(both.level, Level::kDoubtful);
+  EXPECT_THAT(both.reasons.front(), HasSubstr("the photographs do not confirm much"));
+  EXPECT_EQ(with([](Signals& x) { x.unsure = x.unseen + 0.18; }).level, Level::kGood);
+  EXPECT_EQ(with([](Signals& x) { x.match.matched = 0.75; }).level, Level::kGood);
+  s.match.matched = 0.72;  // colours alone differ
+  EXPECT_EQ(judged(s).level, Level::kGood);
+  // Where no silhouettes hold the surface, less is enough.
+  EXPECT_EQ(with([](Signals& x) { x.match.matched = 0.75, x.masks = false; }).level,
+            Level::kDoubtful);
+}
+
+TEST(Verdict, StemsThatMasksOrVoxelsDoNotShow) {
+  expect(with([](Signals& s) { s.stems_restored = 0.9; }), Level::kDoubtful,
+         "90 % of the thin parts were put back from the photographs");
+  expect(with([](Signals& s) { s.stems = 0.6, s.voxel_size = 3 * s.far, s.resolution = 40; }),
+         Level::kDoubtful, "use --resolution 120");
+  EXPECT_EQ(with([](Signals& s) { s.stems = 0.1, s.voxel_size = 3 * s.far; }).level, Level::kGood);
+}
+
+TEST(Verdict, ASurfaceThatTouchesTheBoxIsNotCutOff) {
+  EXPECT_EQ(with([](Signals& s) { s.at_box = 0.5, s.hull_beyond = 0; }).level, Level::kGood);
+  EXPECT_EQ(with([](Signals& s) { s.at_box = 0.5, s.hull_beyond = 0.1; }).level, Level::kDoubtful);
 }
 
 // An object that stands on a table is not worse where it is seen.
