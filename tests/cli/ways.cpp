@@ -208,6 +208,7 @@ std::vector<std::string> told(const Way& way, const Heard& heard) {
 std::string document_row(const Way& way, const std::vector<std::string>& lines) {
   std::string said;
   for (const std::string& line : lines) said += (said.empty() ? "" : "<br>") + shown(line);
+  if (said.empty()) said = "nothing";
   return "| " + way.title + " | " + shown(way.run) + " | " + said + " | " +
          std::to_string(way.code) + " |";
 }
