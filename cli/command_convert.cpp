@@ -36,6 +36,11 @@ void run(const Arguments& a) {
   const SceneFormat format = parse_format("--to", a.to);
   if (a.out.empty()) throw UsageError("--out is empty: give the folder for the converted scene");
   Scene scene = io::load_scene(a.scene.scene, options_of(a));
+  std::error_code ignored;
+  if (scene.format == format &&
+      std::filesystem::equivalent(scene.file.parent_path(), a.out, ignored))
+    throw UsageError(concat("--out ", a.out, " holds the ", to_string(format),
+                            " scene that is read, which would be lost; give another folder"));
   a.scene.complete_box(scene);
   const std::string from = a.scene.images ? a.scene.scene : to_string(scene.format);
   for (const std::string& text : scene.warnings)

@@ -123,6 +123,7 @@ void throw_if_failed(const assess::Verdict& verdict) {
 
 void run(const Arguments& a) {
   const pipeline::ReconstructOptions options = to_options(a);
+  a.scene.check_output(a.out);
   TerminalProgress progress(pipeline::total_weight(options));
   const pipeline::Report report = pipeline::reconstruct(options, progress);
   progress.finish();

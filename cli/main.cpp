@@ -1,3 +1,5 @@
+#include <glog/logging.h>
+
 #include <csignal>
 
 #include "command_line.h"
@@ -17,6 +19,8 @@ extern "C" void on_interrupt(int signal) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // Ceres notes there what its summaries tell as well; users get a sentence instead.
+  FLAGS_minloglevel = google::GLOG_FATAL;
   // What the caller ignores (nohup, background jobs of scripts) stays ignored.
   for (const int signal : {SIGINT, SIGTERM, SIGHUP})
     if (std::signal(signal, SIG_IGN) != SIG_IGN) std::signal(signal, on_interrupt);

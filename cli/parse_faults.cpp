@@ -33,6 +33,24 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
+/// The parser's words for values that are missing, of the wrong kind or too many, in a sentence.
+std::string said_plainly(const CLI::App& command, const std::string& message) {
+  const std::string missing = ": 1 required ", kind = "Could not convert: ",
+                    surplus = "The following argument was not expected: ";
+  if (const std::size_t at = message.find(missing);
+      at != std::string::npos && message.ends_with(" missing"))
+    return message.substr(0, at) + ": its value is missing";
+  if (message.starts_with(surplus))
+    return concat("'", message.substr(surplus.size()), "' belongs to no option");
+  const std::size_t equals = message.find(" = ");
+  if (!message.starts_with(kind) || equals == std::string::npos) return message;
+  const std::string name = message.substr(kind.size(), equals - kind.size());
+  const CLI::Option* option = command.get_option_no_throw(name);
+  const bool whole = option && option->get_type_name() == "INT";
+  return concat(name, " ", message.substr(equals + 3), ": expected a ", whole ? "whole " : "",
+                "number");
+}
+
 }  // namespace
 
 std::vector<std::string> command_names(const CLI::App& app) {
@@ -53,7 +71,7 @@ std::string parse_fault(const CLI::App& app, const CLI::ParseError& error) {
     const std::string where = &command == &app ? "" : " of photohull " + command.get_name();
     return concat("there is no option ", name, where, meant(name, option_names(command)));
   }
-  return one_line(error.what()) + "; see --help";
+  return said_plainly(command, one_line(error.what())) + "; see --help";
 }
 
 }  // namespace photohull::cli

@@ -111,4 +111,17 @@ io::LoadSceneOptions SceneArguments::options() const {
   return out;
 }
 
+void SceneArguments::check_output(const std::string& out) const {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  const fs::path given = scene;
+  const fs::path folder = fs::is_directory(given, ignored) ? given : given.parent_path();
+  for (const fs::path& input : {folder / "images", folder / "masks", fs::path(images.value_or("")),
+                                fs::path(masks), fs::path(background.value_or(""))})
+    if (!input.empty() && fs::equivalent(out, input, ignored))
+      throw UsageError(concat("--out ", out,
+                              " is the folder of the scene's photographs or masks; give a folder "
+                              "of its own for the results"));
+}
+
 }  // namespace photohull::cli

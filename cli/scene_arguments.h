@@ -33,6 +33,8 @@ struct SceneArguments {
   std::vector<CLI::Option*> add_reading_options(CLI::App& command);
   /// Throws UsageError for values that are not understood.
   io::LoadSceneOptions options() const;
+  /// Throws UsageError where the folder for results is that of the scene's photographs or masks.
+  void check_output(const std::string& out) const;
   /// The same of --box auto and --box-scale.
   pipeline::BoxOptions box_options() const;
   /// Does what these two ask for, and nothing where neither was given. Throws as

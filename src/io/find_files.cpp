@@ -77,12 +77,21 @@ fs::path find_listed_image(const std::string& listed, const std::vector<fs::path
   return {};
 }
 
+std::vector<std::string> shorter_paths(const std::string& listed) {
+  std::string path = listed;
+  std::replace(path.begin(), path.end(), '\\', '/');
+  std::vector<std::string> shorter = {path};
+  for (std::size_t slash = path.find('/'); slash != std::string::npos;
+       slash = path.find('/', slash + 1))
+    shorter.push_back(path.substr(slash + 1));
+  return shorter;
+}
+
 fs::path find_image(const std::string& listed, const std::vector<fs::path>& folders) {
-  const fs::path found = find_listed_image(listed, folders);
-  if (!found.empty()) return found;
-  // Paths of Windows' programs come with backslashes.
-  const std::string name = listed.substr(listed.find_last_of("/\\") + 1);
-  return name == listed || name.empty() ? fs::path() : find_listed_image(name, folders);
+  fs::path found = find_listed_image(listed, folders);
+  for (const std::string& path : shorter_paths(listed))
+    if (found.empty() && !path.empty()) found = find_listed_image(path, folders);
+  return found;
 }
 
 std::string file_head(const fs::path& file, std::size_t bytes) {

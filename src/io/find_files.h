@@ -26,8 +26,12 @@ std::vector<std::filesystem::path> images_in(const std::filesystem::path& folder
 std::filesystem::path find_listed_image(const std::string& listed,
                                         const std::vector<std::filesystem::path>& folders);
 
-/// The same; else, since files name paths of other machines, a file of the same name alone in one
-/// of them. Empty when it is nowhere.
+/// What is left of a path of another machine (C:\scans\images\1.png) without its first folders:
+/// all of it, then ever less down to the name alone, with slashes.
+std::vector<std::string> shorter_paths(const std::string& listed);
+
+/// The same as find_listed_image; else, since files name paths of other machines, what the first of
+/// the shorter paths means that is there. Empty when it is nowhere.
 std::filesystem::path find_image(const std::string& listed,
                                  const std::vector<std::filesystem::path>& folders);
 

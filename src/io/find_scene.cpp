@@ -41,6 +41,15 @@ SceneLocation search_folder(const fs::path& folder, std::optional<SceneFormat> w
   return *found;
 }
 
+/// Throws Error where the folder's files cannot be listed or reached.
+void check_open(const fs::path& folder) {
+  std::error_code failure;
+  const fs::directory_iterator listed(folder, failure);
+  if (failure || !fs::exists(folder / ".", failure))
+    throw Error(concat(folder.string(), ": the folder cannot be entered (", failure.message(),
+                       "); check its permissions"));
+}
+
 std::optional<SceneFormat> format_of_file(const fs::path& file) {
   for (const FormatEntry& entry : format_entries())
     if (entry.recognises(file)) return entry.format;
@@ -51,7 +60,10 @@ std::optional<SceneFormat> format_of_file(const fs::path& file) {
 
 SceneLocation find_scene(const fs::path& path, std::optional<SceneFormat> format) {
   std::error_code ignored;
-  if (fs::is_directory(path, ignored)) return search_folder(path, format);
+  if (fs::is_directory(path, ignored)) {
+    check_open(path);
+    return search_folder(path, format);
+  }
   if (!is_file(path))
     throw Error(concat(path.string(),
                        ": there is no such file or folder; give a scene folder or "

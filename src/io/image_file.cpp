@@ -156,7 +156,7 @@ ImageSize read_image_size(const fs::path& path) {
 }
 
 ColourImage read_image(const fs::path& path) {
-  OpenImage file = open_image(path);
+  OpenImage file = open_whole_image(path);
   ColourImage image;
   image.width = file.spec.width;
   image.height = file.spec.height;
@@ -181,7 +181,7 @@ ColourImage read_image(const fs::path& path) {
 }
 
 FileMask read_mask(const fs::path& path) {
-  OpenImage file = open_image(path);
+  OpenImage file = open_whole_image(path);
   const Layout layout = file.layout;
   const std::size_t pixels = file.pixels();
   FileMask mask({file.spec.width, file.spec.height, {}});

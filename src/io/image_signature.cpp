@@ -1,8 +1,12 @@
 #include "io/image_signature.h"
 
 #include <OpenImageIO/imageio.h>
+#include <fcntl.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <string_view>
 
 #include "core/error.h"
@@ -13,6 +17,14 @@ namespace photohull::io {
 namespace {
 
 using namespace std::string_view_literals;
+
+/// Why not a byte of a file could be read.
+std::string why_nothing(const std::filesystem::path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return concat("it cannot be opened: ", std::strerror(errno));
+  ::close(file);
+  return "the file is empty";
+}
 
 }  // namespace
 
@@ -26,6 +38,9 @@ std::string known_images() {
 
 const char* image_format(const std::filesystem::path& path) {
   const std::string head = file_head(path, 12);
+  if (head.empty())
+    throw Error(concat(path.string(), ": cannot be read as an image (", why_nothing(path),
+                       "); copy or export it again"));
   if (head.starts_with("\x89PNG\r\n\x1a\n"sv)) return "png";
   if (head.starts_with("\xff\xd8\xff"sv)) return "jpeg";
   for (const auto magic : {"II*\0"sv, "MM\0*"sv, "II+\0"sv, "MM\0+"sv})

@@ -19,6 +19,8 @@ constexpr int kMaxDepth = 32;
 
 json parse_json(const std::filesystem::path& file) {
   const std::string text = read_text_file(file);
+  if (trimmed(text).empty())
+    throw Error(concat(file.string(), ": the file is empty; copy or export it again"));
   std::size_t values = 0;
   const auto guard = [&](int depth, json::parse_event_t, json&) {
     if (depth > kMaxDepth || ++values > kMaxValues)

@@ -58,6 +58,11 @@ std::vector<std::size_t> chosen_views(const LoadSceneOptions& options,
   const bool all = (options.views == kAllViews && !named_all) || parse_spread(options.views);
   std::vector<std::size_t> kept = select_views(all ? "" : options.views, names), left_out, rest;
   if (options.hold_out.empty()) return kept;
+  const bool held_name = std::find(names.begin(), names.end(), options.hold_out) != names.end();
+  if (!held_name && (options.hold_out == kAllViews || parse_spread(options.hold_out)))
+    throw UsageError(concat("--hold-out ", options.hold_out,
+                            ": name the views to leave out, e.g. 0,8,16, for at least ",
+                            kFewestViews, " must be left"));
   left_out = select_views(options.hold_out, names, "--hold-out");
   std::set_difference(kept.begin(), kept.end(), left_out.begin(), left_out.end(),
                       std::back_inserter(rest));
@@ -115,9 +120,10 @@ std::vector<std::size_t> fill_usable(const LoadSceneOptions& options, const RawS
   const std::vector<std::size_t> chosen = chosen_views(options, photographs.names);
   if (chosen.size() < kFewestViews)
     throw Error(concat(raw.file.string(), ": ", chosen.size(),
-                       !options.hold_out.empty() ? " views are left by --hold-out"
-                       : options.views.empty()   ? " views are listed"
-                                                 : " views are selected",
+                       chosen.size() == 1 ? " view is" : " views are",
+                       !options.hold_out.empty() ? " left by --hold-out"
+                       : options.views.empty()   ? " listed"
+                                                 : " selected",
                        ", but at least ", kFewestViews, " are needed"));
   std::vector<std::size_t> usable;
   std::vector<LeftOutView> left_out;

@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "core/error.h"
+#include "io/check_png.h"
 #include "io/image_file.h"
 #include "io/image_signature.h"
 #include "io/text_file.h"
@@ -74,6 +75,12 @@ OpenImage open_image(const fs::path& path) {
                        ") is not the display window (", s.full_width, " x ", s.full_height,
                        "); save the image uncropped"));
   file.layout = layout_of(file.spec, path);
+  return file;
+}
+
+OpenImage open_whole_image(const fs::path& path) {
+  OpenImage file = open_image(path);
+  if (std::strcmp(file.input->format_name(), "png") == 0) check_png(path);
   return file;
 }
 

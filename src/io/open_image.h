@@ -37,6 +37,10 @@ std::string one_line(std::string text);
 /// Reads the header. Throws Error as read_image does.
 OpenImage open_image(const std::filesystem::path& path);
 
+/// The same for an image that will be decoded: throws Error where the file plainly ends too early,
+/// too, which no decoder has to find out.
+OpenImage open_whole_image(const std::filesystem::path& path);
+
 /// Throws Error: decoders say that the file is not whole.
 [[noreturn]] void damaged(const OpenImage& file, const std::string& detail);
 

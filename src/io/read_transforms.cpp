@@ -56,6 +56,7 @@ class Fields {
     return value && value->get<bool>();
   }
 
+  bool has(const char* key) const { return find(key) != nullptr; }
   bool frame_has(const char* key) const { return frame_.contains(key); }
 
  private:
@@ -107,9 +108,11 @@ void read_intrinsics(const Fields& fields, RawView& view) {
   if (!own_angle || own_focal) {
     k.fx = fields.number("fl_x");
     k.fy = fields.number("fl_y");
-    if (k.fx < 0 || k.fy < 0)
-      throw Error(concat(fields.where(), ": fl_x or fl_y is negative (", k.fx, ", ", k.fy,
-                         "), but focal lengths must be positive"));
+    for (const char* key : {"fl_x", "fl_y"})
+      if (fields.has(key) && fields.number(key) <= 0)
+        throw Error(concat(fields.where(), ": ", key, " is ", fields.number(key),
+                           ", but focal lengths must be positive; leave it out where the field of "
+                           "view or the other one says it"));
   }
   if (k.fx == 0 && k.fy == 0 && view.angle_x == 0 && view.angle_y == 0)
     throw Error(

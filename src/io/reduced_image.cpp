@@ -261,7 +261,7 @@ FileMask average_mask(OpenImage& file, OIIO::TypeDesc type, const glm::dvec2& sc
 
 ColourImage read_image(const fs::path& path, double scale) {
   if (scale == 1) return read_image(path);
-  OpenImage file = open_image(path);
+  OpenImage file = open_whole_image(path);
   ColourImage image;
   image.width = scaled_length(file.spec.width, scale);
   image.height = scaled_length(file.spec.height, scale);
@@ -280,7 +280,7 @@ FileMask read_mask(const fs::path& path, double scale) {
 
 FileMask read_mask(const fs::path& path, const glm::dvec2& scale) {
   if (scale == glm::dvec2(1)) return read_mask(path);
-  OpenImage file = open_image(path);
+  OpenImage file = open_whole_image(path);
   try {
     return file.spec.format == OIIO::TypeDesc::UINT8
                ? average_mask<std::uint8_t>(file, OIIO::TypeDesc::UINT8, scale)

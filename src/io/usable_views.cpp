@@ -44,8 +44,16 @@ std::vector<std::string> view_names(const RawScene& raw, const std::vector<fs::p
   return std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end() ? names : paths;
 }
 
-std::string looked_in(const RawScene& raw) {
+/// Where a photograph was looked for, or what kept from looking there.
+std::string looked_in(const RawScene& raw, const std::string& listed) {
   std::string folders;
+  for (const fs::path& folder : raw.image_folders) {
+    std::error_code failure;
+    const fs::path image = folder / listed;
+    if (!fs::exists(image, failure) && failure == std::errc::permission_denied)
+      return concat(folder_of(image).lexically_normal().string(),
+                    " cannot be entered: ", failure.message(), "; check its permissions");
+  }
   for (const fs::path& folder : raw.image_folders)
     folders += (folders.empty() ? "" : ", ") + (folder / "").lexically_normal().string();
   return "looked in " + folders + "; --images says where else they are";
@@ -120,7 +128,7 @@ CheckedView check_view(const RawScene& raw, std::size_t index, const Photographs
     const std::string& name = reason == Reason::kMissing ? stated.listed : photographs.names[index];
     return CheckedView{{}, {name, stated.where, reason, std::move(detail)}};
   };
-  if (image.empty()) return refused(Reason::kMissing, looked_in(raw));
+  if (image.empty()) return refused(Reason::kMissing, looked_in(raw, stated.listed));
   ImageSize size;
   try {
     size = read_image_size(image);

@@ -77,7 +77,10 @@ struct ClosestPoint::Data {
 void ClosestPoint::Data::build() {
   // One thread builds the tree, so that it is the same tree in every run.
   device = rtcNewDevice("threads=1");
-  if (!device) throw Error("the distance queries (Embree) cannot be started on this machine");
+  if (!device)
+    throw Error(
+        "the distance queries (Embree) cannot be started: most likely too little memory or too few "
+        "threads are available or allowed (ulimit -a); free some or raise the limits");
   scene = rtcNewScene(device);
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,

@@ -55,7 +55,10 @@ struct RayScene::Device {
   Device() {
     // One thread builds the tree, so that it is the same tree in every run.
     device = rtcNewDevice("threads=1");
-    if (!device) throw Error("the ray caster (Embree) cannot be started on this machine");
+    if (!device)
+      throw Error(
+          "the ray caster (Embree) cannot be started: most likely too little memory or too few "
+          "threads are available or allowed (ulimit -a); free some or raise the limits");
     scene = rtcNewScene(device);
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
   }

@@ -124,10 +124,10 @@ TEST_F(BadScene, Box) {
 }
 
 TEST_F(BadScene, TooFewViews) {
-  refuse({"1 views are selected", "at least 2"}, {"--views", "3"});
+  refuse({"1 view is selected", "at least 2"}, {"--views", "3"});
   scene_.views.resize(1);
   write_scene_file();
-  refuse_scene({"1 views are listed", "at least 2"});
+  refuse_scene({"1 view is listed", "at least 2"});
   write_bytes(par(), "0\n");
   refuse_scene({"scene_par.txt"});
 }

@@ -3,8 +3,10 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <linux/capability.h>
 #include <poll.h>
 #include <pty.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -80,6 +82,9 @@ Channel open_terminal() {
     const rlimit limit{*options.cpu_seconds, *options.cpu_seconds};
     ::setrlimit(RLIMIT_CPU, &limit);
   }
+  if (options.obeys_permissions)  // what fails for all but root, who alone needs it
+    for (const int right : {CAP_DAC_OVERRIDE, CAP_DAC_READ_SEARCH})
+      ::prctl(PR_CAPBSET_DROP, right, 0, 0, 0);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::signal(signal, SIG_DFL);
   for (const std::string& variable : options.environment)
     ::putenv(const_cast<char*>(variable.c_str()));
@@ -155,6 +160,7 @@ Finished run_program(const Arguments& command, const RunOptions& options) {
   Channel out = open_pipe(), err = options.error_terminal ? open_terminal() : open_pipe();
   if (!options.output_file.empty())
     out.childs = Descriptor(::open(options.output_file.c_str(), O_WRONLY | O_CLOEXEC));
+  if (options.output_closed) out.ours.close();
   std::vector<char*> words;
   for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));
   words.push_back(nullptr);

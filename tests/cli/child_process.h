@@ -20,6 +20,10 @@ struct RunOptions {
   std::optional<rlim_t> cpu_seconds;
   /// Standard output goes to this file (/dev/full, say) instead of a pipe.
   std::string output_file;
+  /// Nobody reads standard output: whoever did has closed the pipe.
+  bool output_closed = false;
+  /// Files' permissions hold for the child even where the tests run as root, who may read all.
+  bool obeys_permissions = false;
   /// `signal` is sent once, so many seconds after this text has come on standard error.
   std::string signal_after;
   double signal_delay_seconds = 0;

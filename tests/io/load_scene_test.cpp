@@ -110,7 +110,7 @@ TEST_F(LoadScene, ViewsAreHeldOut) {
   options.hold_out = "3";
   EXPECT_THAT(error_with(options), HasSubstr("--hold-out: '3' is out of range"));
   options.hold_out = "0-1";
-  EXPECT_THAT(error_with(options), HasSubstr("1 views are left by --hold-out, but at least 2"));
+  EXPECT_THAT(error_with(options), HasSubstr("1 view is left by --hold-out, but at least 2"));
   options.hold_out = "*";
   EXPECT_THAT(error_with(options), HasSubstr("0 views are left by --hold-out"));
 }

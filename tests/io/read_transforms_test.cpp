@@ -190,7 +190,7 @@ TEST_F(ReadTransforms, BrokenJsonIsNamed) {
   EXPECT_THAT(error_for("{\"frames\": [\n NaN]}"),
               AllOf(HasSubstr("not valid JSON"), HasSubstr("line 2")));
   EXPECT_THAT(error_for("{\"frames\": [1e999]}"), HasSubstr("not valid JSON"));
-  EXPECT_THAT(error_for(""), HasSubstr("not valid JSON"));
+  EXPECT_THAT(error_for(""), HasSubstr("the file is empty"));
   EXPECT_THAT(error_for("[]"), HasSubstr("\"frames\" is missing"));
   EXPECT_THAT(error_for(std::string(1000000, '[')), HasSubstr("levels"));
 }
