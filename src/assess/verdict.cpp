@@ -157,7 +157,7 @@ class Judge {
   /// Stems that masks lack have the width that photographs suggest; those that voxels are too large
   /// for have the voxels'.
   void stems() {
-    if (s_.stems_restored > kRestored)
+    if (s_.stems > kManyStems && s_.stems_restored > kRestored)
       name_cause(concat(percent(std::min(1.0, s_.stems_restored)),
                         " of the thin parts were put back from the photographs, for the masks lack "
                         "them: their width is a guess; make masks that show them, or photograph "
@@ -208,13 +208,16 @@ class Judge {
     const double place = std::max(s_.cameras_moved_alike,
                                   s_.cameras_moved / std::sqrt(double(std::max(1, s_.views))));
     const bool alike = s_.cameras_moved_alike > kAlike * s_.cameras_moved;
-    weigh(place * s_.pixel_size / s_.far, kMoved,
-          concat("the cameras had to be moved by ", pixels(s_.cameras_moved),
-                 " to agree: shape is right, but place and size may be off by ", pixels(place),
-                 alike ? "; all were off alike, so that focal length, principal point or pixel "
-                         "centre may be wrong (photohull info --cameras, --refine-cameras "
-                         "poses+intrinsics)"
-                       : ""));
+    const double off = place * s_.pixel_size / s_.far;
+    const std::string moved =
+        concat("the cameras had to be moved by ", pixels(s_.cameras_moved),
+               " to agree: shape is right, but place and size may be off by ", pixels(place),
+               alike ? "; all were off alike, so that focal length, principal point or pixel "
+                       "centre may be wrong (photohull info --cameras, --refine-cameras "
+                       "poses+intrinsics)"
+                     : "");
+    if (off > kMoved.failed) causes_ = 0;  // before all others, whatever these are
+    weigh(off, kMoved, moved);
   }
 
   void surface() {
@@ -240,10 +243,11 @@ class Judge {
         s_.match.matched < kEnoughMatched ? std::max(0.0, s_.unsure - s_.unseen) : 0;
     if (unmatched <= kUnmatched.doubtful && (doubted == 0 || s_.unsure <= kUnsure.doubtful))
       weigh(unmatched + kUnsureWeight * doubted, s_.masks ? kUnconfirmed : kUnconfirmedOpen,
-            concat("the photographs do not confirm much of the surface: on ", percent(unmatched),
-                   " of it there is texture that no second view shows, on ", percent(doubted),
-                   " of it confidence is below one half. Folds and hollows that few views look "
-                   "into do this, noise and blur too: add views that look in, or sharper ones"));
+            concat("on ", percent(unmatched + doubted),
+                   " of the surface the photographs do not confirm it, for no second view shows "
+                   "its texture or confidence is below one half: folds and hollows that few views "
+                   "look into do this, noise and blur too; add views that look in, or sharper "
+                   "ones"));
     weigh(s_.match.beyond_far, kFarOff,
           concat("two views put ", percent(s_.match.beyond_far),
                  " of what they both show more than 0.5 % of the diagonal off the surface: look at "

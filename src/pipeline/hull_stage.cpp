@@ -1,6 +1,7 @@
 #include "pipeline/hull_stage.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "carving/bounding.h"
 #include "carving/fit_grid.h"
@@ -81,13 +82,20 @@ const HullStage::Bounds& HullStage::bounds() {
 
 bool HullStage::bounded() {
   if (!in_.any_mask()) return false;
-  const bool bounded = bounds().all;
-  if (!bounded)
-    in_.warn(
-        "the masks do not bound the object (fewer than half of the views have one, or the box "
-        "cuts off most of what they show): what no photograph tells of is left open, as without "
-        "masks");
-  return bounded;
+  if (bounds().all) return true;
+  const auto silhouettes = in_.silhouettes_of_views();
+  const auto masked = std::count_if(silhouettes.begin(), silhouettes.end(),
+                                    [](const carving::Silhouette& v) { return v.distance; });
+  in_.warn(concat(
+      "the masks do not bound the object: ",
+      2 * std::size_t(masked) < silhouettes.size()
+          ? concat("only ", masked, " of ", silhouettes.size(), " views have one")
+          : concat("what they show goes on beyond the box on ",
+                   std::lround(100 * bounds().share_beyond),
+                   " % of its surface; is the box too small (--box auto finds one), or do the "
+                   "masks show more than the object, or the cameras not see it from around?"),
+      "; what no photograph tells of is left open, as without masks"));
+  return false;
 }
 
 double HullStage::share_beyond() { return in_.any_mask() ? bounds().share_beyond : 1; }

@@ -123,7 +123,7 @@ TEST(Verdict, SeveralSignsAtOnceAreDoubtful) {
   folded(s);
   const Verdict both = judged(s);
   EXPECT_EQ(both.level, Level::kDoubtful);
-  EXPECT_THAT(both.reasons.front(), HasSubstr("the photographs do not confirm much"));
+  EXPECT_THAT(both.reasons.front(), HasSubstr("of the surface the photographs do not confirm it"));
   EXPECT_EQ(with([](Signals& x) { x.unsure = x.unseen + 0.18; }).level, Level::kGood);
   EXPECT_EQ(with([](Signals& x) { x.match.matched = 0.75; }).level, Level::kGood);
   s.match.matched = 0.72;  // colours alone differ
@@ -134,7 +134,7 @@ TEST(Verdict, SeveralSignsAtOnceAreDoubtful) {
 }
 
 TEST(Verdict, StemsThatMasksOrVoxelsDoNotShow) {
-  expect(with([](Signals& s) { s.stems_restored = 0.9; }), Level::kDoubtful,
+  expect(with([](Signals& s) { s.stems = 0.6, s.stems_restored = 0.9; }), Level::kDoubtful,
          "90 % of the thin parts were put back from the photographs");
   expect(with([](Signals& s) { s.stems = 0.6, s.voxel_size = 3 * s.far, s.resolution = 40; }),
          Level::kDoubtful, "use --resolution 120");
