@@ -26,11 +26,10 @@ constexpr Limits kExcess{0.06, 0.3};          // of the surface's projection
 constexpr Limits kContradiction{0.02, 0.5};   // of the silhouettes' rays
 constexpr Limits kFewViews{0.45, INFINITY};   // of the surface, seen by fewer than three
 // Of the surface: texture that is not found again, and what else has little confidence. Fitted on
-// half of the scenes of bench/verdict_scenes.py (docs/stability.md). With silhouettes results are
-// at most 0.25 where F at 0.5 % is above 95, and 0.31 to 0.41 at 60 to 69; without them nothing
-// else holds the surface: at most 0.16 above 95, 0.21 to 0.34 at 60 to 78.
+// bench/verdict_scenes.py, seed 1 (docs/stability.md): at most 0.25 where F at 0.5 % is above 95,
+// 0.31 to 0.41 at 60 to 69. Rendered and real scenes of that quality have up to 0.26, without
+// silhouettes.
 constexpr Limits kUnconfirmed{0.27, INFINITY};
-constexpr Limits kUnconfirmedOpen{0.19, INFINITY};
 constexpr double kUnsureWeight = 0.7;  // of what has little confidence, beside what is not found
 constexpr double kRestored = 0.5;      // of what lines of silhouettes show, put into the masks
 constexpr double kManyStems = 0.3;     // of the surface
@@ -242,7 +241,7 @@ class Judge {
     const double doubted =
         s_.match.matched < kEnoughMatched ? std::max(0.0, s_.unsure - s_.unseen) : 0;
     if (unmatched <= kUnmatched.doubtful && (doubted == 0 || s_.unsure <= kUnsure.doubtful))
-      weigh(unmatched + kUnsureWeight * doubted, s_.masks ? kUnconfirmed : kUnconfirmedOpen,
+      weigh(unmatched + kUnsureWeight * doubted, kUnconfirmed,
             concat("on ", percent(unmatched + doubted),
                    " of the surface the photographs do not confirm it, for no second view shows "
                    "its texture or confidence is below one half: folds and hollows that few views "

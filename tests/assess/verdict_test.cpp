@@ -128,9 +128,6 @@ TEST(Verdict, SeveralSignsAtOnceAreDoubtful) {
   EXPECT_EQ(with([](Signals& x) { x.match.matched = 0.75; }).level, Level::kGood);
   s.match.matched = 0.72;  // colours alone differ
   EXPECT_EQ(judged(s).level, Level::kGood);
-  // Where no silhouettes hold the surface, less is enough.
-  EXPECT_EQ(with([](Signals& x) { x.match.matched = 0.75, x.masks = false; }).level,
-            Level::kDoubtful);
 }
 
 TEST(Verdict, StemsThatMasksOrVoxelsDoNotShow) {

@@ -22,7 +22,8 @@ TEST(SearchDisc, NoRadiusIsTheProjectionAndNoDefines) {
 }
 
 TEST(SearchDisc, EveryPlaceInTheDiscIsNearAnOffset) {
-  // Half the diagonal of a cell: rings are at most a pixel apart, offsets on a ring pi / 3 along it.
+  // Half the diagonal of a cell: rings are at most a pixel apart, offsets on a ring pi / 3 along
+  // it.
   const double farthest = std::hypot(0.5, std::numbers::pi / 6);
   test::Rng rng(5);
   for (const double radius : {0.3, 0.5, 1.0, 1.7, 2.0, 4.0}) {
