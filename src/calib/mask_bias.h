@@ -20,8 +20,9 @@ struct MaskBias {
 
 /// The mean slope of brightness across the masks' contours, as a function of the distance from
 /// them: texture on both sides averages out, the outline stands out. Distances to 16 pixels (or 2 %
-/// of the image's longer side) on both sides are tried. `silhouettes` are those of the views'
-/// masks, empty for views without.
+/// of the image's longer side) on both sides are tried. Where the photographs' strongest slope lies
+/// is compared with where the masks' own coverage has it, for parts narrower than two pixels have
+/// it beside their outline. `silhouettes` are those of the views' masks, empty for views without.
 MaskBias measure_mask_bias(std::span<const View> views,
                            std::span<const SilhouetteDistance> silhouettes);
 

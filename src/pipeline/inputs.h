@@ -94,6 +94,8 @@ class Inputs {
   void drop_view(int index);
   /// Puts thin parts that masks have lost, by `eaten` pixels around every outline, back into them.
   void restore_eaten(double eaten);
+  /// Do the silhouettes leave no more of their foreground unexplained with these cameras?
+  bool fill_no_less(std::span<const Camera> refined) const;
   /// Are the masks too small, as the photographs tell?
   bool masks_are_eaten() const;
 

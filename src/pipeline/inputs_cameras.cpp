@@ -8,7 +8,9 @@
 #include "calib/diagnose.h"
 #include "calib/feature_tracks.h"
 #include "calib/mask_bias.h"
+#include "calib/mask_lines.h"
 #include "calib/refine_cameras.h"
+#include "carving/missing_parts.h"
 #include "core/error.h"
 #include "pipeline/inputs.h"
 #include "pipeline/refine_cameras.h"
@@ -79,7 +81,8 @@ void Inputs::refine_cameras() {
   const CameraRefinement found = photohull::refine_cameras(views, o, progress_);
   const bool always = asked && options_.refine_cameras != RefineCameras::kAuto;
   // Outlines alone say nothing of cameras where the masks' maker took the tips of thin parts.
-  const bool trusted = asked || found.all.observations > 0 || !masks_are_eaten();
+  const bool trusted =
+      asked || found.all.observations > 0 || (!masks_are_eaten() && fill_no_less(found.cameras));
   const bool use = found.changed && (always || (pays(found) && trusted));
   report_.camera_refinement = to_json(found, scene, use);
   remember_right_cameras(found, use);
@@ -105,6 +108,35 @@ bool Inputs::masks_are_eaten() const {
   });
   const MaskBias bias = measure_mask_bias(views, distances);
   return bias.counts() && bias.pixels > 0;
+}
+
+/// Tips below the masks' sampling end too early, each view's elsewhere: outlines that are made to
+/// agree at them leave the rest contradicting each other.
+bool Inputs::fill_no_less(std::span<const Camera> refined) const {
+  std::vector<Mask> masks(views.size());
+  std::vector<std::vector<LinePoint>> found(views.size());
+  std::vector<SilhouetteDistance> distances(views.size());
+  tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
+    if (views[i].mask.empty()) return;
+    masks[i] = views[i].mask;
+    found[i] = find_lines(masks[i]);
+    photohull::widen_lines(found[i], masks[i]);
+    distances[i] = silhouette_distance(masks[i]);
+  });
+  std::vector<carving::Silhouette> all;
+  for (std::size_t i = 0; i < views.size(); ++i)
+    if (masks[i].empty())
+      all.push_back({&masks[i]});
+    else
+      all.push_back({&masks[i], &distances[i], &found[i], made_masks_.contains(views[i].name)});
+  const auto unexplained = [&](std::span<const Camera> with) {
+    int count = 0;
+    for (const carving::ExplainedView& v :
+         carving::find_missing_parts(*scene.box, with, all, {}, &progress_).views)
+      count += v.unexplained;
+    return count;
+  };
+  return unexplained(refined) <= unexplained(projtex::cameras_of(views));
 }
 
 /// Features of a view whose camera is right lie where those of other views say, whatever its mask.

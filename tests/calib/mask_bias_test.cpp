@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "calib/drawn_masks.h"
 #include "calib/silhouette.h"
 #include "support/ray_cast.h"
 #include "support/silhouettes.h"
@@ -79,6 +80,55 @@ TEST(MaskBias, NoMasksNoBias) {
   for (auto& s : scene.silhouettes) s = {};
   EXPECT_FALSE(scene.measure().counts());
   EXPECT_FALSE(measure_mask_bias({}, {}).counts());
+}
+
+/// Bands in many directions, as a light object on black shows them, and masks of bands whose widths
+/// are others.
+std::pair<std::vector<View>, std::vector<SilhouetteDistance>> bands(double width,
+                                                                    double width_in_mask) {
+  std::vector<View> views(4);
+  std::vector<SilhouetteDistance> silhouettes;
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    test::Drawing photograph(kSize, kSize), masks(kSize, kSize);
+    for (int i = 0; i < 8; ++i) {
+      const double angle = 0.1 * double(k) + 0.05 * i;
+      const glm::dvec2 middle(18 + 17.3 * i, 80.2 + 0.3 * i),
+          half = 50.0 * glm::dvec2(std::sin(angle), std::cos(angle));
+      photograph.add_band(middle - half, middle + half, width);
+      masks.add_band(middle - half, middle + half, width_in_mask);
+    }
+    views[k].mask = masks.mask();
+    silhouettes.push_back(silhouette_distance(views[k].mask));
+    views[k].image.width = views[k].image.height = kSize;
+    for (const std::uint8_t c : photograph.mask().coverage)
+      views[k].image.bytes.insert(views[k].image.bytes.end(), {c, c, c, 255});
+  }
+  return {std::move(views), std::move(silhouettes)};
+}
+
+TEST(MaskBias, ThinStemsOfRightMasksAreNotEaten) {
+  for (const double width : {0.3, 0.5, 0.7, 1.0, 1.4, 2.0}) {
+    const auto [views, silhouettes] = bands(width, width);
+    EXPECT_FALSE(measure_mask_bias(views, silhouettes).counts()) << width;
+  }
+}
+
+TEST(MaskBias, WiresThatWereEatenAre) {
+  for (const double width : {3.0, 4.0, 6.0}) {
+    const auto [views, silhouettes] = bands(width, width - 2);
+    const MaskBias bias = measure_mask_bias(views, silhouettes);
+    EXPECT_TRUE(bias.counts()) << width;
+    EXPECT_NEAR(bias.pixels, 1, 0.25) << width;
+  }
+}
+
+TEST(MoveOutline, OutwardTakesNothingFromStemsWithoutAnOutline) {
+  auto [views, silhouettes] = bands(0.3, 0.3);
+  const std::vector<std::uint8_t> before = views[0].mask.coverage;
+  move_outline(1, views[0].mask, silhouettes[0]);
+  for (std::size_t i = 0; i < before.size(); ++i) ASSERT_GE(views[0].mask.coverage[i], before[i]);
+  EXPECT_EQ(*std::max_element(before.begin(), before.end()),
+            *std::max_element(views[0].mask.coverage.begin(), views[0].mask.coverage.end()));
 }
 
 TEST(MoveOutline, MovesMaskAndDistancesAlike) {
