@@ -53,7 +53,7 @@ def measure(program, scene, out, arguments):
     seen = {f["t"]: f["f"] for f in judged["seen"]["f"]}
     verdict = report["verdict"]
     return {"exit": done.returncode, "f": at[0.005], "f_seen": seen[0.005], "level": verdict["level"],
-            "reasons": verdict["reasons"], "signals": verdict["signals"], "cpu_seconds": report["cpu_seconds"]}
+            "reasons": verdict["reasons"], "verdict": verdict, "cpu_seconds": report["cpu_seconds"]}
 
 
 def main():

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "assess/common_error.h"
 #include "assess/explained.h"
 #include "assess/match_probes.h"
 #include "core/error.h"
@@ -19,6 +20,7 @@ struct Signals {
   double stems_restored = 0;       ///< of what silhouettes show of stems: put into eaten masks
   bool hull = false;               ///< is the surface the silhouettes' alone (--method hull)?
   double mask_confidence = 0;      ///< 1 for masks that were given
+  double cameras_within = 0;       ///< share of the cameras that stand inside the box
   double pixel_size = 0;           ///< world units that a pixel covers at the object
   double voxel_size = 0;           ///< world units
   int resolution = 0;              ///< voxels along the box's longest side
@@ -37,6 +39,8 @@ struct Signals {
   double hull_beyond = 1;          ///< share of the hull's surface that goes on beyond the box
   MatchEvidence match;
   Explained explained;  ///< without places unless no view has a silhouette
+  Explained compared;   ///< where silhouettes bound it: places on the surface alone
+  CommonError common;   ///< that the views' outlines have
 };
 
 enum class Level { kGood, kDoubtful, kFailed };
