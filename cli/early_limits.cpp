@@ -30,7 +30,7 @@ void check_before_libraries(int, char**, char**) {
   _exit(int(photohull::ExitCode::kFailure));
 }
 
-[[gnu::section(".preinit_array"), gnu::used]] void (*const kBeforeLibraries)(int, char**, char**) =
-    check_before_libraries;
+[[gnu::section(".preinit_array"),
+  gnu::used]] void (*const kBeforeLibraries)(int, char**, char**) = check_before_libraries;
 
 }  // namespace

@@ -11,12 +11,12 @@ namespace photohull::assess {
 /// How principal points and focal lengths of all views would have to change for the silhouettes'
 /// tangents to agree best. Masks that are all shifted ask for the same as principal points do.
 struct CommonError {
-  glm::dvec2 shift{0.0};       ///< pixels
-  double focal_factor = 1;     ///< on focal lengths
-  double shift_sigma = 0;      ///< pixels, standard deviation, of the less certain of x and y
-  double focal_sigma = 0;      ///< likewise
+  glm::dvec2 shift{0.0};         ///< pixels
+  double focal_factor = 1;       ///< on focal lengths
+  double shift_sigma = 0;        ///< pixels, standard deviation, of the less certain of x and y
+  double focal_sigma = 0;        ///< likewise
   double before = 0, after = 0;  ///< pixels, what tangents disagree by: median
-  int tangents = 0;            ///< 0: nothing is known, and all else as it stands here
+  int tangents = 0;              ///< 0: nothing is known, and all else as it stands here
 
   /// Does the change mend most of what tangents disagree by?
   bool mends() const;

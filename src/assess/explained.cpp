@@ -20,8 +20,9 @@ namespace {
 
 constexpr double kPlaces = 12000;      // over all views, about
 constexpr double kFewerPlaces = 4000;  // likewise, of the surface alone
-constexpr int kFewestPlaces = 100;     // a view
-constexpr int kReach = 2;           // samples of a window to each side
+constexpr double kFewestPlaces = 100;  // a view
+constexpr double kFewestOnSurface = 150;
+constexpr int kReach = 2;  // samples of a window to each side
 constexpr int kSamples = (2 * kReach + 1) * (2 * kReach + 1);
 constexpr double kWidestSpacing = 3;  // pixels between samples, which are smoothed by a pixel
 constexpr double kLeastAngle = 5, kMostAngle = 60;  // degrees between the views at the point
@@ -89,8 +90,9 @@ class Explainer {
 
   ExplainedView look(std::size_t a) const {
     const GreyImage& grey = eyes_[a].grey;
-    const double all = surface_alone_ ? kFewerPlaces : kPlaces;
-    const double wanted = std::max(all / double(eyes_.size()), double(kFewestPlaces));
+    const double views = double(eyes_.size());
+    const double wanted = surface_alone_ ? std::max(kFewerPlaces / views, kFewestOnSurface)
+                                         : std::max(kPlaces / views, kFewestPlaces);
     ExplainedView out;
     out.step = std::max(1, int(std::sqrt(double(grey.width) * grey.height / wanted)));
     for (int y = out.step / 2; y < grey.height; y += out.step)
@@ -149,7 +151,8 @@ class Explainer {
     rays_.closest(through, hits);
     if (hits[kSamples / 2]) return compare(a, *window, through, hits);
     // What a window beside the surface's contour shows is the surface.
-    if (surface_alone_ || std::any_of(hits.begin(), hits.end(), [](const Hit& h) { return bool(h); }))
+    if (surface_alone_ ||
+        std::any_of(hits.begin(), hits.end(), [](const Hit& h) { return bool(h); }))
       return {};
     return search(a, pixel, *window, *part);
   }

@@ -51,7 +51,7 @@ struct Explained {
   int count(Place place) const { return counts[std::size_t(place)]; }
   int on_surface = 0, behind = 0;  ///< over all views, as of one
 
-  int looked_at() const;                     ///< places of all kinds
+  int looked_at() const;  ///< places of all kinds
   /// Of the places on the surface: where a view looks at its inside, so that what hides that is
   /// missing, [0, 1].
   double share_behind() const;
@@ -62,9 +62,9 @@ struct Explained {
 };
 
 struct ExplainOptions {
-  double voxel_size = 0;  ///< world units, > 0
-  double pixel_size = 0;  ///< world units that a pixel covers at the object, > 0
-  double noise = 0;       ///< of the photographs, standard deviation in 8-bit levels
+  double voxel_size = 0;       ///< world units, > 0
+  double pixel_size = 0;       ///< world units that a pixel covers at the object, > 0
+  double noise = 0;            ///< of the photographs, standard deviation in 8-bit levels
   bool surface_alone = false;  ///< leave out places without surface, and look at a third of all
 };
 

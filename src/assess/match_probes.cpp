@@ -66,15 +66,15 @@ bool textured(const GreyImage& image, const glm::dvec2& pixel, const MatchOption
 }
 
 struct Match {
-  int a = 0, b = 0;   // views
-  double across = 0;  // pixels from the epipolar line
-  double offset = 0;  // world units along the normal
-  bool fine = true;   // do both views show the place in pixels that are small enough?
+  int a = 0, b = 0;       // views
+  double across = 0;      // pixels from the epipolar line
+  double offset = 0;      // world units along the normal
+  double pixel_size = 0;  // world units, of the coarser of the two views
+  bool fine = true;       // is that small enough?
 };
 
 struct ProbeResult {
   bool seen = false, textured = false;
-  std::vector<std::pair<int, int>> tried;  // views
   std::vector<Match> matches;
 
   /// Two views that agree on the surface outweigh one that does not.
@@ -105,17 +105,18 @@ class Matcher {
     result.seen = !others.empty();
     result.textured = result.seen && within(a, pixel) && textured(grey_[a], pixel, options_);
     if (!result.textured) return result;
+    bool placed = false;
     for (const int b : others) {
       const auto start = place_in(camera, pixel, views_[b].camera, probe);
       if (!start || !(glm::determinant(start->shape) > 0.1) || !within(b, start->center)) continue;
-      result.tried.emplace_back(a, b);
+      placed = true;
       const auto found =
           align_patch(grey_[a], pixel, grey_[b], *start, options_.radius, options_.farthest);
       if (found && found->agreement >= options_.least_agreement)
         if (const auto match = measure(probe, a, pixel, b, *start, found->place.center))
           result.matches.push_back(*match);
     }
-    result.textured = !result.tried.empty();
+    result.textured = placed;
     return result;
   }
 
@@ -162,7 +163,8 @@ class Matcher {
     if (!(length > 0.02)) return std::nullopt;
     const glm::dvec2 shift = found - start.center;
     Match match{a, b};
-    match.fine = std::max(footprint, footprint_of(from, probe)) < options_.coarsest;
+    match.pixel_size = std::max(footprint, footprint_of(from, probe));
+    match.fine = match.pixel_size < options_.coarsest;
     match.across = std::abs(along.x * shift.y - along.y * shift.x) / length;
     match.offset = std::abs(glm::dot(along, shift) / (length * length) * footprint *
                             glm::dot(ray, probe.normal));
@@ -198,33 +200,35 @@ double unconfirmed_patches(std::span<const SurfaceProbe> probes,
     if (near.size() < kNeighbours) return;
     std::nth_element(near.begin(), near.begin() + kNeighbours - 1, near.end());
     const auto end = near.begin() + kNeighbours;
-    const auto found = std::count_if(near.begin(), end, [&](const auto& n) {
-      return bool(confirmed[n.second]);
-    });
+    const auto found =
+        std::count_if(near.begin(), end, [&](const auto& n) { return bool(confirmed[n.second]); });
     doubted[textured[k]] = double(found) < kConfirmed * kNeighbours;
   });
   return double(std::ranges::count(doubted, 1)) / double(std::max<std::size_t>(1, probes.size()));
 }
 
-/// Distances from epipolar lines, and what was looked for, by views and over all.
+/// Distances from epipolar lines, by views and over all.
 void sum_up_cameras(std::span<const ProbeResult> results, std::size_t views,
                     MatchEvidence& evidence) {
-  std::vector<double> across;
-  std::vector<std::vector<double>> by_view(views);
+  std::vector<double> across, sizes;
+  std::vector<std::vector<double>> by_view(views), sizes_by_view(views);
   evidence.views.resize(views);
   for (const ProbeResult& r : results) {
-    for (const auto& [a, b] : r.tried) ++evidence.views[a].tried, ++evidence.views[b].tried;
     for (const Match& m : r.matches) {
-      ++evidence.views[m.a].found, ++evidence.views[m.b].found;
       if (!m.fine) continue;
       across.push_back(m.across);
-      by_view[m.a].push_back(m.across);
-      by_view[m.b].push_back(m.across);
+      sizes.push_back(m.pixel_size);
+      for (const int view : {m.a, m.b}) {
+        by_view[view].push_back(m.across);
+        sizes_by_view[view].push_back(m.pixel_size);
+      }
     }
   }
   evidence.residual = median(across);
+  evidence.pixel_size = median(sizes);
   for (std::size_t i = 0; i < views; ++i) {
     evidence.views[i].pixels = median(by_view[i]);
+    evidence.views[i].pixel_size = median(sizes_by_view[i]);
     evidence.views[i].matches = int(by_view[i].size());
   }
 }

@@ -13,10 +13,9 @@ namespace photohull::assess {
 
 /// How one view's matches lie beside the lines where its and the other views' cameras allow them.
 struct ViewResidual {
-  double pixels = 0;  ///< median distance from the epipolar lines
-  int matches = 0;    ///< that are fine enough for this
-  int tried = 0;      ///< patches looked for, with another view
-  int found = 0;      ///< of these, found again
+  double pixels = 0;      ///< median distance from the epipolar lines
+  int matches = 0;        ///< that are fine enough for this
+  double pixel_size = 0;  ///< world units that a pixel covers at the matches, median
 };
 
 /// Shares are of the probes, [0, 1].
@@ -31,7 +30,8 @@ struct MatchEvidence {
   /// units; the median, and the shares of those beyond `near` and `far`. Matches between views one
   /// of which is too coarse there to tell do not count.
   double offset = 0, beyond_near = 0, beyond_far = 0;
-  double residual = 0;  ///< pixels, median distance of all matches from their epipolar lines
+  double residual = 0;    ///< pixels, median distance of all matches from their epipolar lines
+  double pixel_size = 0;  ///< likewise, as of a view
   std::vector<ViewResidual> views;
 };
 
@@ -47,8 +47,9 @@ struct MatchOptions {
 /// Patches around each probe in the view that it faces most are aligned in two others over affine
 /// warps, gain and offset [Gruen85], starting from where the surface's tangent plane has them. The
 /// shift along the epipolar line tells where the surface is, the one across it how well the cameras
-/// agree, where a pixel of both views is below `coarsest` at the probe. Patches that reach over the silhouette (where views have one) are left out. `silhouettes`
-/// holds a distance or nullptr for each view.
+/// agree, where a pixel of both views is below `coarsest` at the probe. Patches that reach over the
+/// silhouette (where views have one) are left out. `silhouettes` holds a distance or nullptr for
+/// each view.
 MatchEvidence match_probes(std::span<const SurfaceProbe> probes, std::span<const View> views,
                            std::span<const SilhouetteDistance* const> silhouettes,
                            const MatchOptions& options);

@@ -19,7 +19,8 @@ constexpr double kMebibyte = 1 << 20;
 // were seen to end by a signal.
 constexpr double kDevice = 160 * kMebibyte;
 constexpr double kUsualStack = 8 * kMebibyte;
-constexpr double kArena = 64 * kMebibyte;  // of addresses that the allocator sets aside for a thread
+constexpr double kArena =
+    64 * kMebibyte;  // of addresses that the allocator sets aside for a thread
 
 struct Limit {
   __rlimit_resource resource;
@@ -52,18 +53,17 @@ void check_process_limits(int threads) {
   if (threads <= 0) threads = std::max(1, int(std::thread::hardware_concurrency()));
   const double given = soft_limit(RLIMIT_STACK);
   const double stack = given < std::numeric_limits<double>::infinity() ? given : kUsualStack;
-  for (const Limit& limit : {Limit{RLIMIT_DATA, "-d", "VmData:", false},
-                             Limit{RLIMIT_AS, "-v", "VmSize:", true}}) {
+  for (const Limit& limit :
+       {Limit{RLIMIT_DATA, "-d", "VmData:", false}, Limit{RLIMIT_AS, "-v", "VmSize:", true}}) {
     const double may = soft_limit(limit.resource);
     const double each = stack + (limit.addresses ? kArena : 0);
     const double needs = bytes_in_use(limit.field) + kDevice + 2 * threads * each;
     if (may < needs)
-      throw Error(concat("this process may take ", std::int64_t(may / kMebibyte),
-                         " MiB of memory (ulimit ", limit.option,
-                         "), and with the graphics device's ", threads,
-                         threads == 1 ? " thread" : " threads", " it needs ",
-                         std::int64_t(needs / kMebibyte), " MiB at least: raise the limit",
-                         threads == 1 ? "" : ", or give fewer --threads"));
+      throw Error(concat(
+          "this process may take ", std::int64_t(may / kMebibyte), " MiB of memory (ulimit ",
+          limit.option, "), and with the graphics device's ", threads,
+          threads == 1 ? " thread" : " threads", " it needs ", std::int64_t(needs / kMebibyte),
+          " MiB at least: raise the limit", threads == 1 ? "" : ", or give fewer --threads"));
   }
 }
 

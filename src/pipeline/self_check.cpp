@@ -94,10 +94,10 @@ assess::Signals gather_signals(const CheckedResult& result,
   assess::Signals s;
   s.views = int(result.views.size());
   s.hull = result.hull;
-  s.cameras_within = double(std::ranges::count_if(cameras, [&](const Camera& camera) {
-                       return result.box->contains(camera.center());
-                     })) /
-                     double(cameras.size());
+  s.cameras_within =
+      double(std::ranges::count_if(
+          cameras, [&](const Camera& camera) { return result.box->contains(camera.center()); })) /
+      double(cameras.size());
   s.stems = result.stems;
   s.stems_restored = result.stems_restored;
   s.pixel_size = carving::pixel_footprint(*result.box, cameras);
@@ -194,6 +194,7 @@ std::string to_json(const assess::Verdict& verdict, const assess::Signals& s,
                       {"offset_beyond_voxel", s.match.beyond_near},
                       {"offset_beyond_half_percent", s.match.beyond_far},
                       {"residual", s.match.residual},
+                      {"residual_pixel_size", s.match.pixel_size},
                       {"cameras_moved", s.cameras_moved},
                       {"cameras_moved_alike", s.cameras_moved_alike},
                       {"pixel_size", s.pixel_size},
@@ -205,19 +206,16 @@ std::string to_json(const assess::Verdict& verdict, const assess::Signals& s,
                       {"silhouettes_bound", s.masks},
                       {"hull", s.hull}}}};
   if (s.common.tangents > 0)
-    j["signals"]["outlines"] = {{"disagree", s.common.before},
-                                {"moved", {s.common.shift.x, s.common.shift.y}},
-                                {"moved_sigma", s.common.shift_sigma},
-                                {"focal_factor", s.common.focal_factor},
-                                {"focal_sigma", s.common.focal_sigma},
-                                {"disagree_then", s.common.after},
-                                {"tangents", s.common.tangents}};
+    j["signals"]["outlines"] = {
+        {"disagree", s.common.before},         {"moved", {s.common.shift.x, s.common.shift.y}},
+        {"moved_sigma", s.common.shift_sigma}, {"focal_factor", s.common.focal_factor},
+        {"focal_sigma", s.common.focal_sigma}, {"disagree_then", s.common.after},
+        {"tangents", s.common.tangents}};
   for (std::size_t i = 0; i < views.size() && i < s.match.views.size(); ++i)
     j["views"].push_back({{"name", views[i].name},
                           {"residual", s.match.views[i].pixels},
                           {"matches", s.match.views[i].matches},
-                          {"tried", s.match.views[i].tried},
-                          {"found", s.match.views[i].found}});
+                          {"pixel_size", s.match.views[i].pixel_size}});
   for (std::size_t i = 0; i < views.size() && i < s.compared.views.size(); ++i) {
     j["views"][i]["told"] = s.compared.views[i].told();
     j["views"][i]["disagreeing"] = s.compared.views[i].count(assess::Place::kDisagreeing);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <utility>
 
 namespace photohull::assess {
 namespace {
@@ -12,6 +13,11 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
+
+/// Of a view whose pixels are a hundredth of a world unit.
+ViewResidual residual(double pixels, int matches) {
+  return {.pixels = pixels, .matches = matches, .pixel_size = 0.01};
+}
 
 /// Twenty views of a textured object, all in order.
 Signals in_order() {
@@ -25,7 +31,8 @@ Signals in_order() {
   s.unsure = 0.03, s.unseen = 0.02, s.few_views = 0.05;
   s.match.seen = 0.95, s.match.textured = 0.9, s.match.matched = 0.9;
   s.match.residual = 0.1;
-  s.match.views.assign(20, {0.1, 50});
+  s.match.pixel_size = 0.01;
+  s.match.views.assign(20, residual(0.1, 50));
   return s;
 }
 
@@ -58,7 +65,7 @@ TEST(Verdict, GoodHasNoReasons) {
 TEST(Verdict, NamesTheViewsThatDisagree) {
   Signals s = in_order();
   s.match.views[12].pixels = 4.1, s.match.views[13].pixels = 3.2;
-  s.match.views[14] = {9, 2};  // too few matches to accuse it
+  s.match.views[14] = residual(9, 2);  // too few matches to accuse it
   const Verdict v = judged(s);
   expect(v, Level::kDoubtful, "view12, view13 disagree with the rest by up to 4.1 px");
 }
@@ -76,9 +83,9 @@ TEST(Verdict, WhenAllViewsDisagreeNoneIsNamed) {
 TEST(Verdict, FewMatchesAccuseNoCameras) {
   Signals s = in_order();
   s.match.residual = 2.5;
-  s.match.views.assign(20, {2.5, 1});
+  s.match.views.assign(20, residual(2.5, 1));
   EXPECT_EQ(judged(s).level, Level::kGood);
-  s.match.views.assign(20, {2.5, 2});
+  s.match.views.assign(20, residual(2.5, 2));
   expect(judged(s), Level::kFailed, "cameras disagree by 2.5 px");
 }
 
@@ -86,8 +93,13 @@ TEST(Verdict, FewMatchesAccuseNoCameras) {
 TEST(Verdict, ResidualsCountByWhatTheyCoverOfTheObject) {
   Signals s = in_order();
   s.match.residual = 0.8;
-  s.pixel_size = 0.002;
+  s.match.pixel_size = 0.002;
   EXPECT_EQ(judged(s).level, Level::kGood);
+  s.match.views[12].pixels = 0.8;  // of a view from near
+  s.match.views[12].pixel_size = 0.002;
+  EXPECT_EQ(judged(s).level, Level::kGood);
+  s.match.views[12].pixel_size = 0.01;
+  expect(judged(s), Level::kDoubtful, "view12 disagree with the rest by up to 0.8 px");
 }
 
 TEST(Verdict, EveryFaultHasItsReason) {
@@ -140,7 +152,12 @@ TEST(Verdict, StemsThatMasksOrVoxelsDoNotShow) {
 
 TEST(Verdict, ASurfaceThatTouchesTheBoxIsNotCutOff) {
   EXPECT_EQ(with([](Signals& s) { s.at_box = 0.5, s.hull_beyond = 0; }).level, Level::kGood);
-  EXPECT_EQ(with([](Signals& s) { s.at_box = 0.5, s.hull_beyond = 0.1; }).level, Level::kDoubtful);
+  EXPECT_EQ(with([](Signals& s) { s.at_box = 0.5, s.hull_beyond = 0.1; }).level, Level::kGood);
+  EXPECT_EQ(with([](Signals& s) { s.at_box = 0.5, s.hull_beyond = 0.2; }).level, Level::kDoubtful);
+  // What masks show beyond the box tells more than a coarse hull of a larger one.
+  const Verdict v =
+      with([](Signals& s) { s.at_box = 0.1, s.hull_beyond = 0, s.beyond_box = 0.01; });
+  EXPECT_THAT(v.reasons.front(), HasSubstr("1 % of what the masks show lies beyond the box"));
 }
 
 // An object that stands on a table is not worse where it is seen.
@@ -161,10 +178,47 @@ TEST(Verdict, ABoxThatCutsTheObjectOffIsTheFirstReason) {
   s.missed = 0.1, s.missed_width = 30, s.contradiction = 0.1;
   EXPECT_EQ(judged(s).level, Level::kDoubtful);
   EXPECT_THAT(judged(s).reasons.front(), HasSubstr("the box cuts the object off"));
-  s.beyond_box = 0.02;
+  s.beyond_box = 0.002;
   EXPECT_THAT(judged(s).reasons.front(), Not(HasSubstr("box")));
-  s.at_box = 0.1;  // a smaller piece that is cut off as well
+  s.beyond_box = 0.02;  // a smaller piece, and silhouettes stay empty
   EXPECT_THAT(judged(s).reasons.front(), HasSubstr("the box cuts the object off"));
+  s.missed = 0, s.at_box = 0.1;  // or the surface ends there
+  EXPECT_THAT(judged(s).reasons.front(), HasSubstr("the box cuts the object off"));
+}
+
+TEST(Verdict, WhatOutlinesAskForInAllViewsIsNamed) {
+  const auto asking = [](Signals& s) {
+    s.common.tangents = 100, s.common.before = 0.6, s.common.after = 0.2;
+    s.common.shift_sigma = 0.1, s.common.focal_sigma = 0.003;
+  };
+  EXPECT_EQ(with(asking).level, Level::kGood);
+  expect(with([&](Signals& s) { asking(s), s.common.focal_factor = 0.909; }), Level::kDoubtful,
+         "all focal lengths times 0.909: they are too long");
+  expect(with([&](Signals& s) {
+           asking(s), s.common.shift = {8, 0};
+         }),
+         Level::kDoubtful, "all masks moved by (-8, 0) px: masks are shifted");
+  // Not where it mends little, nor where it is uncertain.
+  EXPECT_EQ(with([&](Signals& s) {
+              asking(s), s.common.shift = {8, 0}, s.common.after = 0.5;
+            }).level,
+            Level::kGood);
+  EXPECT_EQ(with([&](Signals& s) {
+              asking(s), s.common.shift = {8, 0}, s.common.shift_sigma = 2;
+            }).level,
+            Level::kGood);
+}
+
+TEST(Verdict, FewViewsComeBeforeWhatFollowsFromThem) {
+  const Verdict v = with([](Signals& s) { s.few_views = 0.6, s.match.beyond_far = 0.3; });
+  EXPECT_THAT(v.reasons, ElementsAre(HasSubstr("add views"), HasSubstr("two views put 30 %")));
+}
+
+TEST(Verdict, PointsThatCoarseVoxelsPutAsideAskForFinerOnes) {
+  expect(with([](Signals& s) {
+           s.match.beyond_far = 0.3, s.voxel_size = 3 * s.far, s.resolution = 40;
+         }),
+         Level::kDoubtful, "use --resolution 120");
 }
 
 TEST(Verdict, PartsThinnerThanVoxelsNameTheResolutionThatShowsThem) {
@@ -287,6 +341,33 @@ TEST(Verdict, NamesPhotographsThatAreOfSomethingElse) {
   EXPECT_THAT(v.reasons, ElementsAre(HasSubstr("view3, view7: other views show something else")));
 }
 
+// So much may disagree because the surface is bad, and no photograph is to blame.
+TEST(Verdict, NoPhotographIsBlamedWhereMuchDisagreesAnyway) {
+  Signals s = without_silhouettes({{Place::kExplained, 60}, {Place::kDisagreeing, 40}});
+  for (PlaceAt& p : s.explained.views[3].places) p.place = Place::kDisagreeing;
+  for (const std::string& reason : judged(s).reasons)
+    EXPECT_THAT(reason, Not(HasSubstr("upside down")));
+}
+
+TEST(Verdict, NamesPhotographsThatAreOfSomethingElseBesideRightMasks) {
+  Signals s = without_silhouettes({{Place::kExplained, 100}});
+  s.masks = true;
+  s.compared.views = std::exchange(s.explained.views, {});
+  s.explained.counts = {};
+  for (PlaceAt& p : s.compared.views[3].places) p.place = Place::kDisagreeing;
+  expect(judged(s), Level::kDoubtful, "view3: other views show something else");
+}
+
+TEST(Verdict, WithoutSilhouettesHolesInTheModelCount) {
+  Signals s = without_silhouettes({{Place::kExplained, 90}, {Place::kBare, 10}});
+  EXPECT_EQ(judged(s).level, Level::kGood);
+  s.explained.on_surface = 1000, s.explained.behind = 100;
+  expect(judged(s), Level::kDoubtful, "on 10 % of the model the photographs look at its inside");
+  s.explained.behind = 0;
+  s.cameras_within = 1;  // where bare texture cannot be background
+  expect(judged(s), Level::kDoubtful, "on 10 % of what cameras inside the box see");
+}
+
 /// A hull of an object that is concave in places.
 Signals hull_in_order() {
   Signals s = in_order();
@@ -319,6 +400,15 @@ TEST(Verdict, HullsThatPhotographsDoNotConfirmAreDoubtful) {
   expect(judged(s), Level::kDoubtful, "on 72 % of its texture the photographs do not confirm");
   s.match.matched = 0.95, s.match.beyond_far = 0.2;  // found elsewhere tells more than not found
   expect(judged(s), Level::kDoubtful, "on 24 % of its texture the photographs do not confirm");
+}
+
+// Noise spreads what is not found again, a concavity has it all in one place.
+TEST(Verdict, HullsWithPatchesThatAreNotConfirmedAreDoubtful) {
+  Signals s = hull_in_order();
+  s.match.unconfirmed_patches = 0.15;
+  EXPECT_EQ(judged(s).level, Level::kGood);
+  s.match.unconfirmed_patches = 0.24;
+  expect(judged(s), Level::kDoubtful, "do not confirm the hull");
 }
 
 TEST(Verdict, HullsOfFewViewsAreDoubtful) {
