@@ -16,9 +16,11 @@ namespace {
 
 constexpr double kLeastAngle = 5, kMostAngle = 50;  // degrees between two views at the point
 constexpr int kOthers = 2;                          // views in which a patch is looked for
-constexpr int kNeighbours = 12;                     // of a probe, with itself
-constexpr double kSameSide = 0.5;                   // cosine between their normals
-constexpr double kConfirmed = 0.4;                  // of the neighbours
+// Between two views' pixels: patches have too few of the larger ones to be placed well.
+constexpr double kMostScale = 1.6;
+constexpr int kNeighbours = 12;     // of a probe, with itself
+constexpr double kSameSide = 0.5;   // cosine between their normals
+constexpr double kConfirmed = 0.4;  // of the neighbours
 
 double degrees_between(const glm::dvec3& a, const glm::dvec3& b) {
   return std::acos(std::clamp(glm::dot(glm::normalize(a), glm::normalize(b)), -1.0, 1.0)) * 180 /
@@ -70,7 +72,7 @@ struct Match {
   double across = 0;      // pixels from the epipolar line
   double offset = 0;      // world units along the normal
   double pixel_size = 0;  // world units, of the coarser of the two views
-  bool fine = true;       // is that small enough?
+  bool fine = true;       // is that small enough, and of nearly the other's size?
 };
 
 struct ProbeResult {
@@ -163,8 +165,10 @@ class Matcher {
     if (!(length > 0.02)) return std::nullopt;
     const glm::dvec2 shift = found - start.center;
     Match match{a, b};
-    match.pixel_size = std::max(footprint, footprint_of(from, probe));
-    match.fine = match.pixel_size < options_.coarsest;
+    const double other = footprint_of(from, probe);
+    match.pixel_size = std::max(footprint, other);
+    match.fine = match.pixel_size < options_.coarsest &&
+                 match.pixel_size < kMostScale * std::min(footprint, other);
     match.across = std::abs(along.x * shift.y - along.y * shift.x) / length;
     match.offset = std::abs(glm::dot(along, shift) / (length * length) * footprint *
                             glm::dot(ray, probe.normal));
