@@ -11,6 +11,8 @@ namespace photohull::assess {
 namespace {
 
 constexpr int kSteps = 8;
+constexpr double kSmallShift = 1e-3;   // pixels, of a step: the last one
+constexpr double kSmallFactor = 1e-5;  // of its logarithm
 constexpr std::size_t kFewestTangents = 24;
 constexpr double kLeastSpread = 0.05;  // pixels, of tangents
 constexpr double kOutlier = 3;         // spreads
@@ -100,9 +102,11 @@ CommonError find_common_error(std::span<const Camera> cameras, std::span<const O
   error.before = e.median;
   for (int step = 0; step < kSteps; ++step) {
     if (e.tangents < kFewestTangents || !(glm::determinant(e.normal) > 0)) return {};
-    change += glm::inverse(e.normal) * e.right;
+    const Change move = glm::inverse(e.normal) * e.right;
+    change += move;
     if (!(std::abs(change.z) < 1)) return {};  // no camera is so wrong: tangents tell nothing
     e = equations_at(cameras, outlines, change);
+    if (glm::length(glm::dvec2(move)) < kSmallShift && std::abs(move.z) < kSmallFactor) break;
   }
   if (e.tangents < kFewestTangents || !(glm::determinant(e.normal) > 0)) return {};
   const glm::dmat3 covariance = e.spread * e.spread * glm::inverse(e.normal);

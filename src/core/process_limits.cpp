@@ -19,8 +19,7 @@ constexpr double kMebibyte = 1 << 20;
 // were seen to end by a signal.
 constexpr double kDevice = 160 * kMebibyte;
 constexpr double kUsualStack = 8 * kMebibyte;
-constexpr double kArena =
-    64 * kMebibyte;  // of addresses that the allocator sets aside for a thread
+constexpr double kArena = 64 * kMebibyte;  // of addresses, that the allocator takes for a thread
 
 struct Limit {
   __rlimit_resource resource;
