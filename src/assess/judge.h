@@ -75,6 +75,8 @@ class Judge {
   static std::string other_photograph(const std::string& list);
   /// What most of the unexplained is, and what helps.
   std::string why_unexplained() const;
+  /// Surface that photographs without silhouettes show to be missing.
+  void lacking();
   /// Without silhouettes: what of the photographs the model explains.
   void photographs();
 

@@ -87,6 +87,22 @@ std::string Judge::why_unexplained() const {
                 " no second view sees the same: add views beside these");
 }
 
+void Judge::lacking() {
+  const Explained& e = s_.explained;
+  const double bare = e.share_textured(Place::kBare);
+  // A camera within the box sees nothing but what is to be reconstructed.
+  if (s_.cameras_within > kMostWithin && bare > kBareWithin)
+    name_cause(concat("on ", percent(bare),
+                      " of what cameras inside the box see there is no surface: no two views agree "
+                      "there; add views that look at it from nearer or more squarely"));
+  if (e.share_behind() > kBehind)
+    name_cause(
+        concat("on ", percent(e.share_behind()),
+               " of the model the photographs look at its inside, for the surface before it is "
+               "missing: few views see into folds and hollows; add views that look in, or give "
+               "masks"));
+}
+
 void Judge::photographs() {
   const Explained& e = s_.explained;
   if (e.looked_at() == 0) return;
@@ -118,17 +134,7 @@ void Judge::photographs() {
     weigh(1, {0, 0}, reason);
   else if (unexplained > kUnexplained.doubtful)
     name_cause(reason);
-  // A camera within the box sees nothing but what is to be reconstructed.
-  if (s_.cameras_within > kMostWithin && bare > kBareWithin)
-    name_cause(concat("on ", percent(bare),
-                      " of what cameras inside the box see there is no surface: no two views agree "
-                      "there; add views that look at it from nearer or more squarely"));
-  if (e.share_behind() > kBehind)
-    name_cause(
-        concat("on ", percent(e.share_behind()),
-               " of the model the photographs look at its inside, for the surface before it is "
-               "missing: few views see into folds and hollows; add views that look in, or give "
-               "masks"));
+  lacking();
   weigh(bare, kBare,
         concat("on ", percent(bare),
                " of the photographs' texture in the box no views agree on any depth: the box may "
