@@ -8,8 +8,9 @@ namespace photohull::assess {
 namespace {
 
 constexpr Limits kFewViews{0.45, INFINITY};  // of the surface, seen by fewer than three
-constexpr double kRestored = 0.5;      // of what lines of silhouettes show, put into the masks
-constexpr double kManyStems = 0.3;     // of the surface
+constexpr double kRestored = 0.5;   // of what lines of silhouettes show, put into the masks
+constexpr double kManyStems = 0.3;  // of the surface
+constexpr double kBeyondViews = 1.0 / 3;
 constexpr double kBeyondBox = 0.05;    // of the silhouettes
 constexpr double kThinVoxels = 2;      // voxels: what is narrower may fall between them
 constexpr double kFinestPixels = 0.5;  // pixels to a voxel: finer ones show nothing more
@@ -19,7 +20,8 @@ constexpr double kFinestPixels = 0.5;  // pixels to a voxel: finer ones show not
 void Judge::box() {
   if (cut_share() > kCutOff.doubtful) name_cause(cut_off());
   const bool cut = cut_by_box();
-  const bool lacking = cut || s_.missed > kMissed.doubtful;
+  // Specks in few views' masks are no object that goes on.
+  const bool lacking = (cut || s_.missed > kMissed.doubtful) && s_.beyond_views > kBeyondViews;
   if (!s_.masks || s_.beyond_box <= (lacking ? kBeyondCut : kBeyondBox)) return;
   const std::string beyond =
       concat(percent(s_.beyond_box), " of what the masks show lies beyond the box");

@@ -31,6 +31,7 @@ struct Signals {
   double missed = 0, excess = 0;   ///< SilhouetteFit, means over the views
   double missed_width = 0;         ///< likewise, pixels, of what is missed
   double beyond_box = 0;           ///< likewise
+  double beyond_views = 0;         ///< share of the views that show something beyond the box
   double mean_confidence = 0;      ///< of the surface, the unseen with 0
   double unsure = 0;               ///< share of the surface with confidence below one half
   double unseen = 0;               ///< share of the surface that no view sees

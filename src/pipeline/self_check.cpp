@@ -17,11 +17,12 @@ namespace photohull::pipeline {
 namespace {
 
 constexpr std::size_t kProbes = 2000;
-constexpr double kLift = 0.75;        // voxels above the surface, to look past its own facets
-constexpr double kFar = 0.005;        // of the surface's diagonal
-constexpr double kCoarsest = 2;       // times that: pixels of views that tell whether it is far
-constexpr double kContour = 2;        // pixels beside a silhouette's contour that do not count
-constexpr double kContourVoxels = 1;  // and voxels
+constexpr double kLift = 0.75;          // voxels above the surface, to look past its own facets
+constexpr double kFar = 0.005;          // of the surface's diagonal
+constexpr double kCoarsest = 2;         // times that: pixels of views that tell whether it is far
+constexpr double kBeyondAtAll = 0.002;  // of a silhouette
+constexpr double kContour = 2;          // pixels beside a silhouette's contour that do not count
+constexpr double kContourVoxels = 1;    // and voxels
 
 double diagonal(const TriMesh& mesh) {
   glm::vec3 low = mesh.positions.front(), high = low;
@@ -56,11 +57,13 @@ std::vector<assess::SilhouetteFit> compare_silhouettes(const CheckedResult& resu
   int known = 0;
   for (const assess::SilhouetteFit& fit : fits) {
     known += fit.foreground > 0;
+    s.beyond_views += fit.beyond_box > kBeyondAtAll;
     s.missed += fit.missed, s.excess += fit.excess, s.beyond_box += fit.beyond_box;
     s.missed_width += fit.missed * fit.missed_width;
   }
   if (s.missed > 0) s.missed_width /= s.missed;
-  if (known > 0) s.missed /= known, s.excess /= known, s.beyond_box /= known;
+  if (known > 0)
+    s.missed /= known, s.excess /= known, s.beyond_box /= known, s.beyond_views /= known;
   return fits;
 }
 
@@ -186,6 +189,7 @@ std::string to_json(const assess::Verdict& verdict, const assess::Signals& s,
                       {"silhouettes_missed_width", s.missed_width},
                       {"silhouettes_excess", s.excess},
                       {"silhouettes_beyond_box", s.beyond_box},
+                      {"views_beyond_box", s.beyond_views},
                       {"pairs_seen", s.match.seen},
                       {"textured", s.match.textured},
                       {"matched", s.match.matched},

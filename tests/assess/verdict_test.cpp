@@ -112,8 +112,9 @@ TEST(Verdict, ASurfaceThatTouchesTheBoxIsNotCutOff) {
   EXPECT_EQ(with([](Signals& s) { s.at_box = 0.5, s.hull_beyond = 0.1; }).level, Level::kGood);
   EXPECT_EQ(with([](Signals& s) { s.at_box = 0.5, s.hull_beyond = 0.2; }).level, Level::kDoubtful);
   // What masks show beyond the box tells more than a coarse hull of a larger one.
-  const Verdict v =
-      with([](Signals& s) { s.at_box = 0.1, s.hull_beyond = 0, s.beyond_box = 0.01; });
+  const Verdict v = with([](Signals& s) {
+    s.at_box = 0.1, s.hull_beyond = 0, s.beyond_box = 0.01, s.beyond_views = 0.8;
+  });
   EXPECT_THAT(v.reasons.front(), HasSubstr("1 % of what the masks show lies beyond the box"));
 }
 
@@ -137,7 +138,9 @@ TEST(Verdict, ABoxThatCutsTheObjectOffIsTheFirstReason) {
   EXPECT_THAT(judged(s).reasons.front(), HasSubstr("the box cuts the object off"));
   s.beyond_box = 0.002;
   EXPECT_THAT(judged(s).reasons.front(), Not(HasSubstr("box")));
-  s.beyond_box = 0.02;  // a smaller piece, and silhouettes stay empty
+  s.beyond_box = 0.02;  // specks of single masks
+  EXPECT_THAT(judged(s).reasons.front(), Not(HasSubstr("box")));
+  s.beyond_views = 0.8;  // a smaller piece that most views show, and silhouettes stay empty
   EXPECT_THAT(judged(s).reasons.front(), HasSubstr("the box cuts the object off"));
   s.missed = 0, s.at_box = 0.1;  // or the surface ends there
   EXPECT_THAT(judged(s).reasons.front(), HasSubstr("the box cuts the object off"));
