@@ -175,6 +175,7 @@ std::string Judge::why_untold() const {
 
 void Judge::hull() {
   if (!s_.masks) {
+    causes_ = 0;  // before all others, whatever these are
     weigh(1, {0, 0},
           "no view has a mask: the hull is the box clipped by what the views see; give masks, or "
           "use --method refine");
