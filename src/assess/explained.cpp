@@ -18,9 +18,11 @@
 namespace photohull::assess {
 namespace {
 
-constexpr double kPlaces = 12000;   // over all views, about
-constexpr int kFewestPlaces = 100;  // a view
-constexpr int kReach = 2;           // samples of a window to each side
+constexpr double kPlaces = 12000;         // over all views, about
+constexpr double kFewerPlaces = 4000;     // likewise, of the surface alone
+constexpr double kFewestPlaces = 100;     // a view
+constexpr double kFewestOnSurface = 150;  // likewise, of the surface alone
+constexpr int kReach = 2;                 // samples of a window to each side
 constexpr int kSamples = (2 * kReach + 1) * (2 * kReach + 1);
 constexpr double kWidestSpacing = 3;  // pixels between samples, which are smoothed by a pixel
 constexpr double kLeastAngle = 5, kMostAngle = 60;  // degrees between the views at the point
@@ -74,6 +76,7 @@ class Explainer {
         rays_(rays),
         box_(box),
         views_(views),
+        surface_alone_(options.surface_alone),
         spacing_(std::clamp(options.voxel_size / options.pixel_size, 1.0, kWidestSpacing)),
         least_deviation_(kTexture * std::max(options.noise, kRounding)),
         eyes_(views.size()) {
@@ -87,12 +90,16 @@ class Explainer {
 
   ExplainedView look(std::size_t a) const {
     const GreyImage& grey = eyes_[a].grey;
-    const double wanted = std::max(kPlaces / double(eyes_.size()), double(kFewestPlaces));
+    const double views = double(eyes_.size());
+    const double wanted = surface_alone_ ? std::max(kFewerPlaces / views, kFewestOnSurface)
+                                         : std::max(kPlaces / views, kFewestPlaces);
     ExplainedView out;
     out.step = std::max(1, int(std::sqrt(double(grey.width) * grey.height / wanted)));
     for (int y = out.step / 2; y < grey.height; y += out.step)
-      for (int x = out.step / 2; x < grey.width; x += out.step)
+      for (int x = out.step / 2; x < grey.width; x += out.step) {
         if (const auto place = classify(a, {x, y})) out.places.push_back({x, y, *place});
+        look_for_inside(a, {x, y}, out);
+      }
     return out;
   }
 
@@ -144,8 +151,25 @@ class Explainer {
     rays_.closest(through, hits);
     if (hits[kSamples / 2]) return compare(a, *window, through, hits);
     // What a window beside the surface's contour shows is the surface.
-    if (std::any_of(hits.begin(), hits.end(), [](const Hit& h) { return bool(h); })) return {};
+    if (surface_alone_ ||
+        std::any_of(hits.begin(), hits.end(), [](const Hit& h) { return bool(h); }))
+      return {};
     return search(a, pixel, *window, *part);
+  }
+
+  /// A solid hides its inside: who sees the surface from behind looks through where it is missing.
+  void look_for_inside(std::size_t a, const glm::dvec2& pixel, ExplainedView& out) const {
+    const glm::dvec3 ray = eyes_[a].camera.ray(pixel);
+    const std::optional<Hit> hit = rays_.closest(eyes_[a].centre, ray);
+    if (!hit) return;
+    ++out.on_surface;
+    out.behind += glm::dot(face_of(*hit), ray) > 0;
+  }
+
+  /// Of the triangle that was met: outward, of twice its area.
+  glm::dvec3 face_of(const Hit& hit) const {
+    const auto& [i, j, k] = mesh_.triangles[hit.triangle];
+    return glm::cross(mesh_.world(j) - mesh_.world(i), mesh_.world(k) - mesh_.world(i));
   }
 
   std::vector<Ray> rays_through(std::size_t a, const glm::dvec2& pixel) const {
@@ -180,9 +204,7 @@ class Explainer {
   /// Views that see the point where the ray meets the surface, the nearest in angle first.
   std::vector<std::size_t> lenders_of(std::size_t a, const glm::dvec3& point, const glm::dvec3& ray,
                                       const Hit& hit) const {
-    const auto& [i, j, k] = mesh_.triangles[hit.triangle];
-    const glm::dvec3 face =
-        glm::cross(mesh_.world(j) - mesh_.world(i), mesh_.world(k) - mesh_.world(i));
+    const glm::dvec3 face = face_of(hit);
     std::vector<std::pair<double, std::size_t>> by_angle;
     for (std::size_t b = 0; b < eyes_.size(); ++b) {
       const glm::dvec3 way = eyes_[b].centre - point;
@@ -271,6 +293,7 @@ class Explainer {
   const RayScene& rays_;
   const Box& box_;
   std::span<const View> views_;
+  bool surface_alone_;
   double spacing_;  ///< pixels
   double least_deviation_;
   std::vector<Eye> eyes_;
@@ -304,6 +327,8 @@ int Explained::told() const { return told_of(*this); }
 
 double Explained::explained() const { return share_told(Place::kExplained); }
 
+double Explained::share_behind() const { return double(behind) / std::max(1, on_surface); }
+
 double Explained::share_told(Place place) const {
   return double(count(place)) / std::max(1, told());
 }
@@ -320,8 +345,10 @@ Explained explain_photographs(const TriMesh& mesh, const RayScene& rays, const B
   out.views.resize(views.size());
   tbb::parallel_for(std::size_t(0), views.size(),
                     [&](std::size_t i) { out.views[i] = explainer.look(i); });
-  for (const ExplainedView& view : out.views)
+  for (const ExplainedView& view : out.views) {
     for (const PlaceAt& p : view.places) ++out.counts[std::size_t(p.place)];
+    out.on_surface += view.on_surface, out.behind += view.behind;
+  }
   return out;
 }
 

@@ -35,6 +35,8 @@ struct PlaceAt {
 struct ExplainedView {
   int step = 1;
   std::vector<PlaceAt> places;
+  int on_surface = 0;  ///< lattice places whose ray meets the surface, plain ones too
+  int behind = 0;      ///< of these, where it is met from behind
 
   int count(Place place) const;
   /// Places in the box of which something is known: explained, disagreeing, alone or missed.
@@ -47,7 +49,12 @@ struct Explained {
   std::array<int, kPlaceKinds> counts{};  ///< over all views, by Place
 
   int count(Place place) const { return counts[std::size_t(place)]; }
-  int looked_at() const;                     ///< places of all kinds
+  int on_surface = 0, behind = 0;  ///< over all views, as of one
+
+  int looked_at() const;  ///< places of all kinds
+  /// Of the places on the surface: where a view looks at its inside, so that what hides that is
+  /// missing, [0, 1].
+  double share_behind() const;
   int told() const;                          ///< as of a view
   double explained() const;                  ///< as of a view
   double share_told(Place place) const;      ///< of the places told
@@ -55,9 +62,10 @@ struct Explained {
 };
 
 struct ExplainOptions {
-  double voxel_size = 0;  ///< world units, > 0
-  double pixel_size = 0;  ///< world units that a pixel covers at the object, > 0
-  double noise = 0;       ///< of the photographs, standard deviation in 8-bit levels
+  double voxel_size = 0;       ///< world units, > 0
+  double pixel_size = 0;       ///< world units that a pixel covers at the object, > 0
+  double noise = 0;            ///< of the photographs, standard deviation in 8-bit levels
+  bool surface_alone = false;  ///< leave out places without surface, and look at a third of all
 };
 
 /// Looks at a lattice of places in every view, about 16000 in all. The window of 5 x 5 samples, a

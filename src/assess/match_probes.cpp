@@ -16,6 +16,11 @@ namespace {
 
 constexpr double kLeastAngle = 5, kMostAngle = 50;  // degrees between two views at the point
 constexpr int kOthers = 2;                          // views in which a patch is looked for
+// Between two views' pixels: patches have too few of the larger ones to be placed well.
+constexpr double kMostScale = 1.6;
+constexpr int kNeighbours = 12;     // of a probe, with itself
+constexpr double kSameSide = 0.5;   // cosine between their normals
+constexpr double kConfirmed = 0.4;  // of the neighbours
 
 double degrees_between(const glm::dvec3& a, const glm::dvec3& b) {
   return std::acos(std::clamp(glm::dot(glm::normalize(a), glm::normalize(b)), -1.0, 1.0)) * 180 /
@@ -63,14 +68,24 @@ bool textured(const GreyImage& image, const glm::dvec2& pixel, const MatchOption
 }
 
 struct Match {
-  int a = 0, b = 0;   // views
-  double across = 0;  // pixels from the epipolar line
-  double offset = 0;  // world units along the normal
+  int a = 0, b = 0;       // views
+  double across = 0;      // pixels from the epipolar line
+  double offset = 0;      // world units along the normal
+  double pixel_size = 0;  // world units, of the coarser of the two views
+  bool fine = true;       // is that small enough, and of nearly the other's size?
 };
 
 struct ProbeResult {
   bool seen = false, textured = false;
   std::vector<Match> matches;
+
+  /// Two views that agree on the surface outweigh one that does not.
+  std::optional<double> least_offset() const {
+    std::optional<double> least;
+    for (const Match& m : matches)
+      if (m.fine) least = std::min(least.value_or(INFINITY), m.offset);
+    return least;
+  }
 };
 
 class Matcher {
@@ -132,12 +147,17 @@ class Matcher {
            d->pixels[std::size_t(y) * d->width + x] < -options_.radius;
   }
 
+  /// World units that a pixel covers at the probe.
+  static double footprint_of(const Camera& camera, const SurfaceProbe& probe) {
+    return glm::dot(probe.point - camera.center(), camera.forward()) / camera.intrinsics.fx;
+  }
+
   std::optional<Match> measure(const SurfaceProbe& probe, int a, const glm::dvec2& pixel, int b,
                                const PatchPlace& start, const glm::dvec2& found) const {
     const Camera &from = views_[a].camera, &to = views_[b].camera;
     const glm::dvec3 ray = from.ray(pixel);
     // A step that moves the patch by about a pixel.
-    const double footprint = glm::dot(probe.point - to.center(), to.forward()) / to.intrinsics.fx;
+    const double footprint = footprint_of(to, probe);
     const auto moved = to.project(probe.point + footprint * ray);
     if (!moved) return std::nullopt;
     const glm::dvec2 along = *moved - start.center;  // pixels for a footprint along the ray
@@ -145,6 +165,10 @@ class Matcher {
     if (!(length > 0.02)) return std::nullopt;
     const glm::dvec2 shift = found - start.center;
     Match match{a, b};
+    const double other = footprint_of(from, probe);
+    match.pixel_size = std::max(footprint, other);
+    match.fine = match.pixel_size < options_.coarsest &&
+                 match.pixel_size < kMostScale * std::min(footprint, other);
     match.across = std::abs(along.x * shift.y - along.y * shift.x) / length;
     match.offset = std::abs(glm::dot(along, shift) / (length * length) * footprint *
                             glm::dot(ray, probe.normal));
@@ -157,6 +181,62 @@ class Matcher {
   std::vector<GreyImage> grey_;
 };
 
+/// Share of the probes around which the surface is not confirmed: of the textured ones near it, on
+/// the same side, most were not found again or lie far off.
+double unconfirmed_patches(std::span<const SurfaceProbe> probes,
+                           std::span<const ProbeResult> results, double far) {
+  std::vector<std::size_t> textured;
+  std::vector<char> confirmed(probes.size());
+  for (std::size_t i = 0; i < probes.size(); ++i) {
+    if (!results[i].textured) continue;
+    textured.push_back(i);
+    confirmed[i] = !results[i].matches.empty() && results[i].least_offset().value_or(0) <= far;
+  }
+  std::vector<char> doubted(probes.size());
+  tbb::parallel_for(std::size_t(0), textured.size(), [&](std::size_t k) {
+    const SurfaceProbe& probe = probes[textured[k]];
+    std::vector<std::pair<double, std::size_t>> near;
+    for (const std::size_t other : textured) {
+      if (glm::dot(probes[other].normal, probe.normal) < kSameSide) continue;
+      const glm::dvec3 way = probes[other].point - probe.point;
+      near.emplace_back(glm::dot(way, way), other);
+    }
+    if (near.size() < kNeighbours) return;
+    std::nth_element(near.begin(), near.begin() + kNeighbours - 1, near.end());
+    const auto end = near.begin() + kNeighbours;
+    const auto found =
+        std::count_if(near.begin(), end, [&](const auto& n) { return bool(confirmed[n.second]); });
+    doubted[textured[k]] = double(found) < kConfirmed * kNeighbours;
+  });
+  return double(std::ranges::count(doubted, 1)) / double(std::max<std::size_t>(1, probes.size()));
+}
+
+/// Distances from epipolar lines, by views and over all.
+void sum_up_cameras(std::span<const ProbeResult> results, std::size_t views,
+                    MatchEvidence& evidence) {
+  std::vector<double> across, sizes;
+  std::vector<std::vector<double>> by_view(views), sizes_by_view(views);
+  evidence.views.resize(views);
+  for (const ProbeResult& r : results) {
+    for (const Match& m : r.matches) {
+      if (!m.fine) continue;
+      across.push_back(m.across);
+      sizes.push_back(m.pixel_size);
+      for (const int view : {m.a, m.b}) {
+        by_view[view].push_back(m.across);
+        sizes_by_view[view].push_back(m.pixel_size);
+      }
+    }
+  }
+  evidence.residual = median(across);
+  evidence.pixel_size = median(sizes);
+  for (std::size_t i = 0; i < views; ++i) {
+    evidence.views[i].pixels = median(by_view[i]);
+    evidence.views[i].pixel_size = median(sizes_by_view[i]);
+    evidence.views[i].matches = int(by_view[i].size());
+  }
+}
+
 }  // namespace
 
 MatchEvidence match_probes(std::span<const SurfaceProbe> probes, std::span<const View> views,
@@ -167,27 +247,17 @@ MatchEvidence match_probes(std::span<const SurfaceProbe> probes, std::span<const
   tbb::parallel_for(std::size_t(0), probes.size(),
                     [&](std::size_t i) { results[i] = matcher(probes[i]); });
   MatchEvidence evidence;
-  std::vector<double> across, offsets;
-  std::vector<std::vector<double>> by_view(views.size());
+  std::vector<double> offsets;
   double seen = 0, textured = 0, matched = 0;
   for (const ProbeResult& r : results) {
     seen += r.seen, textured += r.textured, matched += !r.matches.empty();
-    for (const Match& m : r.matches) {
-      across.push_back(m.across);
-      by_view[m.a].push_back(m.across);
-      by_view[m.b].push_back(m.across);
-    }
-    if (r.matches.empty()) continue;
-    // Two views that agree on it outweigh one that does not.
-    offsets.push_back(
-        std::min_element(r.matches.begin(), r.matches.end(), [](const Match& x, const Match& y) {
-          return x.offset < y.offset;
-        })->offset);
+    if (const auto offset = r.least_offset()) offsets.push_back(*offset);
   }
   const double n = std::max<double>(1, double(probes.size()));
   evidence.seen = seen / n;
   evidence.textured = textured / n;
   evidence.matched = textured > 0 ? matched / textured : 0;
+  evidence.unconfirmed_patches = unconfirmed_patches(probes, results, options.far);
   const auto share_beyond = [&](double limit) {
     return offsets.empty() ? 0.0
                            : double(std::count_if(offsets.begin(), offsets.end(),
@@ -197,9 +267,7 @@ MatchEvidence match_probes(std::span<const SurfaceProbe> probes, std::span<const
   evidence.beyond_near = share_beyond(options.near);
   evidence.beyond_far = share_beyond(options.far);
   evidence.offset = median(offsets);
-  evidence.residual = median(across);
-  for (std::vector<double>& values : by_view)
-    evidence.views.push_back({median(values), int(values.size())});
+  sum_up_cameras(results, views.size(), evidence);
   return evidence;
 }
 

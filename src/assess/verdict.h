@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "assess/common_error.h"
 #include "assess/explained.h"
 #include "assess/match_probes.h"
 #include "core/error.h"
@@ -19,6 +20,7 @@ struct Signals {
   double stems_restored = 0;       ///< of what silhouettes show of stems: put into eaten masks
   bool hull = false;               ///< is the surface the silhouettes' alone (--method hull)?
   double mask_confidence = 0;      ///< 1 for masks that were given
+  double cameras_within = 0;       ///< share of the cameras that stand inside the box
   double pixel_size = 0;           ///< world units that a pixel covers at the object
   double voxel_size = 0;           ///< world units
   int resolution = 0;              ///< voxels along the box's longest side
@@ -29,6 +31,7 @@ struct Signals {
   double missed = 0, excess = 0;   ///< SilhouetteFit, means over the views
   double missed_width = 0;         ///< likewise, pixels, of what is missed
   double beyond_box = 0;           ///< likewise
+  double beyond_views = 0;         ///< share of the views that show something beyond the box
   double mean_confidence = 0;      ///< of the surface, the unseen with 0
   double unsure = 0;               ///< share of the surface with confidence below one half
   double unseen = 0;               ///< share of the surface that no view sees
@@ -37,6 +40,8 @@ struct Signals {
   double hull_beyond = 1;          ///< share of the hull's surface that goes on beyond the box
   MatchEvidence match;
   Explained explained;  ///< without places unless no view has a silhouette
+  Explained compared;   ///< where silhouettes bound it: places on the surface alone
+  CommonError common;   ///< that the views' outlines have
 };
 
 enum class Level { kGood, kDoubtful, kFailed };

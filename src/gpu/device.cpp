@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdlib>
 #include <cstring>
 
 #include "core/error.h"
+#include "core/process_limits.h"
 #include "gpu/egl_devices.h"
 #include "gpu/gl.h"
 
@@ -34,6 +36,8 @@ bool is_software_renderer(const std::string& renderer) {
 }  // namespace
 
 std::vector<EGLDeviceEXT> query_egl_devices() {
+  const char* threads = std::getenv("LP_NUM_THREADS");  // of Mesa's software rasterizer
+  check_process_limits(threads ? std::atoi(threads) : 0);
   const auto query = egl_function<PFNEGLQUERYDEVICESEXTPROC>("eglQueryDevicesEXT");
   EGLint count = 0;
   if (!query(0, nullptr, &count) || count <= 0)

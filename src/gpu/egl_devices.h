@@ -16,7 +16,8 @@ struct EglHandles {
   EGLContext context = EGL_NO_CONTEXT;
 };
 
-/// Every EGL device of the machine. Throws Error when EGL cannot enumerate devices.
+/// Every EGL device of the machine. Throws Error when EGL cannot enumerate devices, and where the
+/// system's limits leave too little memory for drivers.
 std::vector<EGLDeviceEXT> query_egl_devices();
 
 /// Makes a 4.5 core context current; fills renderer, vendor, version, software. Throws Error.

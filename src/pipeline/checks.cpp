@@ -6,12 +6,15 @@
 
 #include "calib/silhouette.h"
 #include "core/error.h"
+#include "core/median.h"
 #include "pipeline/memory.h"
 
 namespace photohull::pipeline {
 namespace {
 
-constexpr int kProbes = 12;  // probe points along each side of the box
+constexpr int kProbes = 12;              // probe points along each side of the box
+constexpr double kLeastBaseline = 1e-3;  // of the distance to the box
+constexpr double kLeastPixels = 4;       // that the box covers in some view
 
 template <typename F>
 void for_each_probe(const Box& box, F&& f) {
@@ -19,6 +22,26 @@ void for_each_probe(const Box& box, F&& f) {
     for (int j = 0; j < kProbes; ++j)
       for (int k = 0; k < kProbes; ++k)
         f(box.min + box.size() * (glm::dvec3(i, j, k) + 0.5) / double(kProbes));
+}
+
+/// To two digits.
+double rounded(double value) {
+  if (!(value > 0)) return value;
+  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1);
+  return std::round(value / unit) * unit;
+}
+
+/// Pixels between the farthest of the box's corners that lie before the camera; infinite where not
+/// all do, for the camera stands within or close by.
+double extent_in_picture(const Camera& camera, const Box& box) {
+  glm::dvec2 low(INFINITY), high(-INFINITY);
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 which(corner & 1, corner >> 1 & 1, corner >> 2);
+    const auto pixel = camera.project(box.min + which * box.size());
+    if (!pixel) return INFINITY;
+    low = glm::min(low, *pixel), high = glm::max(high, *pixel);
+  }
+  return glm::distance(low, high);
 }
 
 bool sees(const Camera& camera, const Box& box) {
@@ -56,6 +79,31 @@ std::vector<std::string> check_box(const Box& box, const std::string& source,
   return {concat(blind.size(), " of ", views.size(),
                  " cameras do not have the box on their image: ", blind.front(),
                  blind.size() > 1 ? ", ..." : "")};
+}
+
+std::optional<std::string> hopeless_setup(const Box& box, const std::string& source,
+                                          std::span<const SourceView> views) {
+  std::vector<double> distances;
+  double apart = 0, pixels = 0;
+  for (const SourceView& view : views) {
+    const glm::dvec3 centre = view.camera.center();
+    distances.push_back(glm::distance(centre, box.center()));
+    apart = std::max(apart, glm::distance(centre, views.front().camera.center()));
+    pixels = std::max(pixels, extent_in_picture(view.camera, box));
+  }
+  const double distance = median(distances);
+  if (views.size() > 1 && apart < kLeastBaseline * distance)
+    return concat("all ", views.size(),
+                  " cameras stand in one place: depth shows only from different ones; check the "
+                  "translations of the poses (photohull info shows them)");
+  if (pixels >= kLeastPixels) return {};
+  const bool given = source == "--box";
+  return concat("the box from ", source, " is ", rounded(box.diagonal()),
+                " across, the cameras stand ", rounded(distance), " away from it, and it covers ",
+                rounded(pixels), " pixels of any photograph at most: ",
+                given ? "make --box larger, or give it in the cameras' units"
+                      : "are its units other than the cameras' (millimetres and metres)? Give "
+                        "--box in the cameras' units, or let it be found (--box auto)");
 }
 
 std::size_t cameras_within(const Box& box, std::span<const SourceView> views) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,6 +16,11 @@ namespace photohull::pipeline {
 /// about cameras that miss it.
 std::vector<std::string> check_box(const Box& box, const std::string& source,
                                    std::span<const SourceView> views);
+
+/// Why cameras and box, as they stand, cannot show any shape: all cameras in one place, or a box of
+/// a few pixels in every view. Nothing where they can.
+std::optional<std::string> hopeless_setup(const Box& box, const std::string& source,
+                                          std::span<const SourceView> views);
 
 /// How many cameras stand inside the box.
 std::size_t cameras_within(const Box& box, std::span<const SourceView> views);

@@ -72,6 +72,7 @@ void Inputs::load() {
   report_.box = *scene.box;
   report_.box_source = scene.box_source;
   for (const std::string& text : check_box(*scene.box, scene.box_source, scene.views)) warn(text);
+  if (const auto why = hopeless_setup(*scene.box, scene.box_source, scene.views)) throw Error(*why);
   full_ = scene;
   take_scales(choose_scales(*scene.box));
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "assess/common_error.h"
 #include "calib/frontier.h"
 #include "calib/prepare_views.h"
 #include "calib/refine_cameras.h"
@@ -72,7 +73,8 @@ class Inputs {
   /// The masks with room around their lines, and with what other views put into them; an empty one
   /// where nothing changed.
   std::vector<Mask> widened;
-  double full_evidence = 0;  ///< pixels (HullOptions)
+  double full_evidence = 0;          ///< pixels (HullOptions)
+  assess::CommonError common_error;  ///< of the outlines of the views that are left
   double contradiction = 0;  ///< share of the silhouettes' rays that other silhouettes leave empty
   double cameras_moved = 0;  ///< by refinement, pixels
   double cameras_moved_alike = 0;  ///< of it what all views have in common

@@ -139,6 +139,7 @@ void Inputs::leave_out_wrong_views() {
   if (!options_.keep_views)
     leave_out(found.wrong,
               "without it the other views' silhouettes agree (check its camera and its mask)");
+  common_error = assess::find_common_error(cameras, outlines_);
 }
 
 /// The outline of a view that is off by a pixel would carve a pixel off the object, whatever all

@@ -49,6 +49,8 @@ void look_ahead(const Scene& scene, const ReconstructOptions& options, Inspectio
                                   "reconstructed without silhouettes"));
   const auto box_warnings = check_box(*scene.box, scene.box_source, scene.views);
   out.warnings.insert(out.warnings.end(), box_warnings.begin(), box_warnings.end());
+  if (const auto why = hopeless_setup(*scene.box, scene.box_source, scene.views))
+    out.warnings.push_back(*why);
   measure_angles(out);
   std::vector<Camera> cameras;
   for (const SourceView& view : scene.views) cameras.push_back(view.camera);

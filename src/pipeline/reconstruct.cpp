@@ -10,6 +10,7 @@
 #include "carving/fit_grid.h"
 #include "carving/fit_stems.h"
 #include "core/error.h"
+#include "core/process_limits.h"
 #include "io/image_file.h"
 #include "pipeline/explained_picture.h"
 #include "pipeline/hull_stage.h"
@@ -262,6 +263,7 @@ class Job {
         .stems_restored = double(report_.thin.restored_pixels) /
                           double(std::max<std::int64_t>(report_.thin.line_pixels, 1)),
         .contradiction = in_.contradiction,
+        .common = in_.common_error,
         .cameras_moved = in_.cameras_moved,
         .cameras_moved_alike = in_.cameras_moved_alike};
     std::vector<assess::SilhouetteFit> fits;
@@ -385,6 +387,7 @@ class Job {
 
 Report reconstruct(const ReconstructOptions& options, Progress& progress) {
   options.validate();
+  check_process_limits(options.threads);
   std::unique_ptr<tbb::global_control> limit;
   if (options.threads > 0)
     limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,

@@ -17,10 +17,12 @@ namespace photohull::pipeline {
 namespace {
 
 constexpr std::size_t kProbes = 2000;
-constexpr double kLift = 0.75;        // voxels above the surface, to look past its own facets
-constexpr double kFar = 0.005;        // of the surface's diagonal
-constexpr double kContour = 2;        // pixels beside a silhouette's contour that do not count
-constexpr double kContourVoxels = 1;  // and voxels
+constexpr double kLift = 0.75;          // voxels above the surface, to look past its own facets
+constexpr double kFar = 0.005;          // of the surface's diagonal
+constexpr double kCoarsest = 2;         // times that: pixels of views that tell whether it is far
+constexpr double kBeyondAtAll = 0.002;  // of a silhouette
+constexpr double kContour = 2;          // pixels beside a silhouette's contour that do not count
+constexpr double kContourVoxels = 1;    // and voxels
 
 double diagonal(const TriMesh& mesh) {
   glm::vec3 low = mesh.positions.front(), high = low;
@@ -55,11 +57,13 @@ std::vector<assess::SilhouetteFit> compare_silhouettes(const CheckedResult& resu
   int known = 0;
   for (const assess::SilhouetteFit& fit : fits) {
     known += fit.foreground > 0;
+    s.beyond_views += fit.beyond_box > kBeyondAtAll;
     s.missed += fit.missed, s.excess += fit.excess, s.beyond_box += fit.beyond_box;
     s.missed_width += fit.missed * fit.missed_width;
   }
   if (s.missed > 0) s.missed_width /= s.missed;
-  if (known > 0) s.missed /= known, s.excess /= known, s.beyond_box /= known;
+  if (known > 0)
+    s.missed /= known, s.excess /= known, s.beyond_box /= known, s.beyond_views /= known;
   return fits;
 }
 
@@ -93,6 +97,10 @@ assess::Signals gather_signals(const CheckedResult& result,
   assess::Signals s;
   s.views = int(result.views.size());
   s.hull = result.hull;
+  s.cameras_within =
+      double(std::ranges::count_if(
+          cameras, [&](const Camera& camera) { return result.box->contains(camera.center()); })) /
+      double(cameras.size());
   s.stems = result.stems;
   s.stems_restored = result.stems_restored;
   s.pixel_size = carving::pixel_footprint(*result.box, cameras);
@@ -120,11 +128,14 @@ assess::Signals gather_signals(const CheckedResult& result,
     if (fits) *fits = std::move(filled);
   }
   const double noise = 255 * result.noise_sigma;  // square roots are close to sRGB
-  if (!s.masks && !s.hull && s.pixel_size > 0)
-    s.explained = explain(result, rays, {result.voxel_size, s.pixel_size, noise});
+  s.common = result.common;
+  if (!s.hull && s.pixel_size > 0)
+    (s.masks ? s.compared : s.explained) =
+        explain(result, rays, {result.voxel_size, s.pixel_size, noise, s.masks});
   assess::MatchOptions options;
   options.near = result.voxel_size;
   options.far = s.far;
+  options.coarsest = kCoarsest * s.far;
   options.noise = noise;
   s.match = assess::match_probes(probes, result.views, pointers(result.silhouettes), options);
   return s;
@@ -145,11 +156,13 @@ ordered_json explained_json(const assess::Explained& e, std::span<const View> vi
                     {"missed", e.share_told(Place::kMissed)},
                     {"bare", e.share_textured(Place::kBare)},
                     {"cut", e.share_textured(Place::kCut)},
-                    {"beyond", e.share_textured(Place::kBeyond)}};
+                    {"beyond", e.share_textured(Place::kBeyond)},
+                    {"behind", e.share_behind()}};
   for (std::size_t i = 0; i < views.size() && i < e.views.size(); ++i)
     j["views"].push_back({{"name", views[i].name},
                           {"told", e.views[i].told()},
                           {"explained", e.views[i].explained()},
+                          {"disagreeing", e.views[i].count(Place::kDisagreeing)},
                           {"bare", e.views[i].count(Place::kBare)}});
   return j;
 }
@@ -176,21 +189,41 @@ std::string to_json(const assess::Verdict& verdict, const assess::Signals& s,
                       {"silhouettes_missed_width", s.missed_width},
                       {"silhouettes_excess", s.excess},
                       {"silhouettes_beyond_box", s.beyond_box},
+                      {"views_beyond_box", s.beyond_views},
                       {"pairs_seen", s.match.seen},
                       {"textured", s.match.textured},
                       {"matched", s.match.matched},
+                      {"unconfirmed_patches", s.match.unconfirmed_patches},
                       {"offset", s.match.offset},
                       {"offset_beyond_voxel", s.match.beyond_near},
                       {"offset_beyond_half_percent", s.match.beyond_far},
                       {"residual", s.match.residual},
+                      {"residual_pixel_size", s.match.pixel_size},
                       {"cameras_moved", s.cameras_moved},
                       {"cameras_moved_alike", s.cameras_moved_alike},
                       {"pixel_size", s.pixel_size},
-                      {"half_percent", s.far}}}};
+                      {"half_percent", s.far},
+                      {"voxel_size", s.voxel_size},
+                      {"resolution", s.resolution},
+                      {"views", s.views},
+                      {"cameras_within", s.cameras_within},
+                      {"silhouettes_bound", s.masks},
+                      {"hull", s.hull}}}};
+  if (s.common.tangents > 0)
+    j["signals"]["outlines"] = {
+        {"disagree", s.common.before},         {"moved", {s.common.shift.x, s.common.shift.y}},
+        {"moved_sigma", s.common.shift_sigma}, {"focal_factor", s.common.focal_factor},
+        {"focal_sigma", s.common.focal_sigma}, {"disagree_then", s.common.after},
+        {"tangents", s.common.tangents}};
   for (std::size_t i = 0; i < views.size() && i < s.match.views.size(); ++i)
     j["views"].push_back({{"name", views[i].name},
                           {"residual", s.match.views[i].pixels},
-                          {"matches", s.match.views[i].matches}});
+                          {"matches", s.match.views[i].matches},
+                          {"pixel_size", s.match.views[i].pixel_size}});
+  for (std::size_t i = 0; i < views.size() && i < s.compared.views.size(); ++i) {
+    j["views"][i]["told"] = s.compared.views[i].told();
+    j["views"][i]["disagreeing"] = s.compared.views[i].count(assess::Place::kDisagreeing);
+  }
   if (s.explained.looked_at() > 0) j["photographs"] = explained_json(s.explained, views);
   return j.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }

@@ -33,7 +33,8 @@ struct CheckedResult {
   double stems = 0;           ///< share of the mesh's vertices that lines placed
   double stems_restored = 0;  ///< share of the lines' pixels that eaten masks had lost
   double contradiction = 0;  ///< of the silhouettes (assess::SilhouetteConsistency::uncovered_left)
-  double cameras_moved = 0;  ///< pixels, by --refine-cameras
+  assess::CommonError common;      ///< of the views' outlines
+  double cameras_moved = 0;        ///< pixels, by --refine-cameras
   double cameras_moved_alike = 0;  ///< pixels, of it what all views have in common
 };
 

@@ -60,6 +60,25 @@ TEST(Explained, TheRightSurfaceExplainsTheTexture) {
   EXPECT_EQ(told, e.told());
 }
 
+TEST(Explained, AHoleShowsTheInside) {
+  const std::vector<View> views = photographs(12, 30);
+  EXPECT_EQ(explain(whole(1), views).share_behind(), 0);
+  // From the angle a to its middle, lunes of (1 + cos a) / 2 of the disc show the outside, and of
+  // -cos a the inside where that is positive: 1 / pi beside 1 / 2 in the mean.
+  const TriMesh half = part_of_sphere(1, [](const glm::dvec3& p) { return p.x > 0; });
+  EXPECT_NEAR(explain(half, views).share_behind(), 0.39, 0.02);
+}
+
+TEST(Explained, TheSurfaceAloneLeavesOutWhatLiesBesideIt) {
+  const TriMesh upper = part_of_sphere(1, [](const glm::dvec3& p) { return p.z > 0; });
+  const Explained e = explain_photographs(
+      upper, RayScene(upper), kAround, photographs(12, 30),
+      {.voxel_size = 0.03, .pixel_size = 0.02, .noise = 0, .surface_alone = true});
+  EXPECT_GT(e.told(), 500);
+  EXPECT_GT(e.explained(), 0.9);
+  EXPECT_EQ(e.count(Place::kMissed) + e.count(Place::kBare) + e.count(Place::kCut), 0);
+}
+
 TEST(Explained, ASurfaceThatIsOffDisagrees) {
   const std::vector<View> views = photographs(12, 30, 0.06);
   EXPECT_GT(explain(whole(1), views).explained(), 0.9);

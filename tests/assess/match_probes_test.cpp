@@ -29,7 +29,8 @@ std::vector<View> photographs(double texture = 0.15) {
   return views;
 }
 
-MatchEvidence match(const std::vector<View>& views, double radius = kRadius) {
+MatchEvidence match(const std::vector<View>& views, double radius = kRadius,
+                    double coarsest = 0.05) {
   TriMesh mesh = test::sphere_mesh({0, 0, 0}, radius, 90);
   mesh.confidence.assign(mesh.positions.size(), 1.0f);
   std::vector<Camera> cameras;
@@ -40,7 +41,7 @@ MatchEvidence match(const std::vector<View>& views, double radius = kRadius) {
     outlines.push_back(test::sphere_outline(view.camera, {0, 0, 0}, kRadius));
   for (const test::Outline& o : outlines) silhouettes.push_back(&o.distance);
   MatchOptions options;
-  options.near = 0.02, options.far = 0.04;
+  options.near = 0.02, options.far = 0.04, options.coarsest = coarsest;
   return match_probes(probe_surface(mesh, RayScene(mesh), cameras, 400, 0.02), views, silhouettes,
                       options);
 }
@@ -53,6 +54,22 @@ TEST(MatchProbes, TheRightSurfaceIsFoundWhereItIs) {
   EXPECT_LT(e.offset, 0.004);  // a pixel is 0.02 large
   EXPECT_LT(e.beyond_near, 0.05);
   EXPECT_LT(e.residual, 0.1);
+  EXPECT_NEAR(e.pixel_size, 0.02, 0.004);
+  EXPECT_LT(e.unconfirmed_patches, 0.02);
+}
+
+TEST(MatchProbes, ViewsThatAreTooCoarseTellOfNoDistances) {
+  const MatchEvidence e = match(photographs(), kRadius + 0.05, 0.01);
+  EXPECT_GT(e.matched, 0.9);
+  EXPECT_EQ(e.offset, 0);
+  EXPECT_EQ(e.beyond_far, 0);
+  for (const ViewResidual& view : e.views) EXPECT_EQ(view.matches, 0);
+}
+
+TEST(MatchProbes, PatchesThatAreNotConfirmedCountTogether) {
+  std::vector<View> views = photographs();
+  const MatchEvidence off = match(views, kRadius + 0.06);
+  EXPECT_GT(off.unconfirmed_patches, 0.8 * off.textured);
 }
 
 TEST(MatchProbes, OffsetsTellHowFarOffTheSurfaceIs) {

@@ -114,7 +114,7 @@ TEST_F(BadScene, Box) {
   fs::remove(path("bbox.txt"));
   // The first two cameras look down.
   refuse({"no camera has the box from --box"}, {"--views", "0-1", "--box", "0 0 100 1 1 101"});
-  refuse({"a pixel is 0.027", "check the box's units"},
+  refuse({"the box from --box is 0.0017 across", "make --box larger"},
          {"--box", "0.1 -0.2 0.3 0.101 -0.199 0.301", "--quality", "draft"});
   // With masks such a box is made smaller; without them it may be a room, but for hulls.
   refuse({"camera view", "inside the box from --box"},

@@ -248,7 +248,7 @@ TEST(MaxMemory, RefusesBeforeDecoding) {
     io::write_png(folder / name, 640, 480, 1, noise);
     std::filesystem::resize_file(folder / name, std::filesystem::file_size(folder / name) / 2);
     EXPECT_THROW(io::read_image(folder / name), Error);
-    par << name << " 900 0 320 0 900 240 0 0 1  1 0 0 0 1 0 0 0 1  0 0 10\n";
+    par << name << " 900 0 320 0 900 240 0 0 1  1 0 0 0 1 0 0 0 1  " << i << " 0 10\n";
   }
   par.close();
   ReconstructOptions options;

@@ -1,0 +1,57 @@
+#include "pipeline/checks.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/ray_cast.h"
+
+namespace photohull::pipeline {
+namespace {
+
+using testing::HasSubstr;
+
+const Box kBox{glm::dvec3(-0.5), glm::dvec3(0.5)};
+
+/// Eight cameras around the box, so far from it.
+std::vector<SourceView> around(double distance) {
+  std::vector<SourceView> views(8);
+  for (int i = 0; i < 8; ++i)
+    views[std::size_t(i)].camera =
+        test::look_at({distance * std::cos(0.8 * i), distance * std::sin(0.8 * i), 0.3}, {0, 0, 0},
+                      300, 200, 200);
+  return views;
+}
+
+TEST(HopelessSetup, CamerasAroundTheBoxAreFine) {
+  EXPECT_EQ(hopeless_setup(kBox, "bbox.txt", around(3)), std::nullopt);
+  EXPECT_EQ(hopeless_setup(kBox, "bbox.txt", around(60)), std::nullopt);   // seven pixels
+  EXPECT_EQ(hopeless_setup(kBox, "bbox.txt", around(0.4)), std::nullopt);  // from within
+}
+
+TEST(HopelessSetup, OtherUnitsAreNamedWithBothLengths) {
+  const auto why = hopeless_setup(kBox, "bbox.txt", around(3000));
+  ASSERT_TRUE(why);
+  EXPECT_THAT(*why, HasSubstr("the box from bbox.txt is 1.7 across, the cameras stand 3000 away"));
+  EXPECT_THAT(*why, HasSubstr("covers 0.17 pixels of any photograph at most"));
+  EXPECT_THAT(*why, HasSubstr("millimetres and metres"));
+}
+
+TEST(HopelessSetup, ABoxThatWasGivenIsToBeMadeLarger) {
+  const Box tiny{glm::dvec3(0), glm::dvec3(1e-3)};
+  const auto why = hopeless_setup(tiny, "--box", around(3));
+  ASSERT_TRUE(why);
+  EXPECT_THAT(*why, HasSubstr("make --box larger"));
+}
+
+TEST(HopelessSetup, CamerasInOnePlaceShowNoDepth) {
+  std::vector<SourceView> views = around(3);
+  for (SourceView& view : views) view.camera = views.front().camera;
+  const auto why = hopeless_setup(kBox, "bbox.txt", views);
+  ASSERT_TRUE(why);
+  EXPECT_THAT(*why, HasSubstr("all 8 cameras stand in one place"));
+}
+
+}  // namespace
+}  // namespace photohull::pipeline
