@@ -27,10 +27,12 @@ struct StemOptions {
 
 inline void describe(Described& to, StemOptions& o) {
   to.affects(Stage::kMesh);
-  to.number("least_share", &o.least_share, at_least(0), "",
-            "of the views that see a place, in which it must fall beside a line; above 1: nothing "
-            "is a stem");
-  to.number("least_views", &o.least_views, at_least(1), "", "the same, as a number of views");
+  to.number(
+      "least_share", &o.least_share, at_least(0), "",
+      "share of the views that see a place in which it must fall beside a line; above 1: nothing "
+      "is a stem");
+  to.number("least_views", &o.least_views, at_least(1), "",
+            "views in which a place must fall beside a line");
 }
 
 /// Moves the vertices of parts that show as lines in so many views to where these lines say: the

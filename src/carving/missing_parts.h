@@ -23,12 +23,13 @@ inline void describe(Described& to, MissingOptions& o) {
   to.number("most_missing", &o.most_missing, from_to(0, 0.5), "",
             "share of the views that may leave a place out and it is taken all the same");
   to.number("least_support", &o.least_support, at_least(1), "",
-            "views in which the place must fall on foreground that no hull explains");
+            "views in which a place must fall on foreground that no hull explains");
   to.number("support_share", &o.support_share, from_to(0, 1), "",
-            "the same, as a share of the views that have the place on their image");
+            "share of the views that have a place on their image in which it must fall on "
+            "foreground that no hull explains");
   to.number("full_miss", &o.full_miss, from_to(0.5, 100), "pixels",
-            "beside an outline at which a view leaves a place out altogether; nearer ones count "
-            "in part");
+            "distance beside an outline at which a view leaves a place out altogether; nearer "
+            "ones count in part");
 }
 
 /// A ball that belongs to the object. World units.

@@ -43,7 +43,7 @@ struct PhotoOptions {
 inline void describe(Described& to, PhotoOptions& o) {
   to.affects(Stage::kSurface);
   to.number("keep_score", &o.keep_score, Range{0, 1, true, true}, "",
-            "from which a voxel counts as consistent");
+            "score from which a voxel counts as consistent");
   to.number("better_by", &o.better_by, from_to(0, 1), "",
             "lead by which a voxel behind an inconsistent one must correlate for that to go");
   to.number("min_views", &o.min_views, at_least(2), "",
@@ -52,18 +52,18 @@ inline void describe(Described& to, PhotoOptions& o) {
             "standard deviation of the images' noise, square roots of linear light; measured "
             "where it is not given");
   to.number("min_texture", &o.min_texture, at_least(0), "",
-            "standard deviations of the noise below which texture tells nothing");
+            "texture, in standard deviations of the noise, below which it tells nothing");
   to.number("supersample", &o.supersample, from_to(1, projtex::kMaxSupersample), "",
             "n x n samples a voxel on top of the sampler's own");
   to.number("search_radius", &o.search_radius, from_to(0, kMaxSearchRadius), "pixels",
-            "around a voxel's projection within which each view may show it [Kutulakos00]");
+            "distance from a voxel's projection within which each view may show it [Kutulakos00]");
   to.flag("front_face", &o.front_face,
           "reference planes through the voxels' front faces instead of their centres");
   to.number("depth_bias", &o.depth_bias, at_least(0), "voxels",
-            "that a voxel may lie behind a depth map and is seen all the same");
+            "distance behind a depth map at which a voxel counts as seen all the same");
   to.number("max_path", &o.max_path, at_least(1), "layers",
-            "behind an inconsistent voxel that are searched for a better explanation");
-  to.number("max_rounds", &o.max_rounds, at_least(1), "", "of six sweeps, at most");
+            "depth behind an inconsistent voxel that is searched for a better explanation");
+  to.number("max_rounds", &o.max_rounds, at_least(1), "", "rounds of six sweeps, at most");
 }
 
 inline void PhotoOptions::validate() const { check_described(*this); }

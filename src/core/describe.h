@@ -55,11 +55,11 @@ struct Option {
   Place place;
   std::string help;            ///< what it says, and why one would change it
   Stage from = Stage::kViews;  ///< the first stage whose result it affects
-  Range range{};               ///< of numbers, as is:
-  std::string unit{};          ///< empty: none
+  Range range{};               ///< of numbers
+  std::string unit{};          ///< of numbers; empty: none
   std::string zero{};          ///< what 0 means, where it is not a number like others
   std::string absent{};        ///< word for an optional number that is not given
-  /// How a number is written, where it is not simply that; nothing: it is none.
+  /// Reads a number that has a notation of its own; nothing: the text is none.
   std::function<std::optional<double>(const std::string&)> notation{};
   std::vector<std::string> choices{};  ///< all legal words; empty: any text
   std::string expects{};   ///< legal values for a sentence, where the above does not say it all

@@ -18,15 +18,16 @@ struct CloseOptions {
 
 inline void describe(Described& to, CloseOptions& o) {
   to.number("rings", &o.rings, from_to(0, 1000), "edges",
-            "unseen patches narrower than twice that stay as they are");
+            "half the width up to which unseen patches stay as they are");
   to.number("belt", &o.belt, from_to(0, 1000), "edges",
-            "around the others that stay, for their rim would give way bit by bit");
+            "width around wider unseen patches that stays, for their rim would give way bit by "
+            "bit");
   to.rule(o.belt <= o.rings, "belt", "must not exceed", "rings");
-  to.number("iterations", &o.iterations, at_least(0), "", "of the Gauss-Seidel method");
+  to.number("iterations", &o.iterations, at_least(0), "", "iterations of the Gauss-Seidel method");
   to.number("longest", &o.longest, from_to(0, SparseVolume::kBand), "voxels",
-            "that a vertex moves at once");
+            "longest way that a vertex moves at once");
   to.number("thickness", &o.thickness, from_to(0, 1000), "voxels",
-            "that stay between unseen surface and seen surface before it");
+            "distance that stays between unseen surface and seen surface before it");
 }
 
 /// Displacements (voxels along the normals) of the vertices that are not `seen` towards the

@@ -28,11 +28,12 @@ struct PeakOptions {
 
 inline void describe(Described& to, PeakOptions& o) {
   to.number("least_score", &o.least_score, from_to(-1, 1), "",
-            "of a curve's peak below which it is no evidence");
-  to.number("sure_score", &o.sure_score, from_to(-1, 1), "", "from which it has full weight");
+            "score of a curve's peak below which it is no evidence");
+  to.number("sure_score", &o.sure_score, from_to(-1, 1), "",
+            "score of a curve's peak from which it has full weight");
   to.rule(o.least_score < o.sure_score, "least_score", "must lie below", "sure_score");
   to.number("thick", &o.thick, above(0, 1000), "voxels",
-            "of body behind a vertex that give full weight");
+            "body behind a vertex that gives full weight");
   to.number("distinct_by", &o.distinct_by, above(0), "",
             "lead over the second peak that gives full weight");
 }
@@ -52,11 +53,11 @@ inline void describe(Described& to, RegularizeOptions& o) {
   to.number("fairing", &o.fairing, at_least(0), "",
             "weight of the moved surface's bending otherwise than its neighbours");
   to.number("robust", &o.robust, above(0), "voxels",
-            "from the smooth surface at which a peak counts a quarter");
+            "distance from the smooth surface at which a peak counts a quarter");
   to.number("reweightings", &o.reweightings, at_least(0), "",
-            "of the peaks by how far they are from the smooth surface");
+            "rounds of weighting peaks by how far they are from the smooth surface");
   to.number("iterations", &o.iterations, at_least(1), "",
-            "of Jacobi's method for each reweighting");
+            "iterations of Jacobi's method for each reweighting");
 }
 
 /// Least squares on the surface graph: displacements near the peaks, by their weights, and smooth.

@@ -25,31 +25,34 @@ struct FitOptions {
 };
 
 inline void describe(Described& to, FitOptions& o) {
-  to.number("steps", &o.steps, from_to(0, 100), "", "of Gauss and Newton");
+  to.number("steps", &o.steps, from_to(0, 100), "", "steps of Gauss and Newton in a pass");
   to.number("hold_out", &o.hold_out, at_least(0), "",
             "one surfel in so many leaves a view out, to tell whether a pass helps; 0: none does");
   to.number("least_spacing", &o.least_spacing, above(0, 1000), "voxels",
-            "between a patch's taps, at the least");
+            "least distance between a patch's taps");
   to.number("pixel_spacing", &o.pixel_spacing, from_to(0, 1000), "pixels",
-            "of the reference view between a patch's taps, at the least");
+            "least distance between a patch's taps in the reference view");
   to.number("noise", &o.noise, from_to(0, 1), "",
             "share of the pixels' variance by noise that samples have");
   to.number("least_score", &o.least_score, from_to(-1, 1), "",
             "correlation with the other views below which a view has no weight");
-  to.number("sure_score", &o.sure_score, from_to(-1, 1), "", "from which it has full weight");
+  to.number("sure_score", &o.sure_score, from_to(-1, 1), "",
+            "correlation with the other views from which a view has full weight");
   to.rule(o.least_score < o.sure_score, "least_score", "must lie below", "sure_score");
   to.number("slope", &o.slope, above(0, 1000), "", "standard deviation of the surfels' slopes");
   to.number("largest_offset", &o.largest_offset, below(0, SparseVolume::kBand), "voxels",
-            "of a fit; those that reach it do not count");
-  to.number("largest_step", &o.largest_step, above(0, 1000), "voxels", "of one step of a fit");
+            "offset of a fit from which on it does not count");
+  to.number("largest_step", &o.largest_step, above(0, 1000), "voxels", "longest step of a fit");
   to.number("most_bend", &o.most_bend, from_to(0, 1000), "1 / voxel",
             "largest curvature that a patch follows");
   to.number("sure", &o.sure, from_to(0, 1000), "voxels",
             "standard deviation of an offset that weighs 1");
   to.number("most_weight", &o.most_weight, above(0, 1000), "",
-            "of an offset when they are smoothed");
-  to.number("membrane", &o.membrane, at_least(0), "", "as regularize.membrane, for fitted offsets");
-  to.number("fairing", &o.fairing, at_least(0), "", "as regularize.fairing, for fitted offsets");
+            "greatest weight of an offset when they are smoothed");
+  to.number("membrane", &o.membrane, at_least(0), "",
+            "what regularize.membrane is, for fitted offsets");
+  to.number("fairing", &o.fairing, at_least(0), "",
+            "what regularize.fairing is, for fitted offsets");
 }
 
 /// Standing of a surface in the views that were held out.

@@ -23,7 +23,7 @@ inline void describe(Described& to, LabelOptions& o) {
   to.number("unknown", &o.unknown, from_to(0, 1000), "",
             "cost of a solid voxel that no ray says anything of");
   to.number("iterations", &o.iterations, from_to(0, 10000), "",
-            "of the labelling; 0: unknown space is solid");
+            "iterations of the labelling; 0: unknown space is solid");
 }
 
 /// The labels u, 1 solid and 0 free, of the voxels of bricks (8^3 each, x slowest) that minimise

@@ -21,10 +21,11 @@ struct LookOptions {
 
 inline void describe(Described& to, LookOptions& o) {
   to.number("least_score", &o.least_score, from_to(-1, 1), "",
-            "of a surfel taken for surface, and of a view taken to show it");
+            "score of a surfel taken for surface, and of a view taken to show it");
   to.number("least_weight", &o.least_weight, from_to(0, 1), "",
-            "of the surfel's peak, for smooth shading agrees anywhere");
-  to.number("margin", &o.margin, from_to(0, 1000), "voxels", "above such surface that stay");
+            "weight of the surfel's peak, for smooth shading agrees anywhere");
+  to.number("margin", &o.margin, from_to(0, 1000), "voxels",
+            "height above such surface in which voxels stay");
   to.number("least_lines", &o.least_lines, at_least(1), "", "lines of sight that free a voxel");
 }
 

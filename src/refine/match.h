@@ -25,30 +25,33 @@ struct MatchOptions {
 
 inline void describe(Described& to, MatchOptions& o) {
   to.number("least_spacing", &o.least_spacing, above(0, 1000), "voxels",
-            "between a patch's taps, at the least");
+            "least distance between a patch's taps");
   to.number("pixel_spacing", &o.pixel_spacing, from_to(0, 1000), "pixels",
-            "of the reference view between a patch's taps, at the least");
+            "least distance between a patch's taps in the reference view");
   to.number("most_bend", &o.most_bend, from_to(0, 1000), "1 / voxel",
             "largest curvature that a patch follows");
   to.number("best_pairs", &o.best_pairs, above(0, 1), "",
             "share of the pairs of views that a score is the mean of");
   to.number("shift", &o.shift, from_to(0, 1000), "voxels",
-            "of the receiver along its normal, when it is asked whether a view sees it");
+            "how far the receiver is moved along its normal, when it is asked whether a view sees "
+            "it");
   to.number("depth_bias", &o.depth_bias, from_to(0, 1000), "voxels",
-            "that a surface may lie behind a depth map and is seen all the same");
+            "distance behind a depth map at which surface counts as seen all the same");
   to.number("least_cosine", &o.least_cosine, below(0, 1), "",
-            "between a normal and the direction of a camera that is matched");
-  to.number("seen_cosine", &o.seen_cosine, below(0, 1), "",
-            "the same, above which a camera sees the surface at all");
+            "least cosine between a normal and the direction of a camera that is matched");
+  to.number(
+      "seen_cosine", &o.seen_cosine, below(0, 1), "",
+      "cosine between a normal and the direction of a camera above which it sees the surface at "
+      "all");
   to.number("nearest_angle", &o.nearest_angle, from_to(0, 180), "degrees",
-            "between the reference and a view compared with it, at the least");
+            "least angle between the reference and a view compared with it");
   to.number("farthest_angle", &o.farthest_angle, from_to(0, 180), "degrees",
-            "between the reference and a view compared with it, at most");
+            "greatest angle between the reference and a view compared with it");
   to.rule(o.nearest_angle < o.farthest_angle, "nearest_angle", "must lie below", "farthest_angle");
   to.number("sparse_angle", &o.sparse_angle, from_to(0, 180), "degrees",
-            "that farthest_angle is widened to where cameras are sparse");
+            "what match.farthest_angle is widened to where cameras are sparse");
   to.number("duplicate_angle", &o.duplicate_angle, from_to(0, 180), "degrees",
-            "between views that tell nearly the same");
+            "angle between views below which they tell nearly the same");
 }
 
 /// What raises the variance of patches in their correlation: that of rounding to 8 bits, or the

@@ -36,9 +36,9 @@ struct OpenVoteOptions {
 
 inline void describe(Described& to, OpenVoteOptions& o) {
   to.number("reach", &o.reach, from_to(0, VoteOptions::kAnyReach), "rays",
-            "without masks: as vote.bare_reach, at all levels but the last");
+            "the same as vote.bare_reach where there are no masks, at all levels but the last");
   to.number("last_reach", &o.last_reach, from_to(0, VoteOptions::kAnyReach), "rays",
-            "without masks: as vote.bare_reach, at the last level");
+            "the same as vote.bare_reach where there are no masks, at the last level");
 }
 
 struct RefineOptions {
@@ -83,13 +83,17 @@ inline void describe(Described& to, RefineOptions& o) {
             "sizes of voxels, each half the one before; the last is the result's")
       .zero = "automatic";
   to.number("coarse_iterations", &o.coarse_iterations, at_least(1), "",
-            "of matching and moving, at the first level");
-  to.number("middle_iterations", &o.middle_iterations, at_least(1), "", "the same, between");
-  to.number("fine_iterations", &o.fine_iterations, at_least(1), "", "the same, at the last level");
+            "iterations of matching and moving, at the first level");
+  to.number("middle_iterations", &o.middle_iterations, at_least(1), "",
+            "iterations of matching and moving, at the levels between");
+  to.number("fine_iterations", &o.fine_iterations, at_least(1), "",
+            "iterations of matching and moving, at the last level");
   to.number("coarse_offsets", &o.coarse_offsets, from_to(3, 64), "",
             "places along the normal that are tried at the first level");
-  to.number("fine_offsets", &o.fine_offsets, from_to(3, 64), "", "the same, at later levels");
-  to.number("step", &o.step, above(0, 2), "voxels", "between these places");
+  to.number("fine_offsets", &o.fine_offsets, from_to(3, 64), "",
+            "places along the normal that are tried at later levels");
+  to.number("step", &o.step, above(0, 2), "voxels",
+            "distance between the places along the normal that are tried");
   to.number("aggregations", &o.aggregations, at_least(0), "",
             "passes of averaging scores over neighbours");
   to.number("noise_sigma", &o.noise_sigma, above(0), "",

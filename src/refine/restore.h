@@ -17,11 +17,12 @@ struct RestoreOptions {
 
 inline void describe(Described& to, RestoreOptions& o) {
   to.number("least_views", &o.least_views, at_least(1), "",
-            "that show foreground where the volume covers none, for a part to come back");
+            "views that show foreground where the volume covers none, for a part to come back");
   to.number("least_inside", &o.least_inside, from_to(0, 1000), "pixels",
-            "within the silhouette that such foreground must lie");
-  to.number("most_before", &o.most_before, at_least(0), "",
-            "views in which the part would hide what lies behind, for each of those");
+            "distance within the silhouette that such foreground must have");
+  to.number(
+      "most_before", &o.most_before, at_least(0), "",
+      "views in which a part may hide what lies behind, for each that shows foreground there");
 }
 
 /// Brings back the voxels of `hull` (on the same grid) that fall, in at least `least_views` views,

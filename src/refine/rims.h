@@ -17,11 +17,11 @@ struct RimOptions {
 
 inline void describe(Described& to, RimOptions& o) {
   to.number("weight", &o.weight, from_to(0, 1000), "",
-            "of a tight hull among the peaks, where nothing has texture; 0: none");
+            "weight of a tight hull among the peaks, where nothing has texture; 0: none");
   to.number("reach", &o.reach, above(0, 1000), "voxels",
-            "under the hull at which it has lost its say");
+            "depth under the hull at which it has lost its say");
   to.number("told", &o.told, above(0, 1000), "",
-            "mean weight of the peaks around at which it has lost its say, too");
+            "mean weight of the peaks around at which the hull has lost its say, too");
 }
 
 /// Mixes into the peaks of vertices on the hull, or just under it, that they want to lie on it:

@@ -20,13 +20,13 @@ struct SeatOptions {
 
 inline void describe(Described& to, SeatOptions& o) {
   to.number("passes", &o.passes, from_to(0, 100), "",
-            "of finding contacts and moving towards them; 0: nothing is seated");
+            "passes of finding contacts and moving towards them; 0: nothing is seated");
   to.number("reach", &o.reach, below(0, SparseVolume::kBand), "voxels",
-            "that the surface may be short of an outline");
+            "distance that the surface may be short of an outline");
   to.number("unsure", &o.unsure, above(0, 1000), "voxels",
             "standard deviation of a contact at its ray");
   to.number("margin", &o.margin, from_to(0, 1), "voxels",
-            "by which interpolated distances to a curved hull may be off");
+            "how far off interpolated distances to a curved hull may be");
 }
 
 /// How surely photographs tell the offsets of surfels, as seat_outlines takes it: `weights` that

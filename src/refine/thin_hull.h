@@ -17,9 +17,9 @@ struct ThinHullOptions {
 
 inline void describe(Described& to, ThinHullOptions& o) {
   to.number("depth", &o.depth, from_to(0, SparseVolume::kBand), "voxels",
-            "below the hull's surface that a thin part does not reach; 0: no part is thin");
+            "depth below the hull's surface that a thin part does not reach; 0: no part is thin");
   to.number("reach", &o.reach, from_to(0, SparseVolume::kBand), "voxels",
-            "from the volume's surface within which it is kept");
+            "distance from the volume's surface within which a thin part is kept");
 }
 
 /// Closes tears of the volume in sheets and stems of the hull: where the hull is thin and the

@@ -23,36 +23,41 @@ struct VoteOptions {
 
 inline void describe(Described& to, VoteOptions& o) {
   to.number("ray_spacing", &o.ray_spacing, above(0, 1000), "voxels",
-            "between the rays of a view, in the middle of the grid");
+            "distance between the rays of a view, in the middle of the grid");
   to.number("again_spacing", &o.again_spacing, above(0, 1000), "voxels",
-            "between the rays that vote again, where no surface explains them");
+            "distance between the rays that vote again, where no surface explains them");
   to.number("last_spacing", &o.last_spacing, above(0, 1000), "voxels",
-            "the same at the last level, where voxels are smallest");
+            "distance between the rays that vote again at the last level, where voxels are "
+            "smallest");
   to.number("again_score", &o.again_score, from_to(-1, 1), "",
-            "of a ray below which the surface does not explain it and it votes again");
+            "score of a ray below which the surface does not explain it and it votes again");
   to.number("tap_spacing", &o.tap_spacing, above(0, 1000), "voxels",
-            "between the taps of the patches across the rays");
+            "distance between the taps of the patches across the rays");
   to.number("nearest_partner", &o.nearest_partner, from_to(0, 180), "degrees",
-            "between a view and those that its rays are matched with, at the least");
+            "least angle between a view and those that its rays are matched with");
   to.number("best_pairs", &o.best_pairs, above(0, 1), "",
             "share of the pairs of views that a score is the mean of");
   to.number("least_score", &o.least_score, from_to(-1, 1), "",
-            "of the best sample on a ray below which the ray says nothing");
+            "score of the best sample on a ray below which the ray says nothing");
   to.number("distinct_by", &o.distinct_by, above(0), "",
             "lead over the second best sample that gives a ray full weight");
   to.number("band", &o.band, above(0, SparseVolume::kBand), "voxels",
-            "behind its depth at which a ray's say ends");
+            "distance behind its depth at which what a ray says ends");
   to.number("least_weight", &o.least_weight, above(0), "",
             "sum of the rays' weights below which a voxel stays");
   to.number("again_weight", &o.again_weight, above(0), "",
-            "the same, for what the rays that vote again add");
+            "sum of the weights of rays that vote again below which they add nothing");
   to.number("freeing_weight", &o.freeing_weight, above(0), "",
-            "and for what they free, for surface without texture is not explained either");
+            "sum of the weights of rays that vote again below which they free nothing, for surface "
+            "without texture is not explained either");
   to.number("rounds", &o.rounds, from_to(0, 20), "",
-            "of trying neighbours' planes after a ray has been searched by itself");
-  to.number("last_rounds", &o.last_rounds, from_to(0, 20), "", "the same at the last level");
+            "rounds of trying neighbours' planes after a ray has been searched by itself, at all "
+            "levels but the last");
+  to.number("last_rounds", &o.last_rounds, from_to(0, 20), "",
+            "rounds of trying neighbours' planes at the last level");
   to.number("bare_reach", &o.bare_reach, from_to(0, VoteOptions::kAnyReach), "rays",
-            "between a ray that meets no surface and votes again, and one that meets some");
+            "greatest distance between a ray that meets no surface and votes again, and one that "
+            "meets some");
 }
 
 /// The hull without what the views' depth maps see through: each view's rays are matched with views

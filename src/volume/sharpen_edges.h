@@ -22,15 +22,16 @@ inline void describe(Described& to, SharpenOptions& o) {
   to.affects(Stage::kMesh);
   to.flag("", &o.on, "make edges sharp that refinement rounds");
   to.number("bend", &o.bend, above(0), "radians",
-            "a length, between neighbours' normals, from which surface may be a rounded edge");
+            "turn of the normals over a length from which surface may be a rounded edge");
   to.number("reach", &o.reach, from_to(3, 30), "lengths",
-            "from a vertex within which the flanks of an edge are fitted");
-  to.number("most_turn", &o.most_turn, above(0, 120), "degrees", "between flanks");
-  to.number("distinct", &o.distinct, at_least(0), "", "least turn over the flanks' own roughness");
+            "distance from a vertex within which the flanks of an edge are fitted");
+  to.number("most_turn", &o.most_turn, above(0, 120), "degrees", "greatest turn between flanks");
+  to.number("distinct", &o.distinct, at_least(0), "",
+            "least turn between flanks over the flanks' own roughness");
   to.number("rounding", &o.rounding, at_least(0), "lengths",
             "largest radius by which an edge may be rounded");
-  to.number("share", &o.share, from_to(0, 1), "", "of an edge's places that must show it");
-  to.number("shortest", &o.shortest, at_least(0), "lengths", "of an edge");
+  to.number("share", &o.share, from_to(0, 1), "", "share of an edge's places that must show it");
+  to.number("shortest", &o.shortest, at_least(0), "lengths", "least length of an edge");
 }
 
 inline void SharpenOptions::validate() const { check_described(*this); }

@@ -63,10 +63,12 @@ std::string options_reference() {
   out << "\n## Parameters\n\n"
          "For experiments: `--tune NAME=VALUE` changes one, with 0 and 1 for off and on. A method "
          "has those of its own and those\nof the stages that methods share; `--method hull` has "
-         "none.\n";
-  write_parameters<carving::MissingOptions>("What masks show and the hull lacks (all methods)",
-                                            "missing", out);
-  write_parameters<carving::StemOptions>("Stems (all methods)", "stems", out);
+         "none. The\nunit of lengths of sharp edges is what the surface resolves: a voxel, or 1.5 "
+         "pixels "
+         "where these are larger.\n";
+  write_parameters<carving::MissingOptions>(
+      "What masks show and the hull lacks (all methods but `hull`)", "missing", out);
+  write_parameters<carving::StemOptions>("Stems (all methods but `hull`)", "stems", out);
   write_parameters<refine::RefineOptions>("Refinement (`--method refine`)", "", out);
   write_parameters<SharpenOptions>("Sharp edges (`--method refine`)", "sharpen", out);
   write_parameters<carving::PhotoOptions>(
