@@ -21,9 +21,10 @@ struct Arguments {
 };
 
 io::LoadSceneOptions options_of(const Arguments& a) {
-  io::LoadSceneOptions options = a.scene.options();
+  a.scene.check();
+  io::LoadSceneOptions options = a.scene.load;
   if (!a.step && !a.angles && !a.moment) return options;
-  if (!a.scene.images)
+  if (options.images.empty())
     throw UsageError("--step, --angles and --moment are for calibrations with --images");
   if (a.step && a.angles) throw UsageError("--step and --angles: give one of them");
   options.calibrated = io::CalibratedImages{options.images, a.step, {}, a.moment.value_or("")};
@@ -42,7 +43,7 @@ void run(const Arguments& a) {
     throw UsageError(concat("--out ", a.out, " holds the ", to_string(format),
                             " scene that is read, which would be lost; give another folder"));
   a.scene.complete_box(scene);
-  const std::string from = a.scene.images ? a.scene.scene : to_string(scene.format);
+  const std::string from = a.scene.load.images.empty() ? to_string(scene.format) : a.scene.scene;
   for (const std::string& text : scene.warnings)
     std::fprintf(stderr, "photohull: warning: %s\n", text.c_str());
   if (a.undistort) {

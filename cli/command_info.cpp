@@ -1,4 +1,3 @@
-#include <array>
 #include <cstdio>
 #include <exception>
 #include <memory>
@@ -8,14 +7,13 @@
 #include "commands.h"
 #include "core/error.h"
 #include "core/left_out.h"
-#include "core/parse_name.h"
 #include "info_output.h"
 #include "io/image_file.h"
+#include "option_flags.h"
 #include "pipeline/box_picture.h"
 #include "pipeline/image_scale.h"
 #include "pipeline/inspect.h"
 #include "pipeline/mask_policy.h"
-#include "pipeline/memory.h"
 #include "scene_arguments.h"
 #include "terminal_progress.h"
 
@@ -24,44 +22,30 @@ namespace {
 
 struct Arguments {
   SceneArguments scene;
-  std::optional<int> resolution;
-  std::optional<double> voxel_size;
-  std::string quality = "normal", image_scale = "auto", max_memory = "auto";
-  std::optional<std::string> method;
+  pipeline::ReconstructOptions job;  ///< those that decide on voxels, and how photographs are read
   bool json = false, cameras = false, masks = false;
   std::optional<std::string> picture;
 };
 
-/// Those that decide on voxels, and on how photographs are read.
 pipeline::ReconstructOptions job_options(const Arguments& a) {
-  using pipeline::Method;
-  using pipeline::Quality;
-  pipeline::ReconstructOptions o;
+  check_scene(a.scene.scene);
+  pipeline::ReconstructOptions o = a.job;
   o.output = "none";  // nothing is written
-  o.load = a.scene.options();
+  o.load = a.scene.load;
+  o.box = a.scene.box;
   o.load.most_views = io::kEnoughViews;  // as reconstruct has it
-  o.resolution = a.resolution;
-  o.voxel_size = a.voxel_size;
-  o.quality = parse_name("--quality", a.quality,
-                         std::array{Quality::kDraft, Quality::kNormal, Quality::kHigh});
-  if (a.method)
-    o.method = parse_name(
-        "--method", *a.method,
-        std::array{Method::kHull, Method::kVoxelColoring, Method::kSpaceCarving, Method::kRefine});
-  o.image_scale = pipeline::parse_image_scale(a.image_scale);
-  o.max_memory = pipeline::parse_max_memory(a.max_memory);
   o.validate();
   return o;
 }
 
 /// Why there is none, or nothing; the rest that is known of the scene is told all the same.
 std::string find_box(const Arguments& a, Scene& scene, std::vector<ScenePoint>& points) {
-  const bool looks = pipeline::looks_for_box(a.scene.box_options(), scene);
+  const bool looks = pipeline::looks_for_box(a.scene.box, scene);
   TerminalProgress progress(1);
   if (looks) progress.stage("box", 1);
   try {
-    points = pipeline::complete_box(a.scene.box_options(),
-                                    pipeline::mask_policy(a.scene.options().masks), scene, progress)
+    points = pipeline::complete_box(a.scene.box, pipeline::mask_policy(a.scene.load.masks), scene,
+                                    progress)
                  .points;
   } catch (const UsageError&) {
     throw;
@@ -87,8 +71,8 @@ std::vector<double> scales_to_look(const Arguments& a, const pipeline::Reconstru
 PreparedViews prepare(std::span<const double> scales, const SceneArguments& arguments, Scene& scene,
                       Progress& progress) {
   PrepareOptions options;
-  options.masks = pipeline::mask_policy(arguments.options().masks);
-  options.strict = arguments.strict;
+  options.masks = pipeline::mask_policy(arguments.load.masks);
+  options.strict = arguments.load.strict;
   progress.stage("views", 1);
   Scene read = scene;
   pipeline::scale_scene(scales, read);
@@ -157,17 +141,10 @@ void add_info(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
   CLI::App* c = app.add_subcommand("info", "tell what was understood of a scene");
   a->scene.add_to(*c);
-  c->add_option("--resolution", a->resolution, "voxels along the box's longest side, to estimate");
-  c->add_option("--voxel-size", a->voxel_size, "voxel size in world units, to estimate");
-  c->add_option("--quality", a->quality, "draft, normal or high, to estimate")
-      ->capture_default_str();
-  c->add_option("--method", a->method,
-                "hull, voxel-coloring, space-carving or refine, to estimate (default: hull for "
-                "draft, else refine)");
-  c->add_option("--image-scale", a->image_scale,
-                "at which photographs would be read, to estimate (default: as reconstruct does)");
-  c->add_option("--max-memory", a->max_memory, "that the job may take, such as 512M or 2G, or auto")
-      ->capture_default_str();
+  Described job;
+  describe(job, a->job);
+  add_flags(*c, job,
+            {"resolution", "voxel_size", "quality", "method", "image_scale", "max_memory"});
   c->add_flag("--json", a->json, "print JSON");
   c->add_flag("--cameras", a->cameras,
               "look for faults of the cameras in the photographs, too; takes about half a second "

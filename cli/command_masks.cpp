@@ -42,9 +42,10 @@ fs::path file_name(const std::string& view) { return fs::path(view).filename().s
 /// Masks that are known, by the names that masks have.
 std::vector<Overlap> compare(const Arguments& a, const PreparedViews& prepared) {
   SceneArguments reading = a.scene;
-  reading.background.reset();
-  reading.masks = *a.compare;
-  const Scene truth = io::load_scene(reading.scene, reading.options());
+  reading.load.background.clear();
+  reading.load.masks = io::MaskSource::kDirectory;
+  reading.load.mask_directory = *a.compare;
+  const Scene truth = io::load_scene(reading.scene, reading.load);
   std::vector<Overlap> out;
   for (const View& view : prepared.views) {
     const auto same = std::find_if(truth.views.begin(), truth.views.end(),
@@ -112,7 +113,8 @@ void run(const Arguments& a) {
   if (a.out && a.out->empty()) throw UsageError("--out is empty: give a folder for the masks");
   if (a.compare && a.compare->empty())
     throw UsageError("--compare is empty: give a folder of masks that are known");
-  const io::LoadSceneOptions load = a.scene.options();
+  a.scene.check();
+  const io::LoadSceneOptions& load = a.scene.load;
   Scene scene = io::load_scene(a.scene.scene, load);
   const ViewLoader loader{[](const fs::path& path) { return io::read_image(path); },
                           [](const fs::path& path) { return io::read_mask(path); }};

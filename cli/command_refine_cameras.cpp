@@ -54,14 +54,15 @@ void print_summary(const CameraRefinement& r, const Scene& scene) {
 
 void run(const Arguments& a) {
   if (a.out.empty()) throw UsageError("--out is empty: give the folder for the refined scene");
-  Scene scene = io::load_scene(a.scene.scene, a.scene.options());
+  a.scene.check();
+  Scene scene = io::load_scene(a.scene.scene, a.scene.load);
   a.scene.complete_box(scene);
   const SceneFormat format = a.to ? parse_format("--to", *a.to) : scene.format;
   const ViewLoader loader{[](const fs::path& path) { return io::read_image(path); },
                           [](const fs::path& path) { return io::read_mask(path); }};
   PrepareOptions prepare;
-  prepare.masks = pipeline::mask_policy(a.scene.options().masks);
-  prepare.strict = a.scene.strict;
+  prepare.masks = pipeline::mask_policy(a.scene.load.masks);
+  prepare.strict = a.scene.load.strict;
   TerminalProgress progress(4);
   for (const std::string& text : scene.warnings) progress.warn(text);
   progress.stage("views", 1);

@@ -158,7 +158,8 @@ eval::PhotoAgreement judge_photos(const PhotoArguments& a, const TriMesh& mesh,
   progress.stage("photographs", 0.2 * kPhotoWeight);
   SceneArguments reading = a.scene;
   reading.scene = *a.photos;
-  const io::LoadSceneOptions load = reading.options();
+  reading.check();
+  const io::LoadSceneOptions& load = reading.load;
   Scene scene = io::load_scene(reading.scene, load);
   const ViewLoader loader{[](const fs::path& path) { return io::read_image(path); },
                           [](const fs::path& path) { return io::read_mask(path); }};

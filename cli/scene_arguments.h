@@ -2,7 +2,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,27 +16,28 @@ std::string format_names();
 /// Throws UsageError naming the option for names that are no format's.
 SceneFormat parse_format(const std::string& option, const std::string& text);
 
-struct SceneArguments {
-  static constexpr const char* kFindBox = "auto";  ///< --box
+/// Adds the argument SCENE.
+void add_scene(CLI::App& command, std::string& scene);
 
-  std::string scene, masks = "auto";
-  std::optional<std::string> format, box, views, hold_out;
-  std::optional<std::string> background, images;
-  std::optional<double> pixel_center;
-  bool strict = false;
-  double box_scale = 1;
+/// Throws UsageError where none is given.
+void check_scene(const std::string& scene);
+
+/// Throws UsageError where the folder for results is that of the scene's photographs or masks.
+void check_output(const std::string& scene, const io::LoadSceneOptions& load,
+                  const std::string& out);
+
+struct SceneArguments {
+  std::string scene;
+  io::LoadSceneOptions load;
+  pipeline::BoxOptions box;
 
   void add_to(CLI::App& command);
   /// Only those that say how the scene's files are read: format, masks, pixel centre,
   /// whether all photographs must be there.
   std::vector<CLI::Option*> add_reading_options(CLI::App& command);
-  /// Throws UsageError for values that are not understood.
-  io::LoadSceneOptions options() const;
-  /// Throws UsageError where the folder for results is that of the scene's photographs or masks.
-  void check_output(const std::string& out) const;
-  /// The same of --box auto and --box-scale.
-  pipeline::BoxOptions box_options() const;
-  /// Does what these two ask for, and nothing where neither was given. Throws as
+  /// Throws UsageError for values that do not go together.
+  void check() const;
+  /// Does what the box's options ask for, and nothing where none was given. Throws as
   /// pipeline::complete_box does.
   void complete_box(Scene& loaded) const;
 };

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/camera.h"
+#include "core/describe.h"
 #include "core/image.h"
 #include "core/mesh.h"
 #include "core/silhouette.h"
@@ -20,11 +21,19 @@ struct StemView {
 };
 
 struct StemOptions {
-  /// Share of the views that see a place in which it must fall beside a line, and how many these
-  /// must be; above 1: nothing is a stem.
   double least_share = 1.0 / 3;
   int least_views = 3;
 };
+
+inline void describe(Described& to, StemOptions& o) {
+  to.affects(Stage::kMesh);
+  to.number(
+      "least_share", &o.least_share, at_least(0), "",
+      "share of the views that see a place in which it must fall beside a line; above 1: nothing "
+      "is a stem");
+  to.number("least_views", &o.least_views, at_least(1), "",
+            "views in which a place must fall beside a line");
+}
 
 /// Moves the vertices of parts that show as lines in so many views to where these lines say: the
 /// middle of a stem is the point nearest to the planes through the cameras and the lines, in

@@ -7,21 +7,30 @@
 #include "carving/hull.h"
 #include "core/box.h"
 #include "core/camera.h"
+#include "core/describe.h"
 #include "core/progress.h"
 
 namespace photohull::carving {
 
 struct MissingOptions {
-  /// Share of the views that may leave a place out and it is taken all the same, [0, 0.5].
   double most_missing = 0.34;
-  /// Views in which the place must fall on foreground that no hull explains, at least, and their
-  /// share of the views that have it on their image.
   int least_support = 3;
-  double support_share = 0.15;
-  /// Pixels beside an outline at which a view leaves a place out altogether; nearer ones count in
-  /// part.
-  double full_miss = 2;
+  double support_share = 0.15, full_miss = 2;
 };
+
+inline void describe(Described& to, MissingOptions& o) {
+  to.affects(Stage::kHull);
+  to.number("most_missing", &o.most_missing, from_to(0, 0.5), "",
+            "share of the views that may leave a place out and it is taken all the same");
+  to.number("least_support", &o.least_support, at_least(1), "",
+            "views in which a place must fall on foreground that no hull explains");
+  to.number("support_share", &o.support_share, from_to(0, 1), "",
+            "share of the views that have a place on their image in which it must fall on "
+            "foreground that no hull explains");
+  to.number("full_miss", &o.full_miss, from_to(0.5, 100), "pixels",
+            "distance beside an outline at which a view leaves a place out altogether; nearer "
+            "ones count in part");
+}
 
 /// A ball that belongs to the object. World units.
 struct MissingPart {

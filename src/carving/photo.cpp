@@ -318,24 +318,6 @@ SparseVolume carve(gpu::Context& context, const SparseVolume& hull, Resampling r
 
 }  // namespace
 
-void PhotoOptions::validate() const {
-  const auto require = [](bool ok, const char* what) {
-    if (!ok) throw UsageError(what);
-  };
-  require(keep_score > 0 && keep_score < 1, "keep_score must lie in (0, 1)");
-  require(better_by >= 0 && better_by <= 1, "better_by must lie in [0, 1]");
-  require(min_views >= 2, "min_views must be at least 2");
-  require(noise_sigma > 0 && std::isfinite(noise_sigma), "noise_sigma must be positive");
-  require(min_texture >= 0, "min_texture must not be negative");
-  require(supersample >= 1 && supersample <= projtex::kMaxSupersample,
-          "supersample must be 1 to 8");
-  require(search_radius >= 0 && search_radius <= kMaxSearchRadius,
-          "search_radius must be 0 to 4 pixels");
-  require(depth_bias >= 0, "depth_bias must not be negative");
-  require(max_path >= 1, "max_path must be at least 1");
-  require(max_rounds >= 1, "max_rounds must be at least 1");
-}
-
 SparseVolume carve_photo(gpu::Context& context, const SparseVolume& hull,
                          const projtex::ImageSet& images, std::span<const Camera> cameras,
                          const PhotoOptions& options, Progress& progress, PhotoReport* report) {

@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <span>
 
+#include "carving/search_disc.h"
 #include "carving/statistic.h"
+#include "core/describe.h"
 #include "core/grid.h"
 #include "core/progress.h"
 #include "gpu/context.h"
@@ -23,36 +25,48 @@ enum class PhotoMethod {
 
 struct PhotoOptions {
   PhotoMethod method = PhotoMethod::kSpaceCarving;
-  /// What decides whether cameras agree on a voxel.
+  /// What decides whether cameras agree on a voxel, and who sees it.
   Statistic statistic = Statistic::kZncc;
-  /// Score in (0, 1) from which a voxel counts as consistent.
-  double keep_score = 0.7;
-  /// A voxel is carved only if one behind it correlates better by this much. In [0, 1].
-  double better_by = 0.2;
-  /// Cameras that must see a voxel before its consistency means anything (>= 2).
-  int min_views = 3;
-  /// Standard deviation of the images' noise, in square-root-encoded units of full scale (> 0).
-  double noise_sigma = 0.01;
-  /// Texture below this many noise standard deviations tells nothing (>= 0).
-  double min_texture = 1.5;
-  /// n x n samples a voxel on top of the sampler's own (1 to projtex::kMaxSupersample).
-  int supersample = 1;
-  /// r-consistency [Kutulakos00]: pixels around a voxel's projection within which each view may
-  /// show it, in [0, kMaxSearchRadius]; 0: at its projection only.
-  double search_radius = 0;
-  /// Reference planes through the voxels' front faces instead of their centres.
-  bool front_face = false;
-  /// Who sees a voxel.
   visibility::SweepTest visibility = visibility::kDefaultSweepTest;
-  /// Constant bias of the visibility test, voxels (>= 0).
+  double keep_score = 0.7, better_by = 0.2;
+  int min_views = 3;
+  double noise_sigma = 0.01, min_texture = 1.5;
+  int supersample = 1;
+  double search_radius = 0;
+  bool front_face = false;
   double depth_bias = 2.5;
-  /// Layers behind an inconsistent voxel that are searched for a better explanation (>= 1).
-  int max_path = 64;
-  /// Rounds of six sweeps at most (>= 1).
-  int max_rounds = 4;
+  int max_path = 64, max_rounds = 4;
 
   void validate() const;  ///< throws UsageError naming the field
 };
+
+inline void describe(Described& to, PhotoOptions& o) {
+  to.affects(Stage::kSurface);
+  to.number("keep_score", &o.keep_score, Range{0, 1, true, true}, "",
+            "score from which a voxel counts as consistent");
+  to.number("better_by", &o.better_by, from_to(0, 1), "",
+            "lead by which a voxel behind an inconsistent one must correlate for that to go");
+  to.number("min_views", &o.min_views, at_least(2), "",
+            "cameras that must see a voxel before its consistency means anything");
+  to.number("noise_sigma", &o.noise_sigma, above(0), "",
+            "standard deviation of the images' noise, square roots of linear light; measured "
+            "where it is not given");
+  to.number("min_texture", &o.min_texture, at_least(0), "",
+            "texture, in standard deviations of the noise, below which it tells nothing");
+  to.number("supersample", &o.supersample, from_to(1, projtex::kMaxSupersample), "",
+            "n x n samples a voxel on top of the sampler's own");
+  to.number("search_radius", &o.search_radius, from_to(0, kMaxSearchRadius), "pixels",
+            "distance from a voxel's projection within which each view may show it [Kutulakos00]");
+  to.flag("front_face", &o.front_face,
+          "reference planes through the voxels' front faces instead of their centres");
+  to.number("depth_bias", &o.depth_bias, at_least(0), "voxels",
+            "distance behind a depth map at which a voxel counts as seen all the same");
+  to.number("max_path", &o.max_path, at_least(1), "layers",
+            "depth behind an inconsistent voxel that is searched for a better explanation");
+  to.number("max_rounds", &o.max_rounds, at_least(1), "", "rounds of six sweeps, at most");
+}
+
+inline void PhotoOptions::validate() const { check_described(*this); }
 
 struct PhotoReport {
   int sweeps = 0;

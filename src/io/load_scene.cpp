@@ -15,6 +15,7 @@
 #include "io/spread_views.h"
 #include "io/text_file.h"
 #include "io/usable_views.h"
+#include "io/write_scene.h"
 
 namespace photohull::io {
 namespace fs = std::filesystem;
@@ -189,29 +190,84 @@ RawScene read_calibrated(const fs::path& path, const CalibratedImages& images) {
   return read_calibration(path, images);
 }
 
+constexpr const char* kPixelCenters = "0, 0.5 or 1";
+
+/// Where masks come from, by a word, or their folder.
+Words mask_words(LoadSceneOptions& o) {
+  static constexpr std::pair<MaskSource, const char*> kSources[] = {
+      {MaskSource::kAuto, "auto"},
+      {MaskSource::kBackground, "background"},
+      {MaskSource::kNone, "none"}};
+  return {[&o] {
+            for (const auto& [source, word] : kSources)
+              if (o.masks == source) return std::string(word);
+            return o.mask_directory.string();
+          },
+          [&o](const std::string& text) {
+            o.masks = MaskSource::kDirectory;
+            for (const auto& [source, word] : kSources)
+              if (text == word) o.masks = source;
+            o.mask_directory = o.masks == MaskSource::kDirectory ? text : "";
+            return true;
+          }};
+}
+
 }  // namespace
 
 void LoadSceneOptions::validate() const {
   parse_spread(views);
+  const std::string pixel = flag_of("pixel_center"), given = flag_of("masks"),
+                    plates = flag_of("background");
   if (pixel_center && *pixel_center != 0.0 && *pixel_center != 0.5 && *pixel_center != 1.0)
-    throw UsageError(concat("--pixel-center ", *pixel_center, ": expected 0, 0.5 or 1"));
+    throw UsageError(concat(pixel, " ", *pixel_center, ": expected ", kPixelCenters));
   if (masks == MaskSource::kDirectory && mask_directory.empty())
-    throw UsageError(
-        "--masks is empty: expected auto, background, none or the folder that holds the masks");
+    throw UsageError(concat(
+        given, " is empty: expected auto, background, none or the folder that holds the masks"));
   if (!background.empty() && masks == MaskSource::kNone)
-    throw UsageError("--background and --masks none exclude each other: give one");
+    throw UsageError(concat(plates, " and ", given, " none exclude each other: give one"));
   if (!background.empty() && masks == MaskSource::kDirectory)
-    throw UsageError("--background and a folder of --masks exclude each other: give one");
+    throw UsageError(concat(plates, " and a folder of ", given, " exclude each other: give one"));
   if (!images.empty() && calibrated)
     throw UsageError("the photographs of a calibration are given once");
   if (!box) return;
   try {
     Box sorted = *box;
     sort_corners(sorted);
-    check_box(sorted, "--box");
+    check_box(sorted, flag_of("box"));
   } catch (const Error& failure) {
     throw UsageError(failure.what());
   }
+}
+
+void describe(Described& to, LoadSceneOptions& o) {
+  to.text("views", &o.views,
+          concat("views to use, e.g. \"0-10,15,img_*.png\"; spread:N (N that show the object from "
+                 "all sides) or all (default: all; to reconstruct, spread:",
+                 kEnoughViews, " where there are more)"))
+      .if_empty = "write e.g. 0-10,15";
+  to.text("hold_out", &o.hold_out,
+          "views to leave out of these, a list of the same kind; 'photohull evaluate --photos' "
+          "judges by them")
+      .if_empty = "write e.g. 0,8,16";
+  to.choice("format", &o.format, scene_formats(), "how the scene is read (default: detected)");
+  to.text("masks", mask_words(o),
+          "auto (files, alpha, else a background model), background (always that), none, or a "
+          "folder of masks")
+      .always = true;
+  to.text("background", &o.background,
+          "masks from photographs without the object: a file for a camera that stands still, or a "
+          "folder with one for every view")
+      .if_empty = "give a photograph without the object, or a folder";
+  to.text("images", &o.images,
+          "folder of the photographs, where they are not where the scene has them")
+      .if_empty = "give a folder of photographs";
+  to.number("pixel_center", &o.pixel_center, from_to(0, 1), "pixels",
+            "coordinate of the top-left pixel's centre in the scene file (default: the format's)")
+      .expects = kPixelCenters;
+  to.flag("strict", &o.strict,
+          "refuse scenes whose photographs are not all there, readable and of their cameras' "
+          "shape, and folders of masks that lack some (default: such photographs are left out "
+          "while two of three remain, such masks done without)");
 }
 
 Scene load_scene(const fs::path& path, const LoadSceneOptions& options) {

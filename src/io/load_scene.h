@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/describe.h"
 #include "core/scene.h"
 
 namespace photohull::io {
@@ -74,6 +75,9 @@ struct LoadSceneOptions {
   /// Throws UsageError naming the field and its legal values.
   void validate() const;
 };
+
+/// Those of them that a command line has, but for the box (pipeline/complete_box.h).
+void describe(Described& to, LoadSceneOptions& options);
 
 /// What `most_views` is for commands that reconstruct: more cost time and add nothing, as measured
 /// in docs/benchmarks.md, "How many views".

@@ -1,6 +1,7 @@
 #include "pipeline/complete_box.h"
 
 #include <algorithm>
+#include <sstream>
 #include <utility>
 
 #include "calib/feature_tracks.h"
@@ -12,6 +13,8 @@
 
 namespace photohull::pipeline {
 namespace {
+
+constexpr const char* kFindBox = "auto";
 
 constexpr int kLongestSide = 800;       // pixels of reduced photographs
 constexpr std::size_t kMostViews = 60;  // that are looked at: a few seconds' work
@@ -86,12 +89,60 @@ FoundBox find_in_photographs(MaskPolicy masks, const Scene& scene, Progress& pro
   return find_box({prepared.views, were_given(prepared), listed_points(scene, kept)}, progress);
 }
 
+Box parse_box(const std::string& text) {
+  std::string spaced = text;
+  std::replace(spaced.begin(), spaced.end(), ',', ' ');
+  std::istringstream in(spaced);
+  double v[6];
+  for (double& x : v)
+    if (!(in >> x))
+      throw UsageError(concat(flag_of("box"),
+                              ": expected auto or six numbers \"x0 y0 z0 x1 y1 z1\", found '", text,
+                              "'"));
+  std::string rest;
+  if (in >> rest)
+    throw UsageError(concat(flag_of("box"), ": '", rest, "' follows the six numbers"));
+  return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};  // swapped corners are told with the scene
+}
+
+Words box_words(BoxOptions& o, std::optional<Box>& given) {
+  return {[&o, &given]() -> std::string {
+            if (o.find) return kFindBox;
+            if (!given) return "";
+            const auto& [low, high] = *given;
+            std::ostringstream out;
+            out.precision(9);
+            out << low.x << ' ' << low.y << ' ' << low.z << ' ' << high.x << ' ' << high.y << ' '
+                << high.z;
+            return out.str();
+          },
+          [&o, &given](const std::string& text) {
+            o.find = text == kFindBox;
+            given.reset();
+            if (!o.find) given = parse_box(text);
+            return true;
+          }};
+}
+
 }  // namespace
 
 void BoxOptions::validate() const {
-  if (!(scale >= kLeastScale && scale <= kMostScale))
-    throw UsageError(concat("--box-scale ", scale, ": expected a factor from ", kLeastScale, " to ",
-                            kMostScale));
+  BoxOptions copy = *this;
+  std::optional<Box> none;
+  Described to;
+  describe(to, copy, none);
+  for (const Option& option : to.options()) check_option(option);
+}
+
+void describe(Described& to, BoxOptions& o, std::optional<Box>& given) {
+  to.text("box", box_words(o, given),
+          "region of interest \"x0 y0 z0 x1 y1 z1\" in world units, or auto: found in the "
+          "photographs (default: the scene's own, else auto)");
+  to.number("box_scale", &o.scale, from_to(BoxOptions::kLeastScale, BoxOptions::kMostScale), "",
+            "scales the box, whatever it is, about its middle")
+      .expects = concat("a factor from ", BoxOptions::kLeastScale, " to ", BoxOptions::kMostScale);
+  to.flag("box_exact", &o.exact,
+          "take the box as it is: not made smaller where the object is, and no surface beyond it");
 }
 
 bool looks_for_box(const BoxOptions& options, const Scene& scene) {

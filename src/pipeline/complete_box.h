@@ -6,6 +6,7 @@
 
 #include "calib/prepare_views.h"
 #include "calib/scene_points.h"
+#include "core/describe.h"
 #include "core/progress.h"
 #include "core/scene.h"
 
@@ -13,14 +14,16 @@ namespace photohull::pipeline {
 
 struct BoxOptions {
   static constexpr double kLeastScale = 0.05, kMostScale = 20;
-  bool find = false;  ///< even where the scene or --box gives one
-  double scale = 1;   ///< of whatever box there is, about its middle, kLeastScale to kMostScale
-  bool exact =
-      false;  ///< neither made smaller, where it is oversized, nor is surface let out of it
+  bool find = false;  ///< even where the scene or the user gives one
+  double scale = 1;
+  bool exact = false;
 
   /// Throws UsageError naming the option.
   void validate() const;
 };
+
+/// `given`: the box that the user gives (io::LoadSceneOptions).
+void describe(Described& to, BoxOptions& options, std::optional<Box>& given);
 
 struct BoxFindings {
   bool found = false;              ///< by the photographs, not given

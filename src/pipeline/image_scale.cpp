@@ -47,7 +47,6 @@ bool large_enough(const Intrinsics& k, double scale) {
 }  // namespace
 
 std::optional<double> parse_image_scale(const std::string& text) {
-  if (text == "auto") return std::nullopt;
   char* end = nullptr;
   double value = std::strtod(text.c_str(), &end);
   bool whole = end != text.c_str();
@@ -56,9 +55,7 @@ std::optional<double> parse_image_scale(const std::string& text) {
     value /= std::strtod(divisor, &end);
     whole = end != divisor;
   }
-  if (!whole || *end != 0 || !(value > 0 && value <= 1))
-    throw UsageError(concat("--image-scale ", text,
-                            ": expected auto, or a scale above 0 and up to 1, such as 1/4 or 0.3"));
+  if (!whole || *end != 0 || !(value > 0 && value <= 1)) return std::nullopt;
   return value;
 }
 

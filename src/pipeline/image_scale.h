@@ -16,7 +16,7 @@ namespace photohull::pipeline {
 /// docs/limits.md has the comparison that it comes from.
 inline constexpr double kPixelsPerVoxel = 3;
 
-/// Reads "auto" (nothing), "1/4" or "0.25". Throws UsageError for what is not in (0, 1].
+/// Reads "1/4" or "0.25"; nothing for what is not in (0, 1].
 std::optional<double> parse_image_scale(const std::string& text);
 
 /// "1", "1/8" or "0.3".

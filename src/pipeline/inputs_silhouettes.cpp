@@ -198,8 +198,7 @@ std::vector<carving::Silhouette> Inputs::silhouettes_of_views() const {
 
 void Inputs::explain_foreground() {
   if (options_.views_may_miss || !any_mask()) return;
-  carving::MissingOptions missing;
-  tune(options_.tune, missing);
+  const carving::MissingOptions missing = tuned(options_).missing;
   const carving::MissingParts found =
       carving::find_missing_parts(*scene.box, cameras, silhouettes_of_views(), missing, &progress_);
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {

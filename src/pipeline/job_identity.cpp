@@ -6,10 +6,14 @@
 #include <iomanip>
 #include <sstream>
 
+#include "pipeline/tuning.h"
+
 namespace photohull::pipeline {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr int kDigits = 17;  // that tell any two numbers apart
 
 /// Size and time of a file's last change; nothing of a file that is not there.
 void add_file(const fs::path& path, std::ostream& out) {
@@ -33,24 +37,24 @@ void add_camera(const SourceView& view, std::ostream& out) {
   out << '\n';
 }
 
+/// All that affect what refinement comes to.
+void add_options(ReconstructOptions options, std::ostream& out) {
+  options.method = options.effective_method();
+  options.tune = assignments_until(Stage::kSurface, options);
+  Described described;
+  describe(described, options);
+  for (const Option& option : described.options())
+    if (option.from <= Stage::kSurface)
+      out << option.name << ' ' << std::quoted(text_of(option, kDigits)) << '\n';
+}
+
 }  // namespace
 
 std::string job_identity(const ReconstructOptions& options, const Scene& scene,
                          const GridSpec& grid, const std::string& device) {
   std::ostringstream text;
-  text << std::setprecision(17) << PHOTOHULL_VERSION << '\n'
-       << device << '\n'
-       << to_string(options.quality) << ' ' << to_string(options.effective_method()) << ' '
-       << int(options.load.masks) << ' ' << to_string(options.photometric) << '\n';
-  if (options.surroundings != Surroundings::kAuto)
-    text << "surroundings " << to_string(options.surroundings) << '\n';
-  if (options.keep_mask_holes) text << "mask holes\n";
-  if (options.views_may_miss) text << "views may miss " << *options.views_may_miss << '\n';
-  if (options.box.exact) text << "box exact\n";
-  if (options.keep_views) text << "keep views\n";
-  if (options.noise) text << "noise " << *options.noise << '\n';
-  if (options.mask_offset) text << "mask offset " << *options.mask_offset << '\n';
-  for (const std::string& tuned : options.tune) text << std::quoted(tuned) << '\n';
+  text << std::setprecision(kDigits) << PHOTOHULL_VERSION << '\n' << device << '\n';
+  add_options(options, text);
   text << grid.voxel_size << ' ' << grid.origin.x << ' ' << grid.origin.y << ' ' << grid.origin.z
        << ' ' << grid.bricks.x << ' ' << grid.bricks.y << ' ' << grid.bricks.z << '\n';
   for (const glm::dvec3& corner : {scene.box->min, scene.box->max})

@@ -61,7 +61,6 @@ std::optional<std::int64_t> left_by_groups(const fs::path& mount, fs::path path,
 }  // namespace
 
 std::optional<std::int64_t> parse_max_memory(const std::string& text) {
-  if (text == "auto") return std::nullopt;
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
   const std::string unit = end;
@@ -70,9 +69,7 @@ std::optional<std::int64_t> parse_max_memory(const std::string& text) {
   const bool known = end != text.c_str() && power != std::string::npos &&
                      (unit.size() == 1 || unit.substr(1) == "iB" || unit.substr(1) == "B");
   const double bytes = known ? std::ldexp(value, 10 * (int(power) + 1)) : 0;
-  if (!(bytes >= 1 && bytes < 9e18))
-    throw UsageError(concat("--max-memory ", text,
-                            ": expected auto, or a size with its unit such as 512M or 2G"));
+  if (!(bytes >= 1 && bytes < 9e18)) return std::nullopt;
   return std::int64_t(bytes);
 }
 

@@ -8,8 +8,7 @@
 
 namespace photohull::pipeline {
 
-/// Reads "auto" (nothing), or a size such as 512M, 1.5GiB or 2G (K, M, G and T are powers of 1024).
-/// Throws UsageError naming --max-memory.
+/// Reads a size such as 512M, 1.5GiB or 2G (K, M, G and T are powers of 1024); nothing for others.
 std::optional<std::int64_t> parse_max_memory(const std::string& text);
 
 /// Bytes that this process can still take without swapping or being killed: what the kernel calls

@@ -202,14 +202,12 @@ class Job {
 
   /// Stems that are thinner than voxels get their width from the masks.
   void fit_stems(TriMesh& mesh) {
-    carving::StemOptions stems;
-    tune(options_.tune, stems);
     std::vector<carving::StemView> views;
     for (std::size_t i = 0; i < in_.views.size(); ++i)
       if (!in_.views[i].mask.empty())
         views.push_back({in_.cameras[i], &in_.views[i].mask, &in_.lines[i]});
     report_.thin.stem_vertices =
-        std::int64_t(carving::fit_stems(views, in_.grid.voxel_size, mesh, stems));
+        std::int64_t(carving::fit_stems(views, in_.grid.voxel_size, mesh, tuned(options_).stems));
   }
 
   void colour(TriMesh& mesh, ResultFiles& files) {
@@ -327,7 +325,8 @@ class Job {
       in_.warn(concat("volume.vdb counts in ", vdb_unit(in_.grid.voxel_size),
                       " scene units (its metadata scene_unit): OpenVDB has no voxels as small as ",
                       in_.grid.voxel_size));
-    write_vdb(files.open("volume.vdb"), volume, attributes, {{"photohull_options", option_line()}});
+    write_vdb(files.open("volume.vdb"), volume, attributes,
+              {{"photohull_options", option_line(options_)}});
     progress_.check_cancelled();
     write_ply(files.open("mesh.ply"), mesh);
   }
@@ -342,14 +341,6 @@ class Job {
   void write_preview(const TriMesh& mesh, ResultFiles& files) {
     const PreviewImage preview = render_preview(*context_, mesh, in_.views);
     io::write_png(files.open("preview.png"), preview.width, preview.height, 3, preview.rgb);
-  }
-
-  /// Without what changes no byte of the result.
-  std::string option_line() const {
-    std::string line;
-    for (const auto& [name, value] : report_.options)
-      if (name != "threads") line += (line.empty() ? "" : " ") + name + "=" + value;
-    return line;
   }
 
   void finish(const SparseVolume& volume, const TriMesh& mesh, double wall_seconds) {

@@ -47,59 +47,39 @@ struct MeshError {
   bool world_units = false;  ///< else voxels
 };
 
-/// Reads "0.25" (voxels) or "0.002u" (world units). Throws UsageError.
-MeshError parse_mesh_error(const std::string& text);
-
-/// Reads "auto" (nothing) or a count of views. Throws UsageError.
-std::optional<int> parse_views_may_miss(const std::string& text);
-
-/// Reads "auto" (nothing) or pixels. Throws UsageError.
-std::optional<double> parse_mask_offset(const std::string& text);
-
+/// What each is, with its unit and legal values, describe() tells.
 struct ReconstructOptions {
   std::filesystem::path scene;   ///< folder or file
   std::filesystem::path output;  ///< folder; made when it does not exist
   io::LoadSceneOptions load;
   BoxOptions box;
-  std::optional<int> resolution;     ///< voxels along the box's longest side, >= 2
-  std::optional<double> voxel_size;  ///< world units, > 0; excludes `resolution`
-  /// kFixed needs one of the two, and a box that the scene or the user gives.
+  std::optional<int> resolution;
+  std::optional<double> voxel_size;
   Lattice lattice = Lattice::kFit;
   Quality quality = Quality::kNormal;
-  std::optional<Method> method;  ///< default: hull for draft, refine otherwise
-  /// Default: off for draft; else kAuto where masks' outlines disagree (calib/refine_cameras.h).
-  std::optional<RefineCameras> refine_cameras;
+  std::optional<Method> method;
+  std::optional<RefineCameras> refine_cameras;  ///< by default see calib/refine_cameras.h
   Photometric photometric = Photometric::kAuto;
-  /// Pixels by which outlines lie outside the masks'; nothing: measured (calib/mask_bias.h).
-  std::optional<double> mask_offset;
-  /// Silhouettes that may leave a point out and it stands all the same, 0 to
-  /// carving::HullOptions::kMostMissing; nothing: as many as carving/missing_parts.h takes, and
-  /// only where what masks show would be missing otherwise.
-  std::optional<int> views_may_miss;
-  bool keep_mask_holes = false;  ///< else calib/torn_masks.h mends masks that were given
-  /// Of the photographs, standard deviation in 8-bit codes, 0 to 255; nothing: measured
-  /// (calib/noise.h).
-  std::optional<double> noise;
-  bool keep_views = false;  ///< use views that disagree with the others too
+  std::optional<double> mask_offset;  ///< nothing: measured (calib/mask_bias.h)
+  std::optional<int> views_may_miss;  ///< nothing: by evidence (carving/missing_parts.h)
+  bool keep_mask_holes = false;       ///< else they are mended (calib/torn_masks.h)
+  std::optional<double> noise;        ///< nothing: measured (calib/noise.h)
+  bool keep_views = false;
   MeshError mesh_error;
   Unseen unseen = Unseen::kAuto;
-  Surroundings surroundings = Surroundings::kOff;  ///< on: --method refine only
-  /// How the sweep resamples photographs and what decides there; voxel coloring and space carving
-  /// only.
+  Surroundings surroundings = Surroundings::kOff;
   std::optional<projtex::Sampler> sampler;
-  std::optional<int> supersample;  ///< n x n samples a voxel, 1 to projtex::kMaxSupersample
+  std::optional<int> supersample;
   std::optional<carving::Statistic> consistency;
   std::optional<visibility::SweepTest> visibility;
-  std::optional<double> r_consistency;  ///< pixels, 0 to carving::kMaxSearchRadius
-  bool fresh = false;     ///< do not go on from where an interrupted run of the same job came to
-  bool evidence = false;  ///< write evidence.ply too: what confidence is computed from
-  /// At which photographs are read, in (0, 1]; nothing: as the voxels need it
-  /// (pipeline/image_scale.h).
-  std::optional<double> image_scale;
-  std::optional<std::int64_t> max_memory;  ///< bytes; nothing: default_max_memory()
-  std::string device = "auto";             ///< auto, software or an index
-  int threads = 0;                         ///< 0: one a core
-  std::vector<std::string> tune;           ///< NAME=VALUE, see pipeline/tuning.h
+  std::optional<double> r_consistency;
+  bool fresh = false;
+  bool evidence = false;
+  std::optional<double> image_scale;       ///< nothing: as the voxels need it (image_scale.h)
+  std::optional<std::int64_t> max_memory;  ///< nothing: default_max_memory()
+  std::string device = "auto";
+  int threads = 0;
+  std::vector<std::string> tune;  ///< see pipeline/tuning.h
 
   /// Throws UsageError naming the option.
   void validate() const;
@@ -108,10 +88,17 @@ struct ReconstructOptions {
   bool box_stands() const { return box.exact || lattice == Lattice::kFixed; }
 };
 
+/// All but scene and output.
+void describe(Described& to, ReconstructOptions& options);
+
 using NamedValues = std::vector<std::pair<std::string, std::string>>;
 
-/// The options as they take effect, but for scene and output.
+/// The options as they take effect: those that are not at their defaults, and those that the report
+/// always has. Without scene and output.
 NamedValues named_options(const ReconstructOptions& options);
+
+/// The same of those that change the results, in one line.
+std::string option_line(const ReconstructOptions& options);
 
 /// Voxel size in pixels' footprints when neither resolution nor voxel size is given. Outlines are
 /// known to a part of a pixel; without silhouettes depths of patches are all there is, which

@@ -1,14 +1,16 @@
 // What a job's options mean, and which make sense.
-#include <charconv>
+#include <array>
 #include <cmath>
+#include <cstdlib>
 
 #include "carving/hull.h"
 #include "carving/photo.h"
 #include "carving/search_disc.h"
 #include "core/error.h"
+#include "pipeline/image_scale.h"
+#include "pipeline/memory.h"
 #include "pipeline/reconstruct.h"
 #include "pipeline/tuning.h"
-#include "refine/refine.h"
 
 namespace photohull::pipeline {
 namespace {
@@ -18,61 +20,213 @@ constexpr double kMostNoise = 255;           // 8-bit codes
 
 /// Throws UsageError for options of the plane sweep where there is none.
 void check_sweep_options(const ReconstructOptions& o) {
-  if (o.supersample && (*o.supersample < 1 || *o.supersample > projtex::kMaxSupersample))
-    throw UsageError(
-        concat("--supersample ", *o.supersample, ": expected 1 to ", projtex::kMaxSupersample));
-  if (o.r_consistency && !(*o.r_consistency >= 0 && *o.r_consistency <= carving::kMaxSearchRadius))
-    throw UsageError(concat("--r-consistency ", *o.r_consistency, ": expected 0 to ",
-                            carving::kMaxSearchRadius, " pixels"));
   const Method method = o.effective_method();
   if (method == Method::kVoxelColoring || method == Method::kSpaceCarving) return;
-  const char* given = o.sampler         ? "--sampler"
-                      : o.supersample   ? "--supersample"
-                      : o.consistency   ? "--consistency"
-                      : o.visibility    ? "--visibility"
-                      : o.r_consistency ? "--r-consistency"
+  const char* given = o.sampler         ? "sampler"
+                      : o.supersample   ? "supersample"
+                      : o.consistency   ? "consistency"
+                      : o.visibility    ? "visibility"
+                      : o.r_consistency ? "r_consistency"
                                         : nullptr;
   if (given)
-    throw UsageError(concat(given, ": --method ", to_string(method),
-                            " has no plane sweep; give --method space-carving or voxel-coloring"));
+    throw UsageError(concat(flag_of(given), ": ", flag_of("method"), " ", to_string(method),
+                            " has no plane sweep; give ", flag_of("method"),
+                            " space-carving or voxel-coloring"));
 }
 
-/// Throws UsageError for parameters that the method does not have or take.
-void check_tuning(const std::vector<std::string>& assignments, Method method) {
-  if (method == Method::kRefine) {
-    refine::RefineOptions o;
-    SharpenOptions sharpen;
-    tune(assignments, o, sharpen);
-    o.validate();
-    sharpen.validate();
-  } else if (method != Method::kHull) {
-    carving::PhotoOptions o;
-    tune(assignments, o);
-    o.validate();
-  } else if (!assignments.empty()) {
-    throw UsageError(concat("--tune ", assignments[0], ": the hull has no parameters"));
+/// Throws UsageError for options that exclude each other.
+void check_combinations(const ReconstructOptions& o) {
+  const std::string resolution = flag_of("resolution"), voxel_size = flag_of("voxel_size"),
+                    fixed = flag_of("lattice") + " fixed", box = flag_of("box");
+  if (o.resolution && o.voxel_size)
+    throw UsageError(concat(resolution, " and ", voxel_size, " exclude each other: give one"));
+  if (o.lattice == Lattice::kFixed && !o.resolution && !o.voxel_size)
+    throw UsageError(concat(fixed, ": give ", voxel_size, " or ", resolution,
+                            ", for the voxels of ", flag_of("quality"), " follow the photographs"));
+  if (o.lattice == Lattice::kFixed && o.box.find)
+    throw UsageError(concat(fixed, ": ", box,
+                            " auto follows the photographs; give the box's corners, or leave ", box,
+                            " out where the scene has one"));
+  if (o.surroundings == Surroundings::kOn && o.effective_method() != Method::kRefine)
+    throw UsageError(concat(flag_of("surroundings"), " on: ", flag_of("method"), " ",
+                            to_string(o.effective_method()), " has none; they are made by ",
+                            flag_of("method"), " refine"));
+  check_sweep_options(o);
+}
+
+/// Voxels (0.25) or world units (0.002u).
+std::optional<MeshError> read_mesh_error(const std::string& text) {
+  MeshError error;
+  char* end = nullptr;
+  error.value = std::strtod(text.c_str(), &end);
+  error.world_units = end != text.c_str() && *end == 'u';
+  const bool whole = end != text.c_str() && *(end + (error.world_units ? 1 : 0)) == 0;
+  if (!whole || !std::isfinite(error.value) || error.value < 0) return std::nullopt;
+  return error;
+}
+
+Words mesh_error_words(MeshError& error) {
+  return {[&error] {
+            return text_of({.name = "", .place = &error.value}) + (error.world_units ? "u" : "");
+          },
+          [&error](const std::string& text) {
+            const std::optional<MeshError> read = read_mesh_error(text);
+            if (read) error = *read;
+            return read.has_value();
+          }};
+}
+
+Words mask_hole_words(bool& keep) {
+  return {[&keep] { return std::string(keep ? "keep" : "mend"); },
+          [&keep](const std::string& text) {
+            if (text != "keep" && text != "mend") return false;
+            keep = text == "keep";
+            return true;
+          }};
+}
+
+void describe_voxels(Described& to, ReconstructOptions& o) {
+  to.choice("quality", &o.quality, std::array{Quality::kDraft, Quality::kNormal, Quality::kHigh},
+            "voxel size from the images' pixels, and how much work is done")
+      .always = true;
+  to.choice(
+        "method", &o.method,
+        std::array{Method::kHull, Method::kVoxelColoring, Method::kSpaceCarving, Method::kRefine},
+        "how space is carved (default: hull for draft, else refine)")
+      .always = true;
+  to.number("resolution", &o.resolution, at_least(2), "voxels",
+            "voxels along the box's longest side");
+  to.number("voxel_size", &o.voxel_size, above(0), "world units",
+            "voxel size in world units; excludes the resolution");
+  describe(to, o.box, o.load.box);
+  to.choice("lattice", &o.lattice, std::array{Lattice::kFit, Lattice::kFixed},
+            "fit (voxels centred on the box) or fixed: they begin in the box's lower corner, and "
+            "box and voxel size alone say where they are, for results that are to be compared or "
+            "follow each other");
+}
+
+void describe_outcome(Described& to, ReconstructOptions& o) {
+  to.choice("refine_cameras", &o.refine_cameras,
+            std::array{RefineCameras::kOff, RefineCameras::kAuto, RefineCameras::kPoses,
+                       RefineCameras::kPosesAndIntrinsics},
+            "cameras made to agree with the photographs first, auto where it pays (default: off "
+            "for draft, else auto where masks' outlines show that cameras are wrong)");
+  to.affects(Stage::kSurface);
+  to.choice("photometric", &o.photometric,
+            std::array{Photometric::kOff, Photometric::kAuto, Photometric::kOn},
+            "gains, white balance and vignetting of the photographs made alike, for colours and "
+            "confidence; auto where gains differ by more than the noise of their estimate, and "
+            "correcting them pays")
+      .always = true;
+  to.affects(Stage::kMesh);
+  Option& error = to.text("mesh_error", mesh_error_words(o.mesh_error),
+                          "fewer triangles: how far mesh.ply may be from the uniform mesh (0: "
+                          "uniform)");
+  error.expects = "0 or a positive number, of voxels (0.25) or, with a u, of world units (0.002u)";
+  error.always = true;
+  to.choice("unseen", &o.unseen, std::array{Unseen::kAuto, Unseen::kOpen, Unseen::kClosed},
+            "surface that no camera sees: closed, open (left out; without masks what is doubtful, "
+            "too), or auto: closed where there are masks")
+      .always = true;
+  to.affects(Stage::kViews);
+  to.choice("surroundings", &o.surroundings,
+            std::array{Surroundings::kAuto, Surroundings::kOn, Surroundings::kOff},
+            "what surrounds the box, on coarser grids: on (with the method refine only), off, or "
+            "auto: where the box was found, and fewer than half of the photographs have masks")
+      .always = true;
+}
+
+void describe_masks(Described& to, ReconstructOptions& o) {
+  Option& offset = to.number("mask_offset", &o.mask_offset,
+                             from_to(-kFarthestMaskOffset, kFarthestMaskOffset), "pixels",
+                             "pixels by which the object's outline lies outside the masks' "
+                             "(negative: inside); auto: measured on the photographs");
+  offset.absent = "auto";
+  offset.always = true;
+  Option& miss = to.number(
+      "views_may_miss", &o.views_may_miss, from_to(0, carving::HullOptions::kMostMissing), "views",
+      "silhouettes that may leave a point out and it stands all the same; auto: up to a third of "
+      "the views, and only where masks show what would be missing otherwise");
+  miss.absent = "auto";
+  miss.expects =
+      concat("auto, or a number of views from 0 to ", carving::HullOptions::kMostMissing);
+  miss.always = true;
+  to.affects(Stage::kViews);
+  to.text("mask_holes", mask_hole_words(o.keep_mask_holes),
+          "mend holes and bites of given masks where the photograph shows the object's colours, or "
+          "keep them")
+      .expects = "mend or keep";
+  to.number("noise", &o.noise, from_to(0, kMostNoise), "8-bit codes",
+            "standard deviation of the photographs' noise in 8-bit codes (default: measured)");
+  to.affects(Stage::kHull);
+  to.flag("keep_views", &o.keep_views,
+          "use views whose silhouettes disagree with all others' and views that are strongly "
+          "blurred, too");
+}
+
+void describe_sweeps(Described& to, ReconstructOptions& o) {
+  to.choice("sampler", &o.sampler, projtex::kSamplers,
+            concat("sweeps: how photographs are resampled on their planes (default: ",
+                   projtex::to_string(projtex::kDefaultSampler), ")"));
+  to.number("supersample", &o.supersample, from_to(1, projtex::kMaxSupersample), "",
+            "sweeps: N x N samples a voxel (default: 1)");
+  to.choice("consistency", &o.consistency, carving::kStatistics,
+            concat("sweeps: what decides whether views agree on a voxel (default: ",
+                   carving::to_string(carving::PhotoOptions().statistic), ")"));
+  to.choice("visibility", &o.visibility, visibility::kSweepTests,
+            concat("sweeps: how it is known who sees a voxel (default: ",
+                   visibility::to_string(visibility::kDefaultSweepTest), ")"));
+  to.number("r_consistency", &o.r_consistency, from_to(0, carving::kMaxSearchRadius), "pixels",
+            "sweeps: pixels around its projection within which each view may show a voxel: bears "
+            "cameras that are wrong by as much (default: 0)")
+      .expects = concat("0 to ", carving::kMaxSearchRadius, " pixels");
+}
+
+void describe_run(Described& to, ReconstructOptions& o) {
+  Option& scale = to.number("image_scale", &o.image_scale, above(0, 1), "",
+                            "at which photographs are read; auto: what the voxels need, and the "
+                            "memory bears");
+  scale.absent = "auto";
+  scale.expects = "auto, or a scale above 0 and up to 1, such as 1/4 or 0.3";
+  scale.notation = parse_image_scale;
+  scale.always = true;
+  Option& memory =
+      to.number("max_memory", &o.max_memory, at_least(1), "bytes",
+                "memory that the job may take; auto: three quarters of what is available");
+  memory.absent = "auto";
+  memory.expects = "auto, or a size with its unit such as 512M or 2G";
+  memory.notation = parse_max_memory;
+  to.text("tune", &o.tune,
+          "NAME=VALUE: a parameter of the method changed, for experiments (repeatable)");
+  to.affects(Stage::kHull);
+  to.text("device", &o.device, "auto, software, or an index from 'photohull devices'").always =
+      true;
+  to.affects(Stage::kNothing);
+  Option& threads = to.number("threads", &o.threads, at_least(0), "", "threads that compute");
+  threads.zero = "one a core";
+  threads.always = true;
+  to.flag("fresh", &o.fresh,
+          "start anew: else an interrupted refinement of the same job goes on after the last level "
+          "that it finished");
+  to.affects(Stage::kFiles);
+  to.flag("evidence", &o.evidence,
+          "write evidence.ply too, the uniform mesh with what confidence is computed from, and "
+          "missing.png: where the model leaves the masks empty, or without masks explained.png: "
+          "what of a photograph it explains");
+}
+
+/// Those that take effect, in words.
+template <typename Take>
+void for_reported(ReconstructOptions options, const Take& take) {
+  options.method = options.effective_method();
+  ReconstructOptions defaults;
+  Described given, usual;
+  describe(given, options);
+  describe(usual, defaults);
+  for (const Option& option : given.options()) {
+    const std::string text = text_of(option);
+    if (option.always || text != text_of(*usual.find(option.name))) take(option, text);
   }
-}
-
-std::string number(double value) {
-  std::ostringstream out;
-  out.precision(9);
-  out << value;
-  return out.str();
-}
-
-std::string mask_option(const io::LoadSceneOptions& load) {
-  switch (load.masks) {
-    case io::MaskSource::kAuto:
-      return "auto";
-    case io::MaskSource::kBackground:
-      return "background";
-    case io::MaskSource::kNone:
-      return "none";
-    case io::MaskSource::kDirectory:
-      break;
-  }
-  return load.mask_directory.string();
 }
 
 }  // namespace
@@ -129,42 +283,6 @@ const char* to_string(Surroundings surroundings) {
   return "?";
 }
 
-MeshError parse_mesh_error(const std::string& text) {
-  MeshError error;
-  char* end = nullptr;
-  error.value = std::strtod(text.c_str(), &end);
-  error.world_units = end != text.c_str() && *end == 'u';
-  const bool whole = end != text.c_str() && *(end + (error.world_units ? 1 : 0)) == 0;
-  if (!whole || !std::isfinite(error.value) || error.value < 0)
-    throw UsageError(concat("--mesh-error ", text,
-                            ": expected 0 or a positive number, of voxels (0.25) or, with a u, of "
-                            "world units (0.002u)"));
-  return error;
-}
-
-std::optional<int> parse_views_may_miss(const std::string& text) {
-  if (text == "auto") return std::nullopt;
-  int value = 0;
-  const char* end = text.data() + text.size();
-  const auto [last, problem] = std::from_chars(text.data(), end, value);
-  if (problem != std::errc() || last != end || value < 0 ||
-      value > carving::HullOptions::kMostMissing)
-    throw UsageError(concat("--views-may-miss ", text,
-                            ": expected auto, or a number of views from 0 to ",
-                            carving::HullOptions::kMostMissing));
-  return value;
-}
-
-std::optional<double> parse_mask_offset(const std::string& text) {
-  if (text == "auto") return std::nullopt;
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (end == text.c_str() || *end != 0 || !(std::abs(value) <= kFarthestMaskOffset))
-    throw UsageError(concat("--mask-offset ", text, ": expected auto, or pixels from ",
-                            -kFarthestMaskOffset, " to ", kFarthestMaskOffset));
-  return value;
-}
-
 double footprint_factor(Quality quality, bool silhouettes) {
   switch (quality) {
     case Quality::kDraft:
@@ -178,42 +296,34 @@ double footprint_factor(Quality quality, bool silhouettes) {
 }
 
 void ReconstructOptions::validate() const {
+  ReconstructOptions copy = *this;
+  Described described;
+  describe(described, copy);
+  for (const Option& option : described.options()) check_option(option);
   load.validate();
-  box.validate();
-  if (output.empty()) throw UsageError("--out is empty: give a folder for the results");
+  if (output.empty())
+    throw UsageError(concat(flag_of("out"), " is empty: give a folder for the results"));
   const bool index = !device.empty() && device.find_first_not_of("0123456789") == std::string::npos;
   if (device != "auto" && device != "software" && !index)
-    throw UsageError(concat("--device ", device,
+    throw UsageError(concat(flag_of("device"), " ", device,
                             ": expected auto, software or an index of 'photohull devices'"));
-  if (resolution && voxel_size)
-    throw UsageError("--resolution and --voxel-size exclude each other: give one");
-  if (resolution && *resolution < 2)
-    throw UsageError(concat("--resolution ", *resolution, ": at least 2"));
-  if (voxel_size && !(std::isfinite(*voxel_size) && *voxel_size > 0))
-    throw UsageError(concat("--voxel-size ", *voxel_size, ": must be finite and positive"));
-  if (lattice == Lattice::kFixed && !resolution && !voxel_size)
-    throw UsageError(
-        "--lattice fixed: give --voxel-size or --resolution, for the voxels of --quality follow "
-        "the "
-        "photographs");
-  if (lattice == Lattice::kFixed && box.find)
-    throw UsageError(
-        "--lattice fixed: --box auto follows the photographs; give the box's corners, or leave "
-        "--box out where the scene has one");
   if (!(std::isfinite(mesh_error.value) && mesh_error.value >= 0))
-    throw UsageError(concat("--mesh-error ", mesh_error.value, ": must be finite, 0 or more"));
-  if (noise && !(*noise >= 0 && *noise <= kMostNoise))
-    throw UsageError(concat("--noise ", *noise, ": expected 8-bit codes from 0 to ", kMostNoise));
-  if (image_scale && !(*image_scale > 0 && *image_scale <= 1))
-    throw UsageError(concat("--image-scale ", *image_scale, ": expected above 0 and up to 1"));
-  if (max_memory && *max_memory < 1)
-    throw UsageError(concat("--max-memory ", *max_memory, ": expected a positive size"));
-  if (threads < 0) throw UsageError(concat("--threads ", threads, ": 0 (one a core) or more"));
-  if (surroundings == Surroundings::kOn && effective_method() != Method::kRefine)
-    throw UsageError(concat("--surroundings on: --method ", to_string(effective_method()),
-                            " has none; they are made by --method refine"));
-  check_sweep_options(*this);
-  check_tuning(tune, effective_method());
+    throw UsageError(
+        concat(flag_of("mesh_error"), " ", mesh_error.value, ": must be finite, 0 or more"));
+  check_combinations(*this);
+  tuned(*this);
+}
+
+void describe(Described& to, ReconstructOptions& o) {
+  describe_voxels(to, o);
+  describe_outcome(to, o);
+  describe(to, o.load);
+  to.affects(Stage::kHull);
+  describe_masks(to, o);
+  to.affects(Stage::kSurface);
+  describe_sweeps(to, o);
+  to.affects(Stage::kViews);
+  describe_run(to, o);
 }
 
 Method ReconstructOptions::effective_method() const {
@@ -223,43 +333,18 @@ Method ReconstructOptions::effective_method() const {
 
 NamedValues named_options(const ReconstructOptions& options) {
   NamedValues list;
-  list.emplace_back("quality", to_string(options.quality));
-  list.emplace_back("method", to_string(options.effective_method()));
-  if (options.resolution) list.emplace_back("resolution", concat(*options.resolution));
-  if (options.voxel_size) list.emplace_back("voxel_size", number(*options.voxel_size));
-  if (!options.load.views.empty()) list.emplace_back("views", options.load.views);
-  if (!options.load.hold_out.empty()) list.emplace_back("hold_out", options.load.hold_out);
-  if (options.box.find) list.emplace_back("box", "auto");
-  if (options.box.scale != 1) list.emplace_back("box_scale", number(options.box.scale));
-  if (options.box.exact) list.emplace_back("box_exact", "true");
-  if (options.lattice != Lattice::kFit) list.emplace_back("lattice", to_string(options.lattice));
-  if (options.refine_cameras)
-    list.emplace_back("refine_cameras", to_string(*options.refine_cameras));
-  list.emplace_back("photometric", to_string(options.photometric));
-  list.emplace_back("mesh_error",
-                    number(options.mesh_error.value) + (options.mesh_error.world_units ? "u" : ""));
-  list.emplace_back("unseen", to_string(options.unseen));
-  list.emplace_back("surroundings", to_string(options.surroundings));
-  list.emplace_back("masks", mask_option(options.load));
-  list.emplace_back("mask_offset", options.mask_offset ? number(*options.mask_offset) : "auto");
-  list.emplace_back("views_may_miss",
-                    options.views_may_miss ? concat(*options.views_may_miss) : "auto");
-  if (options.keep_mask_holes) list.emplace_back("mask_holes", "keep");
-  if (options.noise) list.emplace_back("noise", number(*options.noise));
-  if (options.keep_views) list.emplace_back("keep_views", "true");
-  if (!options.load.background.empty())
-    list.emplace_back("background", options.load.background.string());
-  if (options.load.pixel_center)
-    list.emplace_back("pixel_center", number(*options.load.pixel_center));
-  list.emplace_back("image_scale", options.image_scale ? number(*options.image_scale) : "auto");
-  if (options.max_memory) list.emplace_back("max_memory", concat(*options.max_memory));
-  std::string tuning;
-  for (const std::string& assignment : options.tune)
-    tuning += (tuning.empty() ? "" : " ") + assignment;
-  if (!tuning.empty()) list.emplace_back("tune", tuning);
-  list.emplace_back("device", options.device);
-  list.emplace_back("threads", concat(options.threads));
+  for_reported(options, [&](const Option& option, const std::string& text) {
+    list.emplace_back(option.name, text);
+  });
   return list;
+}
+
+std::string option_line(const ReconstructOptions& options) {
+  std::string line;
+  for_reported(options, [&](const Option& option, const std::string& text) {
+    if (option.from < Stage::kFiles) line += (line.empty() ? "" : " ") + option.name + "=" + text;
+  });
+  return line;
 }
 
 }  // namespace photohull::pipeline

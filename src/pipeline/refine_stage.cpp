@@ -25,18 +25,22 @@ constexpr double kLeastEvidence = 0.1;  // share of the surface below which a re
 RefineStage::RefineStage(const ReconstructOptions& options, Inputs& inputs, gpu::Context& context,
                          Report& report, Progress& progress)
     : options_(options), in_(inputs), context_(context), report_(report), progress_(progress) {
-  refine_.noise_sigma = report.noise_sigma;
+  Parameters parameters;
+  refine::RefineOptions& refine = parameters.refine;
+  refine.noise_sigma = report.noise_sigma;
   if (options.quality == Quality::kHigh) {
-    refine_.fine_iterations = kHighIterations;
-    refine_.photometric = kHighPasses;
-    refine_.fit.steps = kHighSteps;
+    refine.fine_iterations = kHighIterations;
+    refine.photometric = kHighPasses;
+    refine.fit.steps = kHighSteps;
   }
   if (report.mask_confidence < 1) {
-    refine_.restore.least_views =
-        std::max(refine_.restore.least_views, int(inputs.cameras.size()) / kDoubtingViews);
-    refine_.restore.least_inside = kDoubtfulRim;
+    refine.restore.least_views =
+        std::max(refine.restore.least_views, int(inputs.cameras.size()) / kDoubtingViews);
+    refine.restore.least_inside = kDoubtfulRim;
   }
-  tune(options.tune, refine_, sharpen_);
+  tune(options.tune, Method::kRefine, parameters);
+  refine_ = refine;
+  sharpen_ = parameters.sharpen;
 }
 
 SparseVolume RefineStage::run(HullStage& hull, const projtex::ImageSet& images, bool bounded) {

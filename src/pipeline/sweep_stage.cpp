@@ -19,7 +19,8 @@ SparseVolume sweep(projtex::Sampler sampler, const SparseVolume& hull,
 }
 
 carving::PhotoOptions photo_options(const ReconstructOptions& options, double noise_sigma) {
-  carving::PhotoOptions photo;
+  Parameters parameters;
+  carving::PhotoOptions& photo = parameters.photo;
   photo.method = options.effective_method() == Method::kVoxelColoring
                      ? carving::PhotoMethod::kVoxelColoring
                      : carving::PhotoMethod::kSpaceCarving;
@@ -28,7 +29,7 @@ carving::PhotoOptions photo_options(const ReconstructOptions& options, double no
   photo.search_radius = options.r_consistency.value_or(photo.search_radius);
   photo.statistic = options.consistency.value_or(photo.statistic);
   photo.visibility = options.visibility.value_or(photo.visibility);
-  tune(options.tune, photo);
+  tune(options.tune, options.effective_method(), parameters);
   return photo;
 }
 

@@ -7,21 +7,33 @@
 #include "carving/fit_stems.h"
 #include "carving/missing_parts.h"
 #include "carving/photo.h"
+#include "pipeline/reconstruct.h"
 #include "refine/refine.h"
 #include "volume/sharpen_edges.h"
 
 namespace photohull::pipeline {
 
-/// Each assignment is NAME=VALUE with a field's name (nested ones joined by dots) and a finite
-/// number, whole where the field is (0 or 1 for what is on or off). Throws UsageError naming what
-/// is wrong, with the known names.
-void tune(const std::vector<std::string>& assignments, carving::PhotoOptions& options);
-void tune(const std::vector<std::string>& assignments, refine::RefineOptions& options,
-          SharpenOptions& sharpen);
+/// What can be changed of the stages: of the method's own, and of those that methods share.
+struct Parameters {
+  refine::RefineOptions refine;
+  SharpenOptions sharpen;
+  carving::PhotoOptions photo;
+  carving::MissingOptions missing;
+  carving::StemOptions stems;
+};
 
-/// What all methods have: assignments whose names begin with "missing." or "stems.", which the
-/// others leave alone.
-void tune(const std::vector<std::string>& assignments, carving::MissingOptions& options);
-void tune(const std::vector<std::string>& assignments, carving::StemOptions& options);
+/// Those that a job with this method has. The hull has none.
+void describe(Described& to, Method method, Parameters& parameters);
+
+/// Each assignment is NAME=VALUE with a parameter's name and a finite number, whole where the
+/// parameter is (0 or 1 for what is on or off). Throws UsageError naming what is wrong, with the
+/// known names, or what is out of its range.
+void tune(const std::vector<std::string>& assignments, Method method, Parameters& parameters);
+
+/// The parameters as such a job begins with them.
+Parameters tuned(const ReconstructOptions& options);
+
+/// The assignments that change results of this stage or of earlier ones.
+std::vector<std::string> assignments_until(Stage last, const ReconstructOptions& options);
 
 }  // namespace photohull::pipeline

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/describe.h"
 #include "core/mesh.h"
 #include "refine/match.h"
 #include "refine/surface.h"
@@ -22,23 +23,42 @@ struct Peak {
 };
 
 struct PeakOptions {
-  double least_score = 0.3;  ///< below: no evidence
-  double sure_score = 0.8;   ///< above: full weight
-  double thick = 4;          ///< voxels of body behind a vertex that give full weight
-  double distinct_by = 0.1;  ///< lead over the second peak that gives full weight
+  double least_score = 0.3, sure_score = 0.8, thick = 4, distinct_by = 0.1;
 };
+
+inline void describe(Described& to, PeakOptions& o) {
+  to.number("least_score", &o.least_score, from_to(-1, 1), "",
+            "score of a curve's peak below which it is no evidence");
+  to.number("sure_score", &o.sure_score, from_to(-1, 1), "",
+            "score of a curve's peak from which it has full weight");
+  to.rule(o.least_score < o.sure_score, "least_score", "must lie below", "sure_score");
+  to.number("thick", &o.thick, above(0, 1000), "voxels",
+            "body behind a vertex that gives full weight");
+  to.number("distinct_by", &o.distinct_by, above(0), "",
+            "lead over the second peak that gives full weight");
+}
 
 /// The best interior maximum of each curve, to a fraction of a step by a parabola. What known noise
 /// takes from a true match's correlation (Matches::texture) is made up for.
 std::vector<Peak> find_peaks(const Matches& matches, const PeakOptions& options);
 
 struct RegularizeOptions {
-  double membrane = 2.0;  ///< weight of a difference between neighbours' displacements
-  double fairing = 0.4;   ///< weight of the moved surface's bending otherwise than its neighbours
-  double robust = 1.0;    ///< voxels from the smooth surface at which a peak counts a quarter
-  int reweightings = 3;
-  int iterations = 15;  ///< of Jacobi's method for each reweighting
+  double membrane = 2, fairing = 0.4, robust = 1;
+  int reweightings = 3, iterations = 15;
 };
+
+inline void describe(Described& to, RegularizeOptions& o) {
+  to.number("membrane", &o.membrane, at_least(0), "",
+            "weight of a difference between neighbours' displacements");
+  to.number("fairing", &o.fairing, at_least(0), "",
+            "weight of the moved surface's bending otherwise than its neighbours");
+  to.number("robust", &o.robust, above(0), "voxels",
+            "distance from the smooth surface at which a peak counts a quarter");
+  to.number("reweightings", &o.reweightings, at_least(0), "",
+            "rounds of weighting peaks by how far they are from the smooth surface");
+  to.number("iterations", &o.iterations, at_least(1), "",
+            "iterations of Jacobi's method for each reweighting");
+}
 
 /// Least squares on the surface graph: displacements near the peaks, by their weights, and smooth.
 /// `positions` (voxels) and unit `normals` are the vertices', and `fair` in [0, 1] is the share of

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/describe.h"
 #include "core/grid.h"
 #include "core/mesh.h"
 #include "gpu/context.h"
@@ -16,22 +17,43 @@
 namespace photohull::refine {
 
 struct FitOptions {
-  int steps = 2;                ///< of Gauss and Newton
-  int hold_out = 4;             ///< one surfel in so many leaves a view out; 0: none does
-  double least_spacing = 0.4;   ///< of a patch's taps, voxels
-  double pixel_spacing = 1.0;   ///< of a patch's taps, pixels of the reference view
-  double noise = 0.6;           ///< share of the pixels' variance by noise that samples have
-  double least_score = 0.3;     ///< correlation with the other views below which one has no weight
-  double sure_score = 0.8;      ///< from which it has full weight
-  double slope = 0.05;          ///< standard deviation of the surfels' slopes
-  double largest_offset = 0.5;  ///< voxels; fits that reach it do not count
-  double largest_step = 0.5;    ///< voxels
-  double most_bend = 1.0;       ///< largest curvature that a patch follows, 1 / voxel
-  double sure = 0.1;            ///< standard deviation (voxels) of an offset that weighs 1
-  double most_weight = 4;       ///< of an offset in the regularisation
-  double membrane = 30;         ///< as RegularizeOptions has them, for the fitted offsets
-  double fairing = 3;
+  int steps = 2, hold_out = 4;
+  double least_spacing = 0.4, pixel_spacing = 1, noise = 0.6;
+  double least_score = 0.3, sure_score = 0.8, slope = 0.05;
+  double largest_offset = 0.5, largest_step = 0.5, most_bend = 1;
+  double sure = 0.1, most_weight = 4, membrane = 30, fairing = 3;
 };
+
+inline void describe(Described& to, FitOptions& o) {
+  to.number("steps", &o.steps, from_to(0, 100), "", "steps of Gauss and Newton in a pass");
+  to.number("hold_out", &o.hold_out, at_least(0), "",
+            "one surfel in so many leaves a view out, to tell whether a pass helps; 0: none does");
+  to.number("least_spacing", &o.least_spacing, above(0, 1000), "voxels",
+            "least distance between a patch's taps");
+  to.number("pixel_spacing", &o.pixel_spacing, from_to(0, 1000), "pixels",
+            "least distance between a patch's taps in the reference view");
+  to.number("noise", &o.noise, from_to(0, 1), "",
+            "share of the pixels' variance by noise that samples have");
+  to.number("least_score", &o.least_score, from_to(-1, 1), "",
+            "correlation with the other views below which a view has no weight");
+  to.number("sure_score", &o.sure_score, from_to(-1, 1), "",
+            "correlation with the other views from which a view has full weight");
+  to.rule(o.least_score < o.sure_score, "least_score", "must lie below", "sure_score");
+  to.number("slope", &o.slope, above(0, 1000), "", "standard deviation of the surfels' slopes");
+  to.number("largest_offset", &o.largest_offset, below(0, SparseVolume::kBand), "voxels",
+            "offset of a fit from which on it does not count");
+  to.number("largest_step", &o.largest_step, above(0, 1000), "voxels", "longest step of a fit");
+  to.number("most_bend", &o.most_bend, from_to(0, 1000), "1 / voxel",
+            "largest curvature that a patch follows");
+  to.number("sure", &o.sure, from_to(0, 1000), "voxels",
+            "standard deviation of an offset that weighs 1");
+  to.number("most_weight", &o.most_weight, above(0, 1000), "",
+            "greatest weight of an offset when they are smoothed");
+  to.number("membrane", &o.membrane, at_least(0), "",
+            "what regularize.membrane is, for fitted offsets");
+  to.number("fairing", &o.fairing, at_least(0), "",
+            "what regularize.fairing is, for fitted offsets");
+}
 
 /// Standing of a surface in the views that were held out.
 struct HeldOut {

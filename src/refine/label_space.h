@@ -5,17 +5,26 @@
 #include <span>
 #include <vector>
 
+#include "core/describe.h"
 #include "gpu/context.h"
 
 namespace photohull::refine {
 
 struct LabelOptions {
-  /// Faces of surface that the usual claim of the rays on a voxel outweighs. What is usual depends
-  /// on how many views there are and how sure they are, so that few views are believed as well.
-  double evidence = 24;
-  double unknown = 0.02;  ///< cost of a solid voxel that no ray says anything of
+  double evidence = 24, unknown = 0.02;
   int iterations = 150;
 };
+
+/// What the usual claim of the rays is depends on how many views there are and how sure they are,
+/// so that few views are believed as well.
+inline void describe(Described& to, LabelOptions& o) {
+  to.number("evidence", &o.evidence, above(0, 1000), "",
+            "faces of surface that the usual claim of the rays on a voxel outweighs");
+  to.number("unknown", &o.unknown, from_to(0, 1000), "",
+            "cost of a solid voxel that no ray says anything of");
+  to.number("iterations", &o.iterations, from_to(0, 10000), "",
+            "iterations of the labelling; 0: unknown space is solid");
+}
 
 /// The labels u, 1 solid and 0 free, of the voxels of bricks (8^3 each, x slowest) that minimise
 /// the surface's area plus the sum of `evidence` over what is solid:

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/describe.h"
 #include "core/grid.h"
 #include "gpu/context.h"
 #include "projtex/image_set.h"
@@ -14,11 +15,19 @@
 namespace photohull::refine {
 
 struct LookOptions {
-  double least_score = 0.9;   ///< of a surfel taken for surface, and of a view taken to show it
-  double least_weight = 0.5;  ///< of the surfel's peak: smooth shading agrees anywhere
-  double margin = 2;          ///< voxels above such surface that stay
-  int least_lines = 2;        ///< lines of sight that free a voxel
+  double least_score = 0.9, least_weight = 0.5, margin = 2;
+  int least_lines = 2;
 };
+
+inline void describe(Described& to, LookOptions& o) {
+  to.number("least_score", &o.least_score, from_to(-1, 1), "",
+            "score of a surfel taken for surface, and of a view taken to show it");
+  to.number("least_weight", &o.least_weight, from_to(0, 1), "",
+            "weight of the surfel's peak, for smooth shading agrees anywhere");
+  to.number("margin", &o.margin, from_to(0, 1000), "voxels",
+            "height above such surface in which voxels stay");
+  to.number("least_lines", &o.least_lines, at_least(1), "", "lines of sight that free a voxel");
+}
 
 /// The surface as matching found it: surfels at their peaks (voxels), with unit normals and the
 /// views that they were matched in; only those whose score is at least LookOptions::least_score.

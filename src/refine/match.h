@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calib/noise.h"
+#include "core/describe.h"
 #include "core/grid.h"
 #include "core/mesh.h"
 #include "gpu/context.h"
@@ -17,19 +18,41 @@
 namespace photohull::refine {
 
 struct MatchOptions {
-  double least_spacing = 0.4;  ///< of a patch's taps, voxels
-  double pixel_spacing = 1.0;  ///< of a patch's taps, pixels of the reference view
-  double most_bend = 1.0;      ///< largest curvature that a patch follows, 1 / voxel
-  double best_pairs = 0.4;     ///< share of the pairs of views that the score is the mean of
-  double shift = 1.5;          ///< of the receiver along its normal, voxels
-  double depth_bias = 2.5;     ///< voxels
-  double least_cosine = 0.2;   ///< between a normal and a camera's direction
-  double seen_cosine = 0.02;   ///< likewise, above which a camera sees the surface at all
-  double nearest_angle = 5;    ///< degrees between the reference and a view compared with it
-  double farthest_angle = 70;  ///< degrees
-  double sparse_angle = 75;  ///< degrees that refine_surface widens it to where cameras are sparse
-  double duplicate_angle = 8;  ///< degrees between views that tell nearly the same
+  double least_spacing = 0.4, pixel_spacing = 1, most_bend = 1, best_pairs = 0.4;
+  double shift = 1.5, depth_bias = 2.5, least_cosine = 0.2, seen_cosine = 0.02;
+  double nearest_angle = 5, farthest_angle = 70, sparse_angle = 75, duplicate_angle = 8;
 };
+
+inline void describe(Described& to, MatchOptions& o) {
+  to.number("least_spacing", &o.least_spacing, above(0, 1000), "voxels",
+            "least distance between a patch's taps");
+  to.number("pixel_spacing", &o.pixel_spacing, from_to(0, 1000), "pixels",
+            "least distance between a patch's taps in the reference view");
+  to.number("most_bend", &o.most_bend, from_to(0, 1000), "1 / voxel",
+            "largest curvature that a patch follows");
+  to.number("best_pairs", &o.best_pairs, above(0, 1), "",
+            "share of the pairs of views that a score is the mean of");
+  to.number("shift", &o.shift, from_to(0, 1000), "voxels",
+            "how far the receiver is moved along its normal, when it is asked whether a view sees "
+            "it");
+  to.number("depth_bias", &o.depth_bias, from_to(0, 1000), "voxels",
+            "distance behind a depth map at which surface counts as seen all the same");
+  to.number("least_cosine", &o.least_cosine, below(0, 1), "",
+            "least cosine between a normal and the direction of a camera that is matched");
+  to.number(
+      "seen_cosine", &o.seen_cosine, below(0, 1), "",
+      "cosine between a normal and the direction of a camera above which it sees the surface at "
+      "all");
+  to.number("nearest_angle", &o.nearest_angle, from_to(0, 180), "degrees",
+            "least angle between the reference and a view compared with it");
+  to.number("farthest_angle", &o.farthest_angle, from_to(0, 180), "degrees",
+            "greatest angle between the reference and a view compared with it");
+  to.rule(o.nearest_angle < o.farthest_angle, "nearest_angle", "must lie below", "farthest_angle");
+  to.number("sparse_angle", &o.sparse_angle, from_to(0, 180), "degrees",
+            "what match.farthest_angle is widened to where cameras are sparse");
+  to.number("duplicate_angle", &o.duplicate_angle, from_to(0, 180), "degrees",
+            "angle between views below which they tell nearly the same");
+}
 
 /// What raises the variance of patches in their correlation: that of rounding to 8 bits, or the
 /// noise's where it is smaller. Not all of the noise's: it would lower scores where photographs are

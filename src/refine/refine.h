@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "carving/hull.h"
+#include "core/describe.h"
 #include "core/grid.h"
 #include "core/progress.h"
 #include "gpu/context.h"
@@ -28,34 +29,34 @@
 
 namespace photohull::refine {
 
-/// Which rays that meet no surface vote again where no silhouettes bound space: those at most so
-/// many rays from one that does, at all levels but the last, and at that.
+/// Which rays that meet no surface vote again where no silhouettes bound space.
 struct OpenVoteOptions {
-  int reach = kAnyReach, last_reach = 8;
-  static constexpr int kAnyReach = 1 << 20;
+  int reach = VoteOptions::kAnyReach, last_reach = 8;
 };
+
+inline void describe(Described& to, OpenVoteOptions& o) {
+  to.number("reach", &o.reach, from_to(0, VoteOptions::kAnyReach), "rays",
+            "the same as vote.bare_reach where there are no masks, at all levels but the last");
+  to.number("last_reach", &o.last_reach, from_to(0, VoteOptions::kAnyReach), "rays",
+            "the same as vote.bare_reach where there are no masks, at the last level");
+}
 
 struct RefineOptions {
   /// Do the silhouettes, where there are any, bound what they show (carving::silhouettes_bound)?
+  /// No choice of a user.
   bool bounded = true;
-  /// Voxel sizes, each half the one before; the last is the result's. 0: as many as bring the first
-  /// grid to kCoarsestVoxels along its longest side, and without silhouettes to voxels of some
-  /// pixels, if that leaves more than kFewestVoxels.
   int levels = 0;
   static constexpr int kCoarsestVoxels = 80, kFewestVoxels = 20;
-  int coarse_iterations = 3;  ///< of matching and moving, at the first level
-  int middle_iterations = 2;
-  int fine_iterations = 1;  ///< at the last level
-  int coarse_offsets = 11;  ///< places along the normal that are tried
-  int fine_offsets = 7;
-  double step = 0.5;           ///< between them, voxels
-  int aggregations = 2;        ///< passes of averaging scores over neighbours
-  double noise_sigma = 0.003;  ///< of the images, square-root encoding
-  bool voting = true;          ///< start from coarse depth maps' free space instead of the hull
+  int coarse_iterations = 3, middle_iterations = 2, fine_iterations = 1;
+  int coarse_offsets = 11, fine_offsets = 7;
+  double step = 0.5;
+  int aggregations = 2;
+  double noise_sigma = 0.003;
+  bool voting = true;
   VoteOptions vote;
   OpenVoteOptions open;
-  LabelOptions label;   ///< where there are no silhouettes; 0 iterations: unknown space is solid
-  bool closing = true;  ///< of surface that no camera sees
+  LabelOptions label;
+  bool closing = true;
   CloseOptions close;
   RestoreOptions restore;
   RimOptions rims;
@@ -63,9 +64,9 @@ struct RefineOptions {
   UnprovenOptions unproven;
   MatchOptions match;
   LookOptions look;
-  SeatOptions seat;  ///< after fitting
+  SeatOptions seat;
   SettleOptions settle;
-  int photometric = 1;  ///< iterations of fitting patches, at the end; fewer when they stop helping
+  int photometric = 1;
   FitOptions fit;
   PeakOptions peak;
   RegularizeOptions regularize;
@@ -73,6 +74,54 @@ struct RefineOptions {
   /// Throws UsageError naming the option.
   void validate() const;
 };
+
+inline void describe(Described& to, RefineOptions& o) {
+  to.affects(Stage::kSurface);
+  // Automatic: as many as bring the first grid to kCoarsestVoxels along its longest side, and
+  // without silhouettes to voxels of some pixels, if that leaves more than kFewestVoxels.
+  to.number("levels", &o.levels, from_to(0, 8), "",
+            "sizes of voxels, each half the one before; the last is the result's")
+      .zero = "automatic";
+  to.number("coarse_iterations", &o.coarse_iterations, at_least(1), "",
+            "iterations of matching and moving, at the first level");
+  to.number("middle_iterations", &o.middle_iterations, at_least(1), "",
+            "iterations of matching and moving, at the levels between");
+  to.number("fine_iterations", &o.fine_iterations, at_least(1), "",
+            "iterations of matching and moving, at the last level");
+  to.number("coarse_offsets", &o.coarse_offsets, from_to(3, 64), "",
+            "places along the normal that are tried at the first level");
+  to.number("fine_offsets", &o.fine_offsets, from_to(3, 64), "",
+            "places along the normal that are tried at later levels");
+  to.number("step", &o.step, above(0, 2), "voxels",
+            "distance between the places along the normal that are tried");
+  to.number("aggregations", &o.aggregations, at_least(0), "",
+            "passes of averaging scores over neighbours");
+  to.number("noise_sigma", &o.noise_sigma, above(0), "",
+            "standard deviation of the images' noise, square roots of linear light; measured "
+            "where it is not given");
+  to.flag("voting", &o.voting, "start from coarse depth maps' free space instead of the hull");
+  to.group("vote", o.vote);
+  to.group("open", o.open);
+  to.group("label", o.label);
+  to.flag("closing", &o.closing, "close surface that no camera sees smoothly");
+  to.group("close", o.close);
+  to.group("restore", o.restore);
+  to.group("rims", o.rims);
+  to.group("thin", o.thin);
+  to.group("unproven", o.unproven);
+  to.group("match", o.match);
+  to.group("look", o.look);
+  to.group("seat", o.seat);
+  to.group("settle", o.settle);
+  to.number("photometric", &o.photometric, from_to(0, 100), "",
+            "passes of fitting patches to the photographs, at the end; fewer when they stop "
+            "helping");
+  to.group("fit", o.fit);
+  to.group("peak", o.peak);
+  to.group("regularize", o.regularize);
+}
+
+inline void RefineOptions::validate() const { check_described(*this); }
 
 struct LevelReport {
   double voxel_size = 0;      ///< world units

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/describe.h"
 #include "core/grid.h"
 #include "refine/displacement.h"
 #include "refine/surface.h"
@@ -11,10 +12,17 @@
 namespace photohull::refine {
 
 struct RimOptions {
-  double weight = 30;  ///< of a tight hull among the peaks, where nothing has texture; 0: none
-  double reach = 1.0;  ///< voxels under the hull at which it has lost its say
-  double told = 0.2;   ///< mean weight of the peaks around at which it has, too
+  double weight = 30, reach = 1, told = 0.2;
 };
+
+inline void describe(Described& to, RimOptions& o) {
+  to.number("weight", &o.weight, from_to(0, 1000), "",
+            "weight of a tight hull among the peaks, where nothing has texture; 0: none");
+  to.number("reach", &o.reach, above(0, 1000), "voxels",
+            "depth under the hull at which it has lost its say");
+  to.number("told", &o.told, above(0, 1000), "",
+            "mean weight of the peaks around at which the hull has lost its say, too");
+}
 
 /// Mixes into the peaks of vertices on the hull, or just under it, that they want to lie on it:
 /// the less texture a vertex has (Matches::texture), and the less the photographs tell around it,

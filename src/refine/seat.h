@@ -6,6 +6,7 @@
 
 #include "carving/hull.h"
 #include "core/camera.h"
+#include "core/describe.h"
 #include "core/grid.h"
 #include "core/mesh.h"
 #include "refine/surface.h"
@@ -13,11 +14,20 @@
 namespace photohull::refine {
 
 struct SeatOptions {
-  int passes = 2;       ///< of finding contacts and moving towards them; 0: nothing is seated
-  double reach = 1.5;   ///< voxels that the surface may be short of an outline
-  double unsure = 0.1;  ///< voxels: standard deviation of a contact at its ray
-  double margin = 0.4;  ///< voxels by which interpolated distances to a curved hull may be off
+  int passes = 2;
+  double reach = 1.5, unsure = 0.1, margin = 0.4;
 };
+
+inline void describe(Described& to, SeatOptions& o) {
+  to.number("passes", &o.passes, from_to(0, 100), "",
+            "passes of finding contacts and moving towards them; 0: nothing is seated");
+  to.number("reach", &o.reach, below(0, SparseVolume::kBand), "voxels",
+            "distance that the surface may be short of an outline");
+  to.number("unsure", &o.unsure, above(0, 1000), "voxels",
+            "standard deviation of a contact at its ray");
+  to.number("margin", &o.margin, from_to(0, 1), "voxels",
+            "how far off interpolated distances to a curved hull may be");
+}
 
 /// How surely photographs tell the offsets of surfels, as seat_outlines takes it: `weights` that
 /// are 1 at a standard deviation of `SeatOptions::unsure` (0: nothing told), averaged over the

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/camera.h"
+#include "core/describe.h"
 #include "core/grid.h"
 #include "refine/displacement.h"
 #include "refine/match.h"
@@ -15,10 +16,17 @@
 namespace photohull::refine {
 
 struct SettleOptions {
-  double least_pixels = 0.5;  ///< a finer voxel's edge in the surfels' reference views
-  double least_texture = 0.2;
-  double flat = 0.02;  ///< 1 / voxel: curvature below which a plane says what finer voxels would
+  double least_pixels = 0.5, least_texture = 0.2, flat = 0.02;
 };
+
+inline void describe(Described& to, SettleOptions& o) {
+  to.number("least_pixels", &o.least_pixels, from_to(0, 1000), "pixels",
+            "edge of a finer voxel in the surfels' reference views below which it is not matched");
+  to.number("least_texture", &o.least_texture, from_to(0, 1), "",
+            "mean weight of texture below which finer voxels are not matched");
+  to.number("flat", &o.flat, from_to(0, 1000), "1 / voxel",
+            "curvature below which a plane says what finer voxels would");
+}
 
 /// What a brick's surface has left to tell.
 enum class Settled : std::uint8_t {

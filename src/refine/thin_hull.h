@@ -6,15 +6,21 @@
 
 #include "carving/hull.h"
 #include "core/camera.h"
+#include "core/describe.h"
 #include "core/grid.h"
 
 namespace photohull::refine {
 
 struct ThinHullOptions {
-  double depth =
-      1.25;            ///< voxels below the hull's surface that such a part does not reach; 0: none
-  double reach = 1.5;  ///< voxels from the volume's surface within which it is kept
+  double depth = 1.25, reach = 1.5;
 };
+
+inline void describe(Described& to, ThinHullOptions& o) {
+  to.number("depth", &o.depth, from_to(0, SparseVolume::kBand), "voxels",
+            "depth below the hull's surface that a thin part does not reach; 0: no part is thin");
+  to.number("reach", &o.reach, from_to(0, SparseVolume::kBand), "voxels",
+            "distance from the volume's surface within which a thin part is kept");
+}
 
 /// Closes tears of the volume in sheets and stems of the hull: where the hull is thin and the
 /// volume has nothing left across it, the hull comes back. Patches there mix in what lies behind,

@@ -5,15 +5,21 @@
 #include <span>
 #include <vector>
 
+#include "core/describe.h"
 #include "core/grid.h"
 
 namespace photohull::refine {
 
 struct UnprovenOptions {
-  double least_weight =
-      0.12;  ///< mean weight of the peaks that a hollow's surface must have; 0: none
-  double least_depth = 0.3;  ///< voxels under the hull from where on space counts as hollow
+  double least_weight = 0.12, least_depth = 0.3;
 };
+
+inline void describe(Described& to, UnprovenOptions& o) {
+  to.number("least_weight", &o.least_weight, from_to(0, 1), "",
+            "mean weight of the peaks that a hollow's surface must have; 0: none");
+  to.number("least_depth", &o.least_depth, from_to(0, SparseVolume::kBand), "voxels",
+            "depth under the hull from where on space counts as hollow");
+}
 
 /// Fills the hollows of the volume under its hull whose surface no photograph tells of: where
 /// matches are weak, false ones dig pits, and the hull, which no photograph contradicts there, is

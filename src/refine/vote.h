@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <span>
 
+#include "core/describe.h"
 #include "core/grid.h"
 #include "gpu/context.h"
 #include "projtex/image_set.h"
@@ -12,25 +13,52 @@
 namespace photohull::refine {
 
 struct VoteOptions {
-  double ray_spacing = 1.0;    ///< between the rays of a view, voxels in the middle of the grid
-  double again_spacing = 1.5;  ///< between the rays of vote_again
-  double last_spacing = 2.5;   ///< likewise at the last level, where voxels are smallest
-  double again_score = 0.7;  ///< likewise: below, the surface explains nothing, a ray finds nothing
-  double tap_spacing = 0.7;  ///< of the patches across the rays, voxels
-  double nearest_partner = 4;  ///< degrees between a view and those that its rays are matched with
-  double best_pairs = 0.5;     ///< share of the pairs of views that the score is the mean of
-  double least_score = 0.5;    ///< of the best sample on a ray; below, the ray says nothing
-  double distinct_by = 0.25;   ///< lead over the second best that gives a ray full weight
-  double band = 1.5;          ///< voxels; at most kBand: a ray's say ends that far behind its depth
-  double least_weight = 1.5;  ///< sum of the rays' weights below which a voxel stays
-  double again_weight = 2;    ///< likewise, for what vote_again adds
-  double freeing_weight = 3;  ///< and for what it frees: plain surface is not explained either
-  /// Of trying neighbours' planes, after a ray has been searched by itself, at all levels but the
-  /// last, and at that.
-  int rounds = 2, last_rounds = 1;
-  int bare_reach =
-      0;  ///< rays between one that meets no surface and votes again, and one that does
+  double ray_spacing = 1, again_spacing = 1.5, last_spacing = 2.5, again_score = 0.7;
+  double tap_spacing = 0.7, nearest_partner = 4, best_pairs = 0.5, least_score = 0.5;
+  double distinct_by = 0.25, band = 1.5;
+  double least_weight = 1.5, again_weight = 2, freeing_weight = 3;
+  int rounds = 2, last_rounds = 1, bare_reach = 0;
+  static constexpr int kAnyReach = 1 << 20;  ///< rays: wherever they are
 };
+
+inline void describe(Described& to, VoteOptions& o) {
+  to.number("ray_spacing", &o.ray_spacing, above(0, 1000), "voxels",
+            "distance between the rays of a view, in the middle of the grid");
+  to.number("again_spacing", &o.again_spacing, above(0, 1000), "voxels",
+            "distance between the rays that vote again, where no surface explains them");
+  to.number("last_spacing", &o.last_spacing, above(0, 1000), "voxels",
+            "distance between the rays that vote again at the last level, where voxels are "
+            "smallest");
+  to.number("again_score", &o.again_score, from_to(-1, 1), "",
+            "score of a ray below which the surface does not explain it and it votes again");
+  to.number("tap_spacing", &o.tap_spacing, above(0, 1000), "voxels",
+            "distance between the taps of the patches across the rays");
+  to.number("nearest_partner", &o.nearest_partner, from_to(0, 180), "degrees",
+            "least angle between a view and those that its rays are matched with");
+  to.number("best_pairs", &o.best_pairs, above(0, 1), "",
+            "share of the pairs of views that a score is the mean of");
+  to.number("least_score", &o.least_score, from_to(-1, 1), "",
+            "score of the best sample on a ray below which the ray says nothing");
+  to.number("distinct_by", &o.distinct_by, above(0), "",
+            "lead over the second best sample that gives a ray full weight");
+  to.number("band", &o.band, above(0, SparseVolume::kBand), "voxels",
+            "distance behind its depth at which what a ray says ends");
+  to.number("least_weight", &o.least_weight, above(0), "",
+            "sum of the rays' weights below which a voxel stays");
+  to.number("again_weight", &o.again_weight, above(0), "",
+            "sum of the weights of rays that vote again below which they add nothing");
+  to.number("freeing_weight", &o.freeing_weight, above(0), "",
+            "sum of the weights of rays that vote again below which they free nothing, for surface "
+            "without texture is not explained either");
+  to.number("rounds", &o.rounds, from_to(0, 20), "",
+            "rounds of trying neighbours' planes after a ray has been searched by itself, at all "
+            "levels but the last");
+  to.number("last_rounds", &o.last_rounds, from_to(0, 20), "",
+            "rounds of trying neighbours' planes at the last level");
+  to.number("bare_reach", &o.bare_reach, from_to(0, VoteOptions::kAnyReach), "rays",
+            "greatest distance between a ray that meets no surface and votes again, and one that "
+            "meets some");
+}
 
 /// The hull without what the views' depth maps see through: each view's rays are matched with views
 /// near it by 3 x 3 patches across the ray, and a voxel takes the weighted mean of its signed

@@ -404,21 +404,7 @@ class Sharpener {
   std::vector<dvec3> flanks_;     // their normals
 };
 
-void check(bool good, const char* name, double value, const char* range) {
-  if (!good) throw UsageError(concat("sharpen.", name, " is ", value, "; choose ", range));
-}
-
 }  // namespace
-
-void SharpenOptions::validate() const {
-  check(bend > 0, "bend", bend, "a number above 0");
-  check(reach >= 3 && reach <= 30, "reach", reach, "a number from 3 to 30");
-  check(most_turn > 0 && most_turn <= 120, "most_turn", most_turn, "0 to 120 degrees");
-  check(distinct >= 0, "distinct", distinct, "0 or more");
-  check(rounding >= 0, "rounding", rounding, "0 or more");
-  check(share >= 0 && share <= 1, "share", share, "a number from 0 to 1");
-  check(shortest >= 0, "shortest", shortest, "0 or more");
-}
 
 std::size_t sharpen_edges(const SharpenOptions& options, double voxel_size, double detail,
                           TriMesh& mesh) {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "core/describe.h"
 #include "core/mesh.h"
 
 namespace photohull {
@@ -10,18 +11,30 @@ namespace photohull {
 /// Lengths are in units of the surface's detail, see sharpen_edges.
 struct SharpenOptions {
   bool on = true;
-  double bend = 0.15;  ///< between neighbours' normals from which surface may be a rounded edge,
-                       ///< radians a length; > 0
-  double reach = 10;   ///< from a vertex within which the flanks of an edge are fitted; [3, 30]
-  double most_turn = 120;  ///< between flanks, degrees; (0, 120]
-  double distinct = 25;    ///< least turn over the flanks' own roughness; >= 0
-  double rounding = 3;     ///< largest radius by which an edge may be rounded; >= 0
-  double share = 0.6;      ///< of an edge's places that must show it; [0, 1]
-  double shortest = 16;    ///< length of an edge; >= 0
+  double bend = 0.15, reach = 10, most_turn = 120, distinct = 25, rounding = 3, share = 0.6,
+         shortest = 16;
 
   /// Throws UsageError naming the option.
   void validate() const;
 };
+
+inline void describe(Described& to, SharpenOptions& o) {
+  to.affects(Stage::kMesh);
+  to.flag("", &o.on, "make edges sharp that refinement rounds");
+  to.number("bend", &o.bend, above(0), "radians",
+            "turn of the normals over a length from which surface may be a rounded edge");
+  to.number("reach", &o.reach, from_to(3, 30), "lengths",
+            "distance from a vertex within which the flanks of an edge are fitted");
+  to.number("most_turn", &o.most_turn, above(0, 120), "degrees", "greatest turn between flanks");
+  to.number("distinct", &o.distinct, at_least(0), "",
+            "least turn between flanks over the flanks' own roughness");
+  to.number("rounding", &o.rounding, at_least(0), "lengths",
+            "largest radius by which an edge may be rounded");
+  to.number("share", &o.share, from_to(0, 1), "", "share of an edge's places that must show it");
+  to.number("shortest", &o.shortest, at_least(0), "lengths", "least length of an edge");
+}
+
+inline void SharpenOptions::validate() const { check_described(*this); }
 
 /// Makes edges and corners of an extracted surface sharp where the smooth surfaces on either side,
 /// fitted beside the edge and extended, meet near it, and where that shows along the whole edge

@@ -150,23 +150,18 @@ void read_scene_arguments(std::string_view bytes) {
     } catch (const CLI::ParseError&) {
       return;  // the program prints its message
     }
-    arguments.options();
+    arguments.check();
   });
 }
 
 /// Assignments of --tune, one a line.
 void read_tuning(std::string_view bytes) {
   const std::vector<std::string> assignments = lines_of(bytes);
-  expect_success_or_error([&] {
-    carving::PhotoOptions options;
-    pipeline::tune(assignments, options);
-  });
-  expect_success_or_error([&] {
-    refine::RefineOptions options;
-    SharpenOptions sharpen;
-    pipeline::tune(assignments, options, sharpen);
-    options.validate();
-  });
+  for (const pipeline::Method method : {pipeline::Method::kSpaceCarving, pipeline::Method::kRefine})
+    expect_success_or_error([&] {
+      pipeline::Parameters parameters;
+      pipeline::tune(assignments, method, parameters);
+    });
 }
 
 void read_view_list(std::string_view bytes) {

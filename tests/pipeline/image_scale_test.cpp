@@ -34,24 +34,14 @@ Scene scene_of(std::vector<SourceView> views) {
 }
 
 TEST(ParseImageScale, AutoAFractionOrANumber) {
-  EXPECT_EQ(parse_image_scale("auto"), std::nullopt);
   EXPECT_EQ(parse_image_scale("1"), 1.0);
   EXPECT_EQ(parse_image_scale("1/4"), 0.25);
   EXPECT_EQ(parse_image_scale("0.3"), 0.3);
 }
 
-TEST(ParseImageScale, AnythingElseIsNamed) {
-  for (const std::string bad :
-       {"", "0", "-1", "1.5", "2/1", "1/0", "1/", "/2", "half", "1/2x", "nan"}) {
-    try {
-      parse_image_scale(bad);
-      ADD_FAILURE() << "'" << bad << "' was taken";
-    } catch (const UsageError& e) {
-      EXPECT_EQ(std::string(e.what()), "--image-scale " + bad +
-                                           ": expected auto, or a scale above 0 and up to 1, such "
-                                           "as 1/4 or 0.3");
-    }
-  }
+TEST(ParseImageScale, TakesNothingElse) {
+  for (const char* bad : {"", "0", "-1", "1.5", "2/1", "1/0", "1/", "/2", "half", "1/2x", "nan"})
+    EXPECT_EQ(parse_image_scale(bad), std::nullopt) << bad;
 }
 
 TEST(ImageScaleText, SaysFractions) {

@@ -5,7 +5,6 @@
 
 #include <fstream>
 
-#include "core/error.h"
 #include "support/scratch_folder.h"
 
 namespace photohull::pipeline {
@@ -53,18 +52,11 @@ TEST_F(AvailableMemory, GroupsOfVersionOneLeaveLess) {
 }
 
 TEST(ParseMaxMemory, ASizeWithItsUnit) {
-  EXPECT_EQ(parse_max_memory("auto"), std::nullopt);
   EXPECT_EQ(parse_max_memory("512M"), std::int64_t(512) << 20);
   EXPECT_EQ(parse_max_memory("1.5GiB"), std::int64_t(3) << 29);
   EXPECT_EQ(parse_max_memory("2GB"), std::int64_t(2) << 30);
-  for (const std::string bad : {"", "2", "-1G", "0G", "2X", "2Gi", "G", "1e30T", "nanG", "2G "}) {
-    try {
-      parse_max_memory(bad);
-      ADD_FAILURE() << "'" << bad << "' was taken";
-    } catch (const UsageError& e) {
-      EXPECT_EQ(std::string(e.what()).find("--max-memory " + bad + ": expected auto"), 0u);
-    }
-  }
+  for (const char* bad : {"", "2", "-1G", "0G", "2X", "2Gi", "G", "1e30T", "nanG", "2G "})
+    EXPECT_EQ(parse_max_memory(bad), std::nullopt) << bad;
 }
 
 TEST(MemoryText, ReadsWell) {

@@ -1,7 +1,6 @@
-// Options that are words or numbers.
+// Options of a job as text: what is read, refused and reported.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <algorithm>
 
 #include "core/error.h"
 #include "pipeline/reconstruct.h"
@@ -9,24 +8,107 @@
 namespace photohull::pipeline {
 namespace {
 
-TEST(ParseViewsMayMiss, AutoOrANumber) {
-  EXPECT_EQ(parse_views_may_miss("auto"), std::nullopt);
-  EXPECT_EQ(parse_views_may_miss("0"), 0);
-  EXPECT_EQ(parse_views_may_miss("3"), 3);
-  EXPECT_EQ(parse_views_may_miss("16"), 16);
+class OptionText : public testing::Test {
+ protected:
+  OptionText() { describe(described_, options_); }
+
+  void read(const std::string& name, const std::string& text) {
+    read_option(*described_.find(name), text);
+  }
+
+  /// What is said of a text that is not legal.
+  std::string refusal(const std::string& name, const std::string& text) {
+    try {
+      read(name, text);
+    } catch (const UsageError& error) {
+      return error.what();
+    }
+    return "'" + text + "' was taken";
+  }
+
+  ReconstructOptions options_;
+  Described described_;
+};
+
+TEST_F(OptionText, AutoOrANumberOfViews) {
+  read("views_may_miss", "0");
+  EXPECT_EQ(options_.views_may_miss, 0);
+  read("views_may_miss", "16");
+  EXPECT_EQ(options_.views_may_miss, 16);
+  read("views_may_miss", "auto");
+  EXPECT_EQ(options_.views_may_miss, std::nullopt);
+  for (const std::string bad :
+       {"", "-1", "17", "two", "1.5", "3 ", " 3", "+3", "0x2", "99999999999", "Auto", "auto2"})
+    EXPECT_EQ(refusal("views_may_miss", bad),
+              "--views-may-miss " + bad + ": expected auto, or a number of views from 0 to 16");
 }
 
-TEST(ParseViewsMayMiss, AnythingElseIsNamed) {
-  for (const std::string bad :
-       {"", "-1", "17", "two", "1.5", "3 ", " 3", "+3", "0x2", "99999999999", "Auto", "auto2"}) {
-    try {
-      parse_views_may_miss(bad);
-      ADD_FAILURE() << "'" << bad << "' was taken";
-    } catch (const UsageError& e) {
-      EXPECT_EQ(std::string(e.what()),
-                "--views-may-miss " + bad + ": expected auto, or a number of views from 0 to 16");
-    }
-  }
+TEST_F(OptionText, ScalesAreFractionsOrNumbers) {
+  read("image_scale", "1/4");
+  EXPECT_EQ(options_.image_scale, 0.25);
+  read("image_scale", "auto");
+  EXPECT_EQ(options_.image_scale, std::nullopt);
+  for (const std::string bad : {"", "0", "1.5", "1/0", "half"})
+    EXPECT_EQ(refusal("image_scale", bad), "--image-scale " + bad +
+                                               ": expected auto, or a scale above 0 and up to 1, "
+                                               "such as 1/4 or 0.3");
+}
+
+TEST_F(OptionText, MemoryHasAUnit) {
+  read("max_memory", "1.5GiB");
+  EXPECT_EQ(options_.max_memory, std::int64_t(3) << 29);
+  EXPECT_EQ(refusal("max_memory", "2"),
+            "--max-memory 2: expected auto, or a size with its unit such as 512M or 2G");
+}
+
+TEST_F(OptionText, MeshErrorsAreVoxelsOrWorldUnits) {
+  read("mesh_error", "0.25");
+  EXPECT_EQ(options_.mesh_error.value, 0.25);
+  EXPECT_FALSE(options_.mesh_error.world_units);
+  read("mesh_error", "0.002u");
+  EXPECT_TRUE(options_.mesh_error.world_units);
+  for (const std::string bad : {"", "-1", "u", "1v", "nan"})
+    EXPECT_THAT(refusal("mesh_error", bad), testing::StartsWith("--mesh-error " + bad + ": exp"));
+}
+
+TEST_F(OptionText, NumbersOutOfRangeAreNamed) {
+  EXPECT_EQ(refusal("resolution", "1"), "--resolution 1: at least 2");
+  EXPECT_EQ(refusal("resolution", "3.5"), "--resolution 3.5: expected a whole number; see --help");
+  EXPECT_EQ(refusal("voxel_size", "nan"), "--voxel-size nan: must be finite and positive");
+  EXPECT_EQ(refusal("noise", "-3"), "--noise -3: expected 8-bit codes from 0 to 255");
+  EXPECT_EQ(refusal("threads", "-1"), "--threads -1: 0 (one a core) or more");
+  EXPECT_EQ(refusal("supersample", "9"), "--supersample 9: expected 1 to 8");
+  EXPECT_EQ(refusal("mask_offset", "101"),
+            "--mask-offset 101: expected auto, or pixels from -100 to 100");
+}
+
+TEST_F(OptionText, ValuesThatAProgramSetsAreCheckedInTheSameWords) {
+  options_.output = "out";
+  options_.validate();
+  options_.threads = -1;
+  EXPECT_THAT([&] { options_.validate(); },
+              testing::ThrowsMessage<UsageError>("--threads -1: 0 (one a core) or more"));
+}
+
+TEST_F(OptionText, ReportHasWhatIsGivenAndSomeDefaults) {
+  const std::string usual = option_line(options_);
+  EXPECT_EQ(usual,
+            "quality=normal method=refine photometric=auto mesh_error=0 unseen=auto "
+            "surroundings=off masks=auto mask_offset=auto views_may_miss=auto image_scale=auto "
+            "device=auto");
+  options_.threads = 3;
+  options_.evidence = options_.fresh = true;
+  EXPECT_EQ(option_line(options_), usual) << "what changes no result";
+  options_.sampler = projtex::Sampler::kEwa;
+  options_.box.find = true;
+  options_.keep_mask_holes = true;
+  const NamedValues named = named_options(options_);
+  for (const auto& [name, value] : NamedValues{{"sampler", "ewa"},
+                                               {"box", "auto"},
+                                               {"mask_holes", "keep"},
+                                               {"threads", "3"},
+                                               {"evidence", "true"}})
+    EXPECT_THAT(named, testing::Contains(testing::Pair(name, value)));
 }
 
 }  // namespace

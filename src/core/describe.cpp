@@ -1,0 +1,251 @@
+#include "core/describe.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <sstream>
+
+#include "core/error.h"
+
+namespace photohull {
+namespace {
+
+template <typename... Cases>
+struct Overloaded : Cases... {
+  using Cases::operator()...;
+};
+
+std::string written(double value, int digits = 9) {
+  std::ostringstream out;
+  out.precision(digits);
+  out << value;
+  return out.str();
+}
+
+/// The number, if the option is one and has one.
+std::optional<double> number_of(const Option& option) {
+  return std::visit(
+      Overloaded{[](int* v) -> std::optional<double> { return *v; },
+                 [](double* v) -> std::optional<double> { return *v; },
+                 [](std::optional<int>* v) -> std::optional<double> { return *v; },
+                 [](std::optional<double>* v) -> std::optional<double> { return *v; },
+                 [](std::optional<std::int64_t>* v) -> std::optional<double> { return *v; },
+                 [](const auto&) -> std::optional<double> { return std::nullopt; }},
+      option.place);
+}
+
+bool is_whole(const Option& option) {
+  return std::holds_alternative<int*>(option.place) ||
+         std::holds_alternative<std::optional<int>*>(option.place) ||
+         std::holds_alternative<std::optional<std::int64_t>*>(option.place);
+}
+
+std::string lowest(const Option& option) {
+  const bool named = option.range.low == 0 && !option.zero.empty();
+  return written(option.range.low) + (named ? " (" + option.zero + ")" : "");
+}
+
+std::string joined(const std::vector<std::string>& texts, const char* between) {
+  std::string all;
+  for (const std::string& text : texts) all += (all.empty() ? "" : between) + text;
+  return all;
+}
+
+/// What is legal, for a sentence after the value: "expected 1 to 8".
+std::string expectation(const Option& option) {
+  if (!option.expects.empty()) return "expected " + option.expects;
+  if (!option.choices.empty()) return "expected one of " + joined(option.choices, ", ");
+  const Range& r = option.range;
+  if (std::isinf(r.high)) {
+    if (r.low_open)
+      return r.low == 0 ? "must be finite and positive" : "must exceed " + lowest(option);
+    return option.zero.empty() ? "at least " + lowest(option) : lowest(option) + " or more";
+  }
+  return "expected " + (option.absent.empty() ? "" : option.absent + ", or ") +
+         (option.unit.empty() ? "" : option.unit + " from ") + lowest(option) + " to " +
+         written(r.high);
+}
+
+/// The same for a sentence that begins with the option's name: "levels must be 0 to 8".
+std::string obligation(const Option& option) {
+  const Range& r = option.range;
+  const std::string unit = option.unit.empty() ? "" : " " + option.unit;
+  if (std::isinf(r.high)) {
+    if (r.low == 0) return r.low_open ? "must be positive" : "must not be negative";
+    return "must be at least " + written(r.low) + unit;
+  }
+  if (is_whole(option)) return "must be " + lowest(option) + " to " + written(r.high) + unit;
+  return concat("must lie in ", r.low_open ? '(' : '[', written(r.low), ", ", written(r.high),
+                r.high_open ? ')' : ']', unit);
+}
+
+[[noreturn]] void refuse(const Option& option, const std::string& text) {
+  throw UsageError(concat(flag_of(option.name), " ", text, ": ", expectation(option)));
+}
+
+template <typename Number>
+Number parsed(const Option& option, const std::string& text) {
+  if (option.notation) {
+    if (const std::optional<double> value = option.notation(text)) return Number(*value);
+    refuse(option, text);
+  }
+  Number value{};
+  bool whole = false;
+  if constexpr (std::is_integral_v<Number>) {
+    const char* end = text.data() + text.size();
+    const auto [last, problem] = std::from_chars(text.data(), end, value);
+    whole = problem == std::errc() && last == end;
+  } else {
+    char* end = nullptr;
+    value = std::strtod(text.c_str(), &end);
+    whole = end != text.c_str() && *end == 0;
+  }
+  if (whole) return value;
+  if (!option.absent.empty() || !option.expects.empty()) refuse(option, text);
+  throw UsageError(concat(flag_of(option.name), " ", text, ": expected a ",
+                          std::is_integral_v<Number> ? "whole " : "", "number; see --help"));
+}
+
+}  // namespace
+
+const char* to_string(Stage stage) {
+  switch (stage) {
+    case Stage::kViews:
+      return "views";
+    case Stage::kHull:
+      return "hull";
+    case Stage::kSurface:
+      return "surface";
+    case Stage::kMesh:
+      return "mesh";
+    case Stage::kFiles:
+      return "files";
+    case Stage::kNothing:
+      return "nothing";
+  }
+  return "?";
+}
+
+bool Range::holds(double value) const {
+  return std::isfinite(value) && (low_open ? value > low : value >= low) &&
+         (high_open ? value < high : value <= high);
+}
+
+Option& Described::number(const std::string& name, Place place, const Range& range,
+                          const std::string& unit, const std::string& help) {
+  Option& option = add(name, std::move(place), help);
+  option.range = range;
+  option.unit = unit;
+  return option;
+}
+
+Option& Described::flag(const std::string& name, bool* place, const std::string& help) {
+  return add(name, place, help);
+}
+
+Option& Described::text(const std::string& name, Place place, const std::string& help) {
+  return add(name, std::move(place), help);
+}
+
+Option& Described::add(const std::string& name, Place place, const std::string& help) {
+  Option option{.name = full_name(name), .place = std::move(place), .help = help};
+  PHOTOHULL_CHECK(!find(option.name));
+  option.from = from_;
+  options_.push_back(std::move(option));
+  return options_.back();
+}
+
+std::string Described::full_name(const std::string& name) const {
+  return name.empty() ? group_.substr(0, group_.size() - 1) : group_ + name;
+}
+
+void Described::rule(bool holds, const std::string& one, const std::string& relation,
+                     const std::string& other) {
+  if (!holds) broken_.push_back(concat(full_name(one), " ", relation, " ", full_name(other)));
+}
+
+const Option* Described::find(const std::string& name) const {
+  const auto found = std::find_if(options_.begin(), options_.end(),
+                                  [&](const Option& option) { return option.name == name; });
+  return found == options_.end() ? nullptr : &*found;
+}
+
+void Described::check() const {
+  for (const Option& option : options_)
+    if (const auto value = number_of(option); value && !option.range.holds(*value))
+      throw UsageError(concat(option.name, " ", obligation(option)));
+  if (!broken_.empty()) throw UsageError(broken_.front());
+}
+
+std::string flag_of(const std::string& name) {
+  std::string flag = "--" + name;
+  std::replace(flag.begin(), flag.end(), '_', '-');
+  return flag;
+}
+
+std::string text_of(const Option& option, int digits) {
+  if (const auto value = number_of(option))
+    return is_whole(option) ? concat(std::int64_t(*value)) : written(*value, digits);
+  return std::visit(Overloaded{[](bool* v) -> std::string { return *v ? "true" : ""; },
+                               [](std::string* v) { return *v; },
+                               [](std::filesystem::path* v) { return v->string(); },
+                               [](std::vector<std::string>* v) { return joined(*v, " "); },
+                               [](const Words& v) { return v.text(); },
+                               [&](const auto&) { return option.absent; }},
+                    option.place);
+}
+
+void read_option(const Option& option, const std::string& text) {
+  if (text.empty() && !option.if_empty.empty())
+    throw UsageError(concat(flag_of(option.name), " is empty: ", option.if_empty));
+  const bool absent = !option.absent.empty() && text == option.absent;
+  const auto optional_number = [&]<typename Number>(std::optional<Number>* v) {
+    if (absent)
+      v->reset();
+    else
+      *v = parsed<Number>(option, text);
+  };
+  std::visit(
+      Overloaded{[&](bool* v) { *v = text == "true"; },
+                 [&](int* v) { *v = parsed<int>(option, text); },
+                 [&](double* v) { *v = parsed<double>(option, text); },
+                 [&](std::optional<int>* v) { optional_number(v); },
+                 [&](std::optional<double>* v) { optional_number(v); },
+                 [&](std::optional<std::int64_t>* v) { optional_number(v); },
+                 [&](std::string* v) { *v = text; }, [&](std::filesystem::path* v) { *v = text; },
+                 [&](std::vector<std::string>* v) { v->push_back(text); },
+                 [&](const Words& v) {
+                   if (!v.read(text)) refuse(option, text);
+                 }},
+      option.place);
+  check_option(option);
+}
+
+void check_option(const Option& option) {
+  const auto value = number_of(option);
+  if (value && !option.range.holds(*value)) refuse(option, text_of(option));
+}
+
+bool is_number(const Option& option) {
+  return is_whole(option) || std::holds_alternative<double*>(option.place) ||
+         std::holds_alternative<std::optional<double>*>(option.place);
+}
+
+std::string legal_values(const Option& option) {
+  std::string list;
+  for (const std::string& choice : option.choices)
+    list += (list.empty() ? "" : choice == option.choices.back() ? " or " : ", ") + choice;
+  if (!list.empty()) return list;
+  if (!option.expects.empty()) return option.expects;
+  if (!is_number(option)) return "";
+  const Range& r = option.range;
+  const std::string word = option.absent.empty() ? "" : option.absent + ", or ";
+  const std::string low = (r.low_open ? "above " : "") + lowest(option);
+  if (!std::isinf(r.high))
+    return concat(word, low, r.high_open ? " to below " : " to ", written(r.high));
+  if (r.low_open) return word + low;
+  return word + (option.zero.empty() ? "at least " + low : low + " or more");
+}
+
+}  // namespace photohull

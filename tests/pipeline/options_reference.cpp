@@ -1,0 +1,79 @@
+#include "options_reference.h"
+
+#include <sstream>
+
+#include "core/error.h"
+#include "pipeline/tuning.h"
+
+namespace photohull::pipeline {
+namespace {
+
+std::string code(const std::string& text) { return text.empty() ? "" : "`" + text + "`"; }
+
+std::string legal_of(const Option& option) {
+  if (std::holds_alternative<bool*>(option.place)) return "";
+  const std::string legal = legal_values(option);
+  return option.unit.empty() || !option.expects.empty() ? legal : legal + " " + option.unit;
+}
+
+std::string default_of(const Option& option) {
+  if (!std::holds_alternative<bool*>(option.place)) return text_of(option);
+  return text_of(option).empty() ? "off" : "on";
+}
+
+void write_table(const Described& described, bool flags, std::ostream& out) {
+  out << (flags ? "| option | default | values | changes from | what it says |\n"
+                : "| parameter | default | values | changes from | what it is |\n")
+      << "|---|---|---|---|---|\n";
+  for (const Option& option : described.options())
+    out << "| " << code(flags ? flag_of(option.name) : option.name) << " | "
+        << code(default_of(option)) << " | " << legal_of(option) << " | " << to_string(option.from)
+        << " | " << option.help << " |\n";
+}
+
+/// A stage's own parameters, and `group` before their names.
+template <typename Options>
+void write_parameters(const std::string& title, const std::string& group, std::ostream& out) {
+  Options options;
+  Described described;
+  if (group.empty())
+    describe(described, options);
+  else
+    described.group(group, options);
+  out << "\n### " << title << "\n\n";
+  write_table(described, false, out);
+}
+
+}  // namespace
+
+std::string options_reference() {
+  std::ostringstream out;
+  out << "# Options of `photohull reconstruct`\n\n"
+         "Written by `build/release/tests/pipeline/write_options_reference > "
+         "docs/reference/options.md` from what describes the\noptions in the program; a test "
+         "compares the two.\n\n"
+         "*Changes from* is the first of the stages views, hull, surface, mesh and files whose "
+         "result an option changes; all\nlater ones follow from it. An interrupted refinement goes "
+         "on where it was (`--fresh` does not) when no option that\nchanges the surface or an "
+         "earlier stage was changed.\n\n";
+  ReconstructOptions options;
+  Described described;
+  describe(described, options);
+  write_table(described, true, out);
+  out << "\n## Parameters\n\n"
+         "For experiments: `--tune NAME=VALUE` changes one, with 0 and 1 for off and on. A method "
+         "has those of its own and those\nof the stages that methods share; `--method hull` has "
+         "none. The\nunit of lengths of sharp edges is what the surface resolves: a voxel, or 1.5 "
+         "pixels "
+         "where these are larger.\n";
+  write_parameters<carving::MissingOptions>(
+      "What masks show and the hull lacks (all methods but `hull`)", "missing", out);
+  write_parameters<carving::StemOptions>("Stems (all methods but `hull`)", "stems", out);
+  write_parameters<refine::RefineOptions>("Refinement (`--method refine`)", "", out);
+  write_parameters<SharpenOptions>("Sharp edges (`--method refine`)", "sharpen", out);
+  write_parameters<carving::PhotoOptions>(
+      "Plane sweeps (`--method space-carving` and `voxel-coloring`)", "", out);
+  return out.str();
+}
+
+}  // namespace photohull::pipeline
