@@ -7,15 +7,15 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "chart/png.h"
-#include "chart/sampling_chart.h"
-#include "chart/svg_renderer.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "gpu/context.h"
 #include "io/image_file.h"
+#include "lab/chart/png.h"
+#include "lab/chart/sampling_chart.h"
+#include "lab/chart/svg_renderer.h"
+#include "lab/visibility/study.h"
 #include "terminal_progress.h"
-#include "visibility/study.h"
 
 namespace photohull::cli {
 namespace {

@@ -7,14 +7,14 @@
 #include <optional>
 
 #include "bench_visibility.h"
-#include "chart/png.h"
-#include "chart/sampling_chart.h"
-#include "chart/svg_renderer.h"
 #include "commands.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "gpu/context.h"
-#include "projtex/sampling_study.h"
+#include "lab/chart/png.h"
+#include "lab/chart/sampling_chart.h"
+#include "lab/chart/svg_renderer.h"
+#include "lab/sampling/sampling_study.h"
 #include "terminal_progress.h"
 
 namespace photohull::cli {

@@ -4,9 +4,6 @@
 #include <memory>
 #include <optional>
 
-#include "chart/png.h"
-#include "chart/reliability_chart.h"
-#include "chart/svg_renderer.h"
 #include "commands.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -18,8 +15,11 @@
 #include "eval/reliability.h"
 #include "evaluate_photos.h"
 #include "io/image_file.h"
+#include "io/mesh/read_mesh.h"
+#include "lab/chart/png.h"
+#include "lab/chart/reliability_chart.h"
+#include "lab/chart/svg_renderer.h"
 #include "terminal_progress.h"
-#include "volume/read_mesh.h"
 
 namespace photohull::cli {
 namespace {

@@ -3,8 +3,7 @@
 #include <exception>
 #include <memory>
 
-#include "calib/diagnose.h"
-#include "calib/prepare_views.h"
+#include "cameras/diagnose.h"
 #include "commands.h"
 #include "core/error.h"
 #include "core/left_out.h"
@@ -18,6 +17,7 @@
 #include "pipeline/memory.h"
 #include "scene_arguments.h"
 #include "terminal_progress.h"
+#include "views/prepare_views.h"
 
 namespace photohull::cli {
 namespace {

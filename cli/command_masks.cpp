@@ -4,13 +4,13 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "calib/prepare_views.h"
 #include "commands.h"
 #include "core/error.h"
 #include "io/image_file.h"
 #include "pipeline/mask_policy.h"
 #include "scene_arguments.h"
 #include "terminal_progress.h"
+#include "views/prepare_views.h"
 
 namespace photohull::cli {
 namespace {

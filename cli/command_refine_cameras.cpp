@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <memory>
 
-#include "calib/prepare_views.h"
 #include "commands.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -14,6 +13,7 @@
 #include "pipeline/refine_cameras.h"
 #include "scene_arguments.h"
 #include "terminal_progress.h"
+#include "views/prepare_views.h"
 
 namespace photohull::cli {
 namespace {

@@ -1,10 +1,10 @@
 #include <cstdio>
 #include <memory>
 
-#include "chart/stress_job.h"
-#include "chart/style.h"
 #include "commands.h"
 #include "core/error.h"
+#include "lab/chart/stress_job.h"
+#include "lab/chart/style.h"
 #include "synth/spec.h"
 #include "terminal_progress.h"
 

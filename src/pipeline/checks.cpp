@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "calib/silhouette.h"
 #include "core/error.h"
+#include "masks/silhouette.h"
 #include "pipeline/memory.h"
 
 namespace photohull::pipeline {

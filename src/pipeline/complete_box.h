@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "calib/prepare_views.h"
-#include "calib/scene_points.h"
+#include "cameras/scene_points.h"
 #include "core/progress.h"
 #include "core/scene.h"
+#include "views/prepare_views.h"
 
 namespace photohull::pipeline {
 

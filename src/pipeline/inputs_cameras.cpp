@@ -5,11 +5,11 @@
 #include <cmath>
 #include <numeric>
 
-#include "calib/diagnose.h"
-#include "calib/feature_tracks.h"
-#include "calib/mask_bias.h"
-#include "calib/refine_cameras.h"
+#include "cameras/diagnose.h"
+#include "cameras/feature_tracks.h"
+#include "cameras/refine_cameras.h"
 #include "core/error.h"
+#include "masks/mask_bias.h"
 #include "pipeline/inputs.h"
 #include "pipeline/refine_cameras.h"
 #include "projtex/gpu_views.h"

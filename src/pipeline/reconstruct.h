@@ -67,18 +67,18 @@ struct ReconstructOptions {
   Lattice lattice = Lattice::kFit;
   Quality quality = Quality::kNormal;
   std::optional<Method> method;  ///< default: hull for draft, refine otherwise
-  /// Default: off for draft; else kAuto where masks' outlines disagree (calib/refine_cameras.h).
+  /// Default: off for draft; else kAuto where masks' outlines disagree (cameras/refine_cameras.h).
   std::optional<RefineCameras> refine_cameras;
   Photometric photometric = Photometric::kAuto;
-  /// Pixels by which outlines lie outside the masks'; nothing: measured (calib/mask_bias.h).
+  /// Pixels by which outlines lie outside the masks'; nothing: measured (masks/mask_bias.h).
   std::optional<double> mask_offset;
   /// Silhouettes that may leave a point out and it stands all the same, 0 to
   /// carving::HullOptions::kMostMissing; nothing: as many as carving/missing_parts.h takes, and
   /// only where what masks show would be missing otherwise.
   std::optional<int> views_may_miss;
-  bool keep_mask_holes = false;  ///< else calib/torn_masks.h mends masks that were given
+  bool keep_mask_holes = false;  ///< else masks/torn_masks.h mends masks that were given
   /// Of the photographs, standard deviation in 8-bit codes, 0 to 255; nothing: measured
-  /// (calib/noise.h).
+  /// (photo/noise.h).
   std::optional<double> noise;
   bool keep_views = false;  ///< use views that disagree with the others too
   MeshError mesh_error;

@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "calib/noise.h"
 #include "core/grid.h"
 #include "core/mesh.h"
 #include "gpu/context.h"
+#include "photo/noise.h"
 #include "projtex/image_set.h"
 #include "shared/bake.h"
 #include "shared/refine.h"
