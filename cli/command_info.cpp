@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "cameras/diagnose.h"
+#include "cli/front/command_table.h"
 #include "commands.h"
 #include "core/error.h"
 #include "core/left_out.h"
@@ -155,7 +156,7 @@ void run(const Arguments& a) {
 
 void add_info(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* c = app.add_subcommand("info", "tell what was understood of a scene");
+  CLI::App* c = add_command(app, "info");
   a->scene.add_to(*c);
   c->add_option("--resolution", a->resolution, "voxels along the box's longest side, to estimate");
   c->add_option("--voxel-size", a->voxel_size, "voxel size in world units, to estimate");

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "cli/front/command_table.h"
 #include "commands.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -96,8 +97,7 @@ void run(const Arguments& a) {
 
 void add_refine_cameras(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* c = app.add_subcommand("refine-cameras",
-                                   "make cameras that are slightly wrong fit the photographs");
+  CLI::App* c = add_command(app, "refine-cameras");
   a->scene.add_to(*c);
   c->add_option("--out", a->out, "folder for the refined scene; made when it does not exist")
       ->required();

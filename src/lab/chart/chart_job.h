@@ -15,14 +15,12 @@
 namespace photohull::chart {
 
 struct ChartOptions {
-  std::filesystem::path plan;    ///< exists
-  std::filesystem::path output;  ///< made when it does not exist
-  /// The program that reconstructs, evaluates and synthesizes; this one, unless a test says
-  /// otherwise.
-  std::filesystem::path program = "/proc/self/exe";
-  bool force = false;      ///< repeat runs and scenes that are there
-  bool retry = false;      ///< repeat runs that failed
-  bool draw_only = false;  ///< no runs: draw results.json again
+  std::filesystem::path plan;     ///< exists
+  std::filesystem::path output;   ///< made when it does not exist
+  std::filesystem::path program;  ///< reconstructs, evaluates and synthesizes
+  bool force = false;             ///< repeat runs and scenes that are there
+  bool retry = false;             ///< repeat runs that failed
+  bool draw_only = false;         ///< no runs: draw results.json again
 };
 
 struct ChartSummary {

@@ -19,10 +19,8 @@ struct StressOptions {
   std::filesystem::path output;  ///< made when it does not exist
   /// Folder of an earlier run, whose curves are drawn beside these; empty: none.
   std::filesystem::path before;
-  /// The program that synthesizes, reconstructs and evaluates; this one, unless a test says
-  /// otherwise.
-  std::filesystem::path program = "/proc/self/exe";
-  NormalizeSpec normalize;  ///< how specs are checked and compared
+  std::filesystem::path program;  ///< synthesizes, reconstructs and evaluates
+  NormalizeSpec normalize;        ///< how specs are checked and compared
   StressSelection selection;
   bool force = false;      ///< repeat runs that are there
   bool retry = false;      ///< repeat runs that failed

@@ -6,8 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "bench_visibility.h"
-#include "commands.h"
+#include "cli/front/command_table.h"
+#include "cli/lab/bench_visibility.h"
+#include "cli/lab/lab_commands.h"
+#include "cli/terminal_progress.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "gpu/context.h"
@@ -15,7 +17,6 @@
 #include "lab/chart/sampling_chart.h"
 #include "lab/chart/svg_renderer.h"
 #include "lab/sampling/sampling_study.h"
-#include "terminal_progress.h"
 
 namespace photohull::cli {
 namespace {
@@ -154,7 +155,7 @@ void run_sampling(const Arguments& a) {
 }  // namespace
 
 void add_bench(CLI::App& app) {
-  CLI::App* c = app.add_subcommand("bench", "measure parts of the program by themselves");
+  CLI::App* c = add_command(app, "bench");
   c->require_subcommand(1);
   auto a = std::make_shared<Arguments>();
   CLI::App* s =

@@ -1,12 +1,15 @@
 #include <cstdio>
 #include <memory>
 
-#include "commands.h"
+#include "cli/commands.h"
+#include "cli/front/command_table.h"
+#include "cli/front/programs.h"
+#include "cli/lab/lab_commands.h"
+#include "cli/terminal_progress.h"
 #include "core/error.h"
 #include "lab/chart/stress_job.h"
 #include "lab/chart/style.h"
 #include "synth/spec.h"
-#include "terminal_progress.h"
 
 namespace photohull::cli {
 namespace {
@@ -72,6 +75,7 @@ void run(const Arguments& a) {
   chart::StressOptions options;
   options.plan = a.plan;
   options.output = a.out;
+  options.program = program_beside(kMainProgram);
   options.before = a.before;
   options.selection = {a.axes, a.seeds};
   options.force = a.force;
@@ -95,8 +99,7 @@ void run(const Arguments& a) {
 
 void add_stress(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* c = app.add_subcommand(
-      "stress", "degrade synthetic scenes step by step and see where reconstruction breaks");
+  CLI::App* c = add_command(app, "stress");
   c->add_option("plan", a->plan, "JSON file: scenes, degradations, settings (docs/stability.md)")
       ->required();
   c->add_option("--out", a->out, "folder for results and charts; made when it does not exist")

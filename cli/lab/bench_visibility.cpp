@@ -1,4 +1,4 @@
-#include "bench_visibility.h"
+#include "cli/lab/bench_visibility.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "cli/terminal_progress.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "gpu/context.h"
@@ -15,7 +16,6 @@
 #include "lab/chart/sampling_chart.h"
 #include "lab/chart/svg_renderer.h"
 #include "lab/visibility/study.h"
-#include "terminal_progress.h"
 
 namespace photohull::cli {
 namespace {

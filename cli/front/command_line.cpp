@@ -1,20 +1,29 @@
-#include "command_line.h"
+#include "cli/front/command_line.h"
 
 #include <poll.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
 #include <string>
 
-#include "commands.h"
+#include "cli/front/parse_faults.h"
 #include "core/error.h"
-#include "parse_faults.h"
-#include "version.h"
+#include "core/progress.h"
 
 namespace photohull::cli {
 namespace {
+
+extern "C" void on_interrupt(int signal) {
+  // The second Ctrl-C ends the process at once.
+  if (cancellation_requested()) {
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+  }
+  request_cancellation();
+}
 
 std::string joined(const std::vector<std::string>& names) {
   std::string all;
@@ -34,8 +43,8 @@ void check_output() {
   if (!written && !reader_is_gone()) throw Error("standard output could not be written in full");
 }
 
-void run(int argc, const char* const* argv) {
-  const std::unique_ptr<CLI::App> app = make_parser();
+void run(int argc, const char* const* argv, const Commands& commands) {
+  const std::unique_ptr<CLI::App> app = make_parser(commands);
   // A command would run before what stands in front of it is looked at.
   if (argc > 2 && argv[1] == std::string("--json") && argv[2][0] != '-')
     throw UsageError("--json stands behind the command, or with --version; see --help");
@@ -43,7 +52,8 @@ void run(int argc, const char* const* argv) {
     app->parse(argc, argv);
     const bool version = app->count("--version") > 0, json = app->count("--json") > 0;
     if (version)
-      std::fputs((json ? version_json() : version_text() + "\n").c_str(), stdout);
+      std::fputs((json ? commands.version_json() : "photohull " PHOTOHULL_VERSION "\n").c_str(),
+                 stdout);
     else if (app->get_subcommands().empty())
       throw UsageError(
           concat("a command is missing: one of ", joined(command_names(*app)), "; see --help"));
@@ -56,7 +66,7 @@ void run(int argc, const char* const* argv) {
 
 }  // namespace
 
-std::unique_ptr<CLI::App> make_parser() {
+std::unique_ptr<CLI::App> make_parser(const Commands& commands) {
   auto app = std::make_unique<CLI::App>(
       "photohull turns calibrated photographs into a volume and a mesh by carving space.");
   app->add_flag("--version")->description("print the version");
@@ -69,24 +79,17 @@ std::unique_ptr<CLI::App> make_parser() {
       "  photohull reconstruct scan/transforms.json --out out/scan --quality draft\n\n"
       "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 done, but the result failed its own checks,\n"
       "4 the graphics device failed (out of memory, or lost), 130 cancelled.");
-  add_reconstruct(*app);
-  add_info(*app);
-  add_masks(*app);
-  add_convert(*app);
-  add_calibrate(*app);
-  add_refine_cameras(*app);
-  add_synthesize(*app);
-  add_evaluate(*app);
-  add_chart(*app);
-  add_stress(*app);
-  add_bench(*app);
-  add_devices(*app);
+  commands.add(*app);
   return app;
 }
 
-int run_command_line(int argc, const char* const* argv) {
+int run_command_line(int argc, const char* const* argv, const Commands& commands) {
+  return report_failures([&] { run(argc, argv, commands); });
+}
+
+int report_failures(const std::function<void()>& work) {
   try {
-    run(argc, argv);
+    work();
     return int(ExitCode::kSuccess);
   } catch (const Error& e) {
     std::fprintf(stderr, "photohull: %s\n", e.what());
@@ -97,6 +100,14 @@ int run_command_line(int argc, const char* const* argv) {
     std::fprintf(stderr, "photohull: unexpected failure: %s\n", e.what());
   }
   return int(ExitCode::kFailure);
+}
+
+void handle_signals() {
+  // What the caller ignores (nohup, background jobs of scripts) stays ignored.
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+    if (std::signal(signal, SIG_IGN) != SIG_IGN) std::signal(signal, on_interrupt);
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit becomes a write error with a message
 }
 
 }  // namespace photohull::cli

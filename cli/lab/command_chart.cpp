@@ -1,11 +1,14 @@
 #include <cstdio>
 #include <memory>
 
-#include "commands.h"
+#include "cli/commands.h"
+#include "cli/front/command_table.h"
+#include "cli/front/programs.h"
+#include "cli/lab/lab_commands.h"
+#include "cli/terminal_progress.h"
 #include "core/error.h"
 #include "lab/chart/chart_job.h"
 #include "lab/chart/style.h"
-#include "terminal_progress.h"
 
 namespace photohull::cli {
 namespace {
@@ -66,6 +69,7 @@ void run(const Arguments& a) {
   chart::ChartOptions options;
   options.plan = a.plan;
   options.output = a.out;
+  options.program = program_beside(kMainProgram);
   options.force = a.force;
   options.retry = a.retry;
   options.draw_only = a.draw_only;
@@ -87,8 +91,7 @@ void run(const Arguments& a) {
 
 void add_chart(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* c =
-      app.add_subcommand("chart", "run a plan of reconstructions and draw speed against accuracy");
+  CLI::App* c = add_command(app, "chart");
   c->add_option("plan", a->plan, "JSON file: scenes, methods, resolutions (docs/charts.md)")
       ->required();
   c->add_option("--out", a->out, "folder for results and charts; made when it does not exist")

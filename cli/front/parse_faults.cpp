@@ -1,4 +1,4 @@
-#include "parse_faults.h"
+#include "cli/front/parse_faults.h"
 
 #include <algorithm>
 
