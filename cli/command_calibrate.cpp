@@ -9,6 +9,7 @@
 #include "calib/calibrate_rig.h"
 #include "calib/judge_calibration.h"
 #include "calibration_json.h"
+#include "cli/front/command_table.h"
 #include "commands.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -189,8 +190,7 @@ void run(Arguments a) {
 
 void add_calibrate(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* c =
-      app.add_subcommand("calibrate", "find cameras' lenses and poses from photographs of a board");
+  CLI::App* c = add_command(app, "calibrate");
   c->add_option("images", a->images, "photographs, or folders of them")->required();
   c->add_option("--out", a->out, "JSON file for the calibration")->required();
   c->add_option("--board", a->board, "chess, charuco or circles")->capture_default_str();

@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "cli/front/command_table.h"
 #include "commands.h"
 #include "core/error.h"
 #include "io/write_scene.h"
@@ -61,7 +62,7 @@ void run(const Arguments& a) {
 
 void add_convert(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* c = app.add_subcommand("convert", "write a scene's cameras for another program");
+  CLI::App* c = add_command(app, "convert");
   a->scene.add_to(*c);
   c->add_option("--to", a->to, "format to write: " + format_names())->required();
   c->add_option("--out", a->out, "folder for the result; made when it does not exist")->required();

@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <string>
 
+#include "cli/front/command_table.h"
 #include "commands.h"
 #include "core/error.h"
 #include "gpu/device.h"
@@ -28,7 +29,7 @@ void run() {
 }  // namespace
 
 void add_devices(CLI::App& app) {
-  CLI::App* c = app.add_subcommand("devices", "list the EGL devices and which one 'auto' takes");
+  CLI::App* c = add_command(app, "devices");
   c->footer(
       "Examples:\n"
       "  photohull devices\n"

@@ -4,9 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "chart/png.h"
-#include "chart/reliability_chart.h"
-#include "chart/svg_renderer.h"
+#include "cli/front/command_table.h"
 #include "commands.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -18,8 +16,8 @@
 #include "eval/reliability.h"
 #include "evaluate_photos.h"
 #include "io/image_file.h"
+#include "io/mesh/read_mesh.h"
 #include "terminal_progress.h"
-#include "volume/read_mesh.h"
 
 namespace photohull::cli {
 namespace {
@@ -37,6 +35,7 @@ struct Arguments {
   std::optional<double> reliability;  ///< world units
   eval::EvaluateOptions options;
   bool json = false, align = false;
+  DrawReliability draw = nullptr;
 };
 
 void print_scores(const std::vector<eval::Score>& all, const std::vector<eval::Score>& seen) {
@@ -154,17 +153,8 @@ bool ends_with(const std::string& path, const char* extension) {
 }
 
 void write_plot(AtomicFile& file, const Arguments& a, const eval::Reliability& r) {
-  chart::ReliabilityCurve curve{fs::path(a.mesh).stem().string(), {}};
-  for (const eval::ReliabilityBin& b : r.bins)
-    curve.bins.push_back({b.low, b.high, b.count, b.confidence, b.within});
-  char title[80];
-  std::snprintf(title, sizeof title, "Within %.4g of the truth: calibration error %.3f", r.distance,
-                r.calibration_error);
-  const chart::Chart chart = chart::reliability_chart(title, {curve});
-  const std::string svg = chart::SvgRenderer().render(chart.option, chart.width, chart.height);
-  const std::string bytes = ends_with(a.reliability_plot, ".svg")
-                                ? svg
-                                : chart::to_png(svg, 2 * chart.width, 2 * chart.height);
+  const std::string bytes =
+      a.draw(fs::path(a.mesh).stem().string(), r, ends_with(a.reliability_plot, ".svg"));
   file.write(bytes.data(), bytes.size());
 }
 
@@ -182,6 +172,9 @@ void check(const Arguments& a) {
   if (!ends_with(a.reliability_plot, ".svg") && !ends_with(a.reliability_plot, ".png"))
     throw UsageError(concat("--reliability-plot ", a.reliability_plot,
                             ": expected a name that ends in .svg or .png"));
+  if (!a.draw)
+    throw UsageError(concat("--reliability-plot is drawn by ", kLabProgram,
+                            ", which photohull starts where it is asked for"));
 }
 
 eval::Evaluation evaluate_by_truth(const Arguments& a, const TriMesh& given, Outputs& outputs,
@@ -251,10 +244,10 @@ void run(const Arguments& a) {
 
 }  // namespace
 
-void add_evaluate(CLI::App& app) {
+void add_evaluate(CLI::App& app, DrawReliability draw) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* c =
-      app.add_subcommand("evaluate", "measure a mesh by the exact surface or by photographs");
+  a->draw = draw;
+  CLI::App* c = add_command(app, "evaluate");
   c->add_option("mesh", a->mesh, "the result: PLY, OBJ, OFF, STL or glTF; points without faces too")
       ->required();
   CLI::Option* truth =

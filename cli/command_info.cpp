@@ -2,8 +2,8 @@
 #include <exception>
 #include <memory>
 
-#include "calib/diagnose.h"
-#include "calib/prepare_views.h"
+#include "cameras/diagnose.h"
+#include "cli/front/command_table.h"
 #include "commands.h"
 #include "core/error.h"
 #include "core/left_out.h"
@@ -16,6 +16,7 @@
 #include "pipeline/mask_policy.h"
 #include "scene_arguments.h"
 #include "terminal_progress.h"
+#include "views/prepare_views.h"
 
 namespace photohull::cli {
 namespace {
@@ -139,7 +140,7 @@ void run(const Arguments& a) {
 
 void add_info(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* c = app.add_subcommand("info", "tell what was understood of a scene");
+  CLI::App* c = add_command(app, "info");
   a->scene.add_to(*c);
   Described job;
   describe(job, a->job);

@@ -4,13 +4,14 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "calib/prepare_views.h"
+#include "cli/front/command_table.h"
 #include "commands.h"
 #include "core/error.h"
 #include "io/image_file.h"
 #include "pipeline/mask_policy.h"
 #include "scene_arguments.h"
 #include "terminal_progress.h"
+#include "views/prepare_views.h"
 
 namespace photohull::cli {
 namespace {
@@ -140,7 +141,7 @@ void run(const Arguments& a) {
 
 void add_masks(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* c = app.add_subcommand("masks", "find the object in photographs, as reconstruct does");
+  CLI::App* c = add_command(app, "masks");
   a->scene.add_to(*c);
   c->add_option("--out", a->out, "folder to write the masks to (VIEW.png), to touch them up");
   c->add_option("--compare", a->compare,

@@ -1,10 +1,12 @@
 #include <cstdio>
 #include <memory>
 
+#include "cli/front/command_table.h"
+#include "cli/front/parse_faults.h"
 #include "commands.h"
 #include "core/error.h"
+#include "core/parse_name.h"
 #include "option_flags.h"
-#include "parse_faults.h"
 #include "pipeline/image_scale.h"
 #include "pipeline/reconstruct.h"
 #include "scene_arguments.h"
@@ -98,7 +100,7 @@ void check_reconstruct(const std::vector<std::string>& arguments) {
 
 void add_reconstruct(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* c = app.add_subcommand("reconstruct", "carve a volume and a mesh from photographs");
+  CLI::App* c = add_command(app, "reconstruct");
   add_options(*c, *a);
   c->footer(
       "Writes volume.vdb, mesh.ply, preview.png and report.json into the output folder.\n\n"

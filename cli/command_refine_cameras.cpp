@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "calib/prepare_views.h"
+#include "cli/front/command_table.h"
 #include "commands.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -14,6 +14,7 @@
 #include "pipeline/refine_cameras.h"
 #include "scene_arguments.h"
 #include "terminal_progress.h"
+#include "views/prepare_views.h"
 
 namespace photohull::cli {
 namespace {
@@ -97,8 +98,7 @@ void run(const Arguments& a) {
 
 void add_refine_cameras(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* c = app.add_subcommand("refine-cameras",
-                                   "make cameras that are slightly wrong fit the photographs");
+  CLI::App* c = add_command(app, "refine-cameras");
   a->scene.add_to(*c);
   c->add_option("--out", a->out, "folder for the refined scene; made when it does not exist")
       ->required();

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "cli/front/command_table.h"
 #include "commands.h"
 #include "core/error.h"
 #include "synth/synthesize.h"
@@ -73,8 +74,7 @@ void run(const Arguments& a) {
 
 void add_synthesize(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* c = app.add_subcommand(
-      "synthesize", "make calibrated photographs of a surface that is known exactly");
+  CLI::App* c = add_command(app, "synthesize");
   c->add_option("spec", a->spec, "JSON file that says what is photographed and how");
   c->add_option("--out", a->out, "folder for the scene: new, empty, or an older synthesized scene");
   c->add_option("--views", a->views, "number of views in place of the spec's");

@@ -5,17 +5,17 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "calib/noise.h"
-#include "calib/prepare_views.h"
 #include "core/error.h"
 #include "core/parse_name.h"
 #include "eval/agreement_picture.h"
 #include "io/image_file.h"
 #include "io/load_scene.h"
 #include "io/select_views.h"
+#include "mesh/simplify_mesh.h"
+#include "photo/noise.h"
 #include "pipeline/mask_policy.h"
 #include "pipeline/photometric.h"
-#include "volume/simplify_mesh.h"
+#include "views/prepare_views.h"
 
 namespace photohull::cli {
 namespace {

@@ -1,9 +1,9 @@
 // What `photohull info` prints.
 #pragma once
 
-#include "calib/diagnose.h"
-#include "calib/prepare_views.h"
+#include "cameras/diagnose.h"
 #include "pipeline/inspect.h"
+#include "views/prepare_views.h"
 
 namespace photohull::cli {
 

@@ -32,8 +32,6 @@ ordered_json device() {
 
 }  // namespace
 
-std::string version_text() { return "photohull " PHOTOHULL_VERSION; }
-
 std::string version_json() {
   const ordered_json out = {{"version", PHOTOHULL_VERSION},
                             {"commit", PHOTOHULL_COMMIT},

@@ -5,9 +5,6 @@
 
 namespace photohull::cli {
 
-/// "photohull 0.1.0".
-std::string version_text();
-
 /// JSON: version, commit of the program's sources, versions of the libraries that it was built
 /// with, and the device that --device auto takes (null where there is none).
 std::string version_json();

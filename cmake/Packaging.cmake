@@ -2,7 +2,7 @@
 include(GNUInstallDirs)
 
 if(TARGET photohull)
-  install(TARGETS photohull RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(TARGETS photohull photohull-main photohull-lab RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
 install(FILES README.md CHANGELOG.md BIBLIOGRAPHY.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)

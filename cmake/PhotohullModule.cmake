@@ -1,8 +1,9 @@
-# photohull_module(NAME SOURCES files... [PUBLIC libs...] [PRIVATE libs...])
+# photohull_module(NAME [VECTOR_ROOTS] SOURCES files... [PUBLIC libs...] [PRIVATE libs...])
 # One static library per folder of src/. PRIVATE links keep a dependency's headers out of the
-# modules above; the arrows are those of docs/architecture.md.
+# modules above; the arrows are those of docs/architecture.md, and include lines keep to them
+# (CheckIncludes.cmake). VECTOR_ROOTS lets square roots become vector code.
 function(photohull_module name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "VECTOR_ROOTS" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   add_library(photohull_${name} STATIC ${ARG_SOURCES})
   add_library(photohull::${name} ALIAS photohull_${name})
   target_include_directories(photohull_${name} PUBLIC ${PROJECT_SOURCE_DIR}/src)
@@ -11,6 +12,22 @@ function(photohull_module name)
   target_link_libraries(photohull_${name} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
   photohull_precompile(photohull_${name} photohull_core
     <algorithm> <filesystem> <functional> <glm/glm.hpp> <nlohmann/json.hpp> <span> <string> <vector>)
+  if(ARG_VECTOR_ROOTS)
+    target_compile_options(photohull_${name} PRIVATE -fno-math-errno)
+    # Headers precompiled without that flag do not fit.
+    set_target_properties(photohull_${name} PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)
+  endif()
+  photohull_uses(${name} ${ARG_PUBLIC} ${ARG_PRIVATE})
+endfunction()
+
+# photohull_uses(NAME libs...): notes that the sources in this folder may include headers of the
+# modules among the libraries.
+function(photohull_uses name)
+  list(FILTER ARGN INCLUDE REGEX "^photohull::")
+  list(TRANSFORM ARGN REPLACE "^photohull::" "")
+  list(JOIN ARGN " " used)
+  file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+  set_property(GLOBAL APPEND_STRING PROPERTY PHOTOHULL_USES "${name} ${folder} ${used}\n")
 endfunction()
 
 # photohull_precompile(TARGET OWNER headers...): compiles the headers once, for OWNER, and all other

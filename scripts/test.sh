@@ -107,6 +107,8 @@ citations() {
 installation() {
   cmake --install $build --prefix "$scratch/prefix"
   "$scratch/prefix/bin/photohull" --version | grep -F "$(project_version)"
+  "$scratch/prefix/bin/photohull" --version --json | grep -F OpenVDB
+  "$scratch/prefix/bin/photohull" chart --help | grep -F -- --draw-only
 }
 
 project_version() { sed -n 's/^project(photohull VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt; }
@@ -114,7 +116,10 @@ project_version() { sed -n 's/^project(photohull VERSION \([0-9.]*\).*/\1/p' CMa
 debian_package() {
   (cd $build && cpack -G DEB -B "$scratch/package")
   dpkg -I "$scratch"/package/photohull_*.deb
-  dpkg -c "$scratch"/package/photohull_*.deb | grep -F ./usr/bin/photohull
+  local program
+  for program in photohull photohull-main photohull-lab; do
+    dpkg -c "$scratch"/package/photohull_*.deb | grep -F "./usr/bin/$program"
+  done
   dpkg-deb -f "$scratch"/package/photohull_*.deb Depends | grep -F libopenvdb
 }
 

@@ -26,8 +26,8 @@ while [ $# -gt 0 ]; do
   esac
   shift
 done
-[ ${#tests[@]} -gt 0 ] || tests=(core_test io_test raycast_test volume_test calib_test assess_test
-  carving_test refine_test pipeline_test)
+[ ${#tests[@]} -gt 0 ] || tests=(core_test io_test io_mesh_test raycast_test photo_test masks_test views_test
+  frontier_test volume_test mesh_test assess_test carving_test refine_test pipeline_test)
 
 cd "$root"
 export CCACHE_BASEDIR=$root

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "calib/frontier.h"
+#include "cameras/frontier.h"
 #include "core/camera.h"
 
 namespace photohull::assess {

@@ -11,9 +11,9 @@
 #include <numeric>
 #include <optional>
 
-#include "calib/grey_image.h"
 #include "core/clip_ray.h"
 #include "core/error.h"
+#include "photo/grey_image.h"
 
 namespace photohull::assess {
 namespace {

@@ -8,8 +8,8 @@
 #include <numbers>
 #include <optional>
 
-#include "calib/grey_image.h"
 #include "core/median.h"
+#include "photo/grey_image.h"
 
 namespace photohull::assess {
 namespace {

@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "calib/outline_probe.h"
 #include "core/clip_ray.h"
 #include "core/median.h"
+#include "masks/outline_probe.h"
 
 namespace photohull::assess {
 namespace {

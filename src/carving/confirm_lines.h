@@ -28,7 +28,7 @@ struct ConfirmedLines {
   std::vector<glm::dvec3> places;             ///< in space, one for each of their points
 };
 
-/// Of each view's candidates (calib/photo_lines.h) those that views confirm: there is a place on
+/// Of each view's candidates (masks/photo_lines.h) those that views confirm: there is a place on
 /// the point's ray, in the box, at which most of the views that see it have foreground or a
 /// candidate, and enough of them a candidate that runs along the same direction in space. Lines are
 /// then followed as far as most views have anything there. Views without a distance say nothing,

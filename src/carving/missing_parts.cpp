@@ -7,11 +7,11 @@
 #include <cstdint>
 #include <optional>
 
-#include "calib/mask_lines.h"
-#include "calib/outline_probe.h"
-#include "calib/silhouette.h"
 #include "core/clip_ray.h"
 #include "core/error.h"
+#include "masks/mask_lines.h"
+#include "masks/outline_probe.h"
+#include "masks/silhouette.h"
 
 namespace photohull::carving {
 namespace {

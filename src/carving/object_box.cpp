@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "calib/mask_lines.h"
-#include "calib/silhouette.h"
+#include "masks/mask_lines.h"
+#include "masks/silhouette.h"
 
 namespace photohull::carving {
 namespace {

@@ -8,8 +8,8 @@
 #include <functional>
 #include <vector>
 
-#include "calib/outline_probe.h"
 #include "carving/join_parts.h"
+#include "masks/outline_probe.h"
 #include "projtex/gpu_views.h"
 
 namespace photohull::carving {

@@ -42,7 +42,7 @@ struct View {
   Camera camera;  ///< pinhole; intrinsics match the image's size
   ColourImage image;
   Mask mask;
-  /// Share of fine detail beside views of the same (calib/sharpness.h): 1 as sharp as they are.
+  /// Share of fine detail beside views of the same (views/sharpness.h): 1 as sharp as they are.
   double sharpness = 1;
 };
 

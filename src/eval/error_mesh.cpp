@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "core/image.h"
-#include "volume/write_mesh.h"
+#include "io/mesh/write_mesh.h"
 
 namespace photohull::eval {
 

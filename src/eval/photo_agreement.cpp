@@ -8,9 +8,9 @@
 #include <cmath>
 #include <mutex>
 
-#include "calib/noise.h"
 #include "core/error.h"
 #include "eval/window_agreement.h"
+#include "photo/noise.h"
 
 namespace photohull::eval {
 namespace {

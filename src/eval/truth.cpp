@@ -7,8 +7,8 @@
 #include "core/error.h"
 #include "core/median.h"
 #include "eval/nearest_sample.h"
-#include "volume/read_mesh.h"
-#include "volume/write_mesh.h"
+#include "io/mesh/read_mesh.h"
+#include "io/mesh/write_mesh.h"
 
 namespace photohull::eval {
 namespace {

@@ -6,13 +6,13 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
-#include "calib/masks.h"
-#include "calib/undistort.h"
 #include "core/error.h"
 #include "core/image_scale.h"
 #include "core/scaled_size.h"
 #include "io/image_file.h"
+#include "masks/masks.h"
 #include "pipeline/box_picture_parts.h"
+#include "views/undistort.h"
 
 namespace photohull::pipeline {
 namespace picture {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "calib/scene_points.h"
+#include "cameras/scene_points.h"
 #include "core/scene.h"
 
 namespace photohull::pipeline {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/scene_points.h"
+#include "cameras/scene_points.h"
 #include "core/scene.h"
 
 namespace photohull::pipeline::picture {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "calib/silhouette.h"
 #include "core/error.h"
 #include "core/median.h"
+#include "masks/silhouette.h"
 #include "pipeline/memory.h"
 
 namespace photohull::pipeline {

@@ -4,8 +4,8 @@
 #include <sstream>
 #include <utility>
 
-#include "calib/feature_tracks.h"
-#include "calib/triangulate.h"
+#include "cameras/feature_tracks.h"
+#include "cameras/triangulate.h"
 #include "core/error.h"
 #include "io/spread_views.h"
 #include "pipeline/find_box.h"

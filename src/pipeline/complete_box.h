@@ -4,11 +4,11 @@
 #include <optional>
 #include <vector>
 
-#include "calib/prepare_views.h"
-#include "calib/scene_points.h"
+#include "cameras/scene_points.h"
 #include "core/describe.h"
 #include "core/progress.h"
 #include "core/scene.h"
+#include "views/prepare_views.h"
 
 namespace photohull::pipeline {
 

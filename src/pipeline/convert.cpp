@@ -2,10 +2,10 @@
 
 #include <cmath>
 
-#include "calib/masks.h"
-#include "calib/undistort.h"
 #include "core/error.h"
 #include "io/image_file.h"
+#include "masks/masks.h"
+#include "views/undistort.h"
 
 namespace photohull::pipeline {
 namespace {

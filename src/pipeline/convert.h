@@ -9,7 +9,7 @@
 namespace photohull::pipeline {
 
 /// Photographs and masks resampled once to pinhole cameras without skew, with square pixels and
-/// the principal point in the middle (calib/undistort.h, rectify), written as 8-bit sRGB PNG to
+/// the principal point in the middle (views/undistort.h, rectify), written as 8-bit sRGB PNG to
 /// `folder`/images and `folder`/masks: what any format can express. Pixels that a photograph does
 /// not show are transparent in the picture and object in the mask. Returns the scene with these
 /// images and cameras. Throws Error, Cancelled.

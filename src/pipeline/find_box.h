@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/scene_points.h"
+#include "cameras/scene_points.h"
 #include "core/box.h"
 #include "core/image.h"
 #include "core/progress.h"
@@ -34,7 +34,7 @@ struct BoxEvidence {
 ///     the visual hull (carving/object_box.h), carved from a cube around the point nearest to the
 ///     rays through the foregrounds' middles.
 ///  2. Points: the scene file's where there are at least 100, else features of the photographs
-///     (calib/scene_points.h). A point counts once for each view that confirms another. Those go
+///     (cameras/scene_points.h). A point counts once for each view that confirms another. Those go
 ///     that only a small part of the cameras have on their images (less than half of what the
 ///     best-seen point has where cameras look from all around, less than a third else), that are
 ///     farther from where the axes meet than the cameras are (where they do meet), or that are not

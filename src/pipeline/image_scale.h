@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "calib/prepare_views.h"
 #include "core/box.h"
 #include "core/scene.h"
+#include "views/prepare_views.h"
 
 namespace photohull::pipeline {
 

@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/crop.h"
-#include "calib/noise.h"
-#include "calib/prepare_views.h"
-#include "calib/torn_masks.h"
 #include "carving/object_box.h"
 #include "core/error.h"
+#include "masks/torn_masks.h"
+#include "photo/noise.h"
 #include "pipeline/checks.h"
 #include "pipeline/complete_box.h"
 #include "pipeline/image_scale.h"
@@ -19,6 +17,8 @@
 #include "pipeline/plan.h"
 #include "pipeline/view_order.h"
 #include "projtex/gpu_views.h"
+#include "views/crop.h"
+#include "views/prepare_views.h"
 
 namespace photohull::pipeline {
 namespace {

@@ -8,15 +8,15 @@
 #include <vector>
 
 #include "assess/common_error.h"
-#include "calib/frontier.h"
-#include "calib/prepare_views.h"
-#include "calib/refine_cameras.h"
-#include "calib/silhouette.h"
+#include "cameras/frontier.h"
+#include "cameras/refine_cameras.h"
 #include "carving/hull.h"
 #include "core/grid.h"
 #include "core/progress.h"
 #include "core/scene.h"
+#include "masks/silhouette.h"
 #include "pipeline/reconstruct.h"
+#include "views/prepare_views.h"
 
 namespace photohull::pipeline {
 

@@ -5,13 +5,13 @@
 #include <cmath>
 #include <numeric>
 
-#include "calib/diagnose.h"
-#include "calib/feature_tracks.h"
-#include "calib/mask_bias.h"
-#include "calib/mask_lines.h"
-#include "calib/refine_cameras.h"
+#include "cameras/diagnose.h"
+#include "cameras/feature_tracks.h"
+#include "cameras/refine_cameras.h"
 #include "carving/missing_parts.h"
 #include "core/error.h"
+#include "masks/mask_bias.h"
+#include "masks/mask_lines.h"
 #include "pipeline/inputs.h"
 #include "pipeline/refine_cameras.h"
 #include "projtex/gpu_views.h"

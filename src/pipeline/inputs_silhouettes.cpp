@@ -5,19 +5,19 @@
 #include <cmath>
 
 #include "assess/wrong_views.h"
-#include "calib/diagnose.h"
-#include "calib/mask_bias.h"
-#include "calib/mask_lines.h"
-#include "calib/photo_lines.h"
-#include "calib/refine_cameras.h"
-#include "calib/sharpness.h"
+#include "cameras/diagnose.h"
+#include "cameras/refine_cameras.h"
 #include "carving/confirm_lines.h"
 #include "carving/missing_parts.h"
 #include "core/error.h"
 #include "core/left_out.h"
+#include "masks/mask_bias.h"
+#include "masks/mask_lines.h"
+#include "masks/photo_lines.h"
 #include "pipeline/inputs.h"
 #include "pipeline/self_check.h"
 #include "pipeline/tuning.h"
+#include "views/sharpness.h"
 
 namespace photohull::pipeline {
 namespace {

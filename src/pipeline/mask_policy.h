@@ -1,8 +1,8 @@
 // What --masks means for the preparation of views.
 #pragma once
 
-#include "calib/prepare_views.h"
 #include "io/load_scene.h"
+#include "views/prepare_views.h"
 
 namespace photohull::pipeline {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/silhouette.h"
+#include "masks/silhouette.h"
 #include "raycast/ray_scene.h"
 
 namespace photohull::pipeline {

@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "calib/photometric_check.h"
-#include "calib/photometric_samples.h"
 #include "core/error.h"
+#include "views/photometric_check.h"
+#include "views/photometric_samples.h"
 
 namespace photohull::pipeline {
 namespace {

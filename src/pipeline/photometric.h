@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "calib/photometric.h"
 #include "core/image.h"
 #include "core/mesh.h"
 #include "core/scene.h"
+#include "views/photometric.h"
 
 namespace photohull::pipeline {
 
@@ -24,7 +24,7 @@ struct PhotometricOutcome {
   std::string warning;  ///< empty: none
 };
 
-/// A quick look (calib/photometric_check.h) whether the views' gains differ by more than the noise
+/// A quick look (views/photometric_check.h) whether the views' gains differ by more than the noise
 /// of their estimate, on some hundred points of the mesh, which may be coarse. Where they do not,
 /// the outcome says so and the photographs stay. Where they do, or where these points cannot tell,
 /// nothing is returned, and correct_photometric has to tell. Throws Error, Cancelled.

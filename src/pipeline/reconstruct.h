@@ -58,12 +58,12 @@ struct ReconstructOptions {
   Lattice lattice = Lattice::kFit;
   Quality quality = Quality::kNormal;
   std::optional<Method> method;
-  std::optional<RefineCameras> refine_cameras;  ///< by default see calib/refine_cameras.h
+  std::optional<RefineCameras> refine_cameras;  ///< by default see cameras/refine_cameras.h
   Photometric photometric = Photometric::kAuto;
-  std::optional<double> mask_offset;  ///< nothing: measured (calib/mask_bias.h)
+  std::optional<double> mask_offset;  ///< nothing: measured (masks/mask_bias.h)
   std::optional<int> views_may_miss;  ///< nothing: by evidence (carving/missing_parts.h)
-  bool keep_mask_holes = false;       ///< else they are mended (calib/torn_masks.h)
-  std::optional<double> noise;        ///< nothing: measured (calib/noise.h)
+  bool keep_mask_holes = false;       ///< else they are mended (masks/torn_masks.h)
+  std::optional<double> noise;        ///< nothing: measured (photo/noise.h)
   bool keep_views = false;
   MeshError mesh_error;
   Unseen unseen = Unseen::kAuto;

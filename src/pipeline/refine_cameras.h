@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "calib/refine_cameras.h"
+#include "cameras/refine_cameras.h"
 #include "core/scene.h"
 
 namespace photohull::pipeline {

@@ -5,11 +5,11 @@
 
 #include "core/grid.h"
 #include "gpu/context.h"
+#include "mesh/sharpen_edges.h"
 #include "pipeline/hull_stage.h"
 #include "pipeline/inputs.h"
 #include "projtex/image_set.h"
 #include "refine/refine.h"
-#include "volume/sharpen_edges.h"
 
 namespace photohull::pipeline {
 

@@ -71,7 +71,7 @@ struct SamplingReport {
   double r_consistency = 0;  ///< pixels
 };
 
-/// What silhouettes show of thin parts, and where they disagree (calib/mask_lines.h,
+/// What silhouettes show of thin parts, and where they disagree (masks/mask_lines.h,
 /// carving/missing_parts.h, carving/fit_stems.h).
 struct ThinReport {
   std::int64_t line_pixels = 0;      ///< of all masks: parts narrower than about two pixels
@@ -110,11 +110,11 @@ struct Report {
   double smallest_scale = 1, largest_scale = 1;  ///< at which photographs were read
   std::string mask_source;
   double mask_confidence = 0;
-  /// Pixels (calib/refine_cameras.h, tangent_disagreement); NaN where it was not looked at.
+  /// Pixels (cameras/refine_cameras.h, tangent_disagreement); NaN where it was not looked at.
   double mask_disagreement = NAN;
   /// Pixels outside an outline at which one view alone carves (HullOptions); 0: at once.
   double full_evidence = 0;
-  int masks_mended = 0;                   ///< by calib/torn_masks.h
+  int masks_mended = 0;                   ///< by masks/torn_masks.h
   std::vector<OutlineRoom> outline_room;  ///< of views whose outlines are off
   double mask_offset = 0;         ///< pixels by which the masks' outlines were moved outward
   std::vector<MaskReport> masks;  ///< of each view
@@ -127,7 +127,7 @@ struct Report {
   assess::Verdict verdict;
   std::string verdict_json;           ///< the same with what it rests on (pipeline/self_check.h)
   std::vector<std::string> left_out;  ///< views whose silhouettes contradict the others'
-  std::vector<std::pair<std::string, double>> sharpness;  ///< of each view (calib/sharpness.h)
+  std::vector<std::pair<std::string, double>> sharpness;  ///< of each view (views/sharpness.h)
   std::vector<std::string> masks_left_out;                ///< of views whose cameras are right
   double noise_sigma = 0;  ///< square-root-encoded units of full scale
   GridSpec grid;

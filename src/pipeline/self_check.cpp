@@ -8,10 +8,10 @@
 #include "assess/explained.h"
 #include "assess/silhouette_check.h"
 #include "assess/surface_probes.h"
-#include "calib/silhouette.h"
 #include "carving/fit_grid.h"
+#include "masks/silhouette.h"
+#include "mesh/join_meshes.h"
 #include "raycast/ray_scene.h"
-#include "volume/join_meshes.h"
 
 namespace photohull::pipeline {
 namespace {

@@ -2,12 +2,12 @@
 
 #include "carving/fit_grid.h"
 #include "core/error.h"
+#include "mesh/join_meshes.h"
+#include "mesh/remove_islands.h"
+#include "mesh/remove_unseen.h"
 #include "render/bake_colour.h"
 #include "volume/components.h"
 #include "volume/extract_mesh.h"
-#include "volume/join_meshes.h"
-#include "volume/remove_islands.h"
-#include "volume/remove_unseen.h"
 
 namespace photohull::pipeline {
 namespace {

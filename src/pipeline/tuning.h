@@ -7,9 +7,9 @@
 #include "carving/fit_stems.h"
 #include "carving/missing_parts.h"
 #include "carving/photo.h"
+#include "mesh/sharpen_edges.h"
 #include "pipeline/reconstruct.h"
 #include "refine/refine.h"
-#include "volume/sharpen_edges.h"
 
 namespace photohull::pipeline {
 

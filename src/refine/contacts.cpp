@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "calib/silhouette.h"
+#include "masks/silhouette.h"
 #include "projtex/gpu_views.h"
 
 namespace photohull::refine {

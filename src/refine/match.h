@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "calib/noise.h"
 #include "core/describe.h"
 #include "core/grid.h"
 #include "core/mesh.h"
 #include "gpu/context.h"
+#include "photo/noise.h"
 #include "projtex/image_set.h"
 #include "shared/bake.h"
 #include "shared/refine.h"

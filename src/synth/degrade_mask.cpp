@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/silhouette.h"
+#include "masks/silhouette.h"
 #include "synth/random.h"
 
 namespace photohull::synth {

@@ -12,8 +12,8 @@
 #include "core/json_levels.h"
 #include "core/read_file.h"
 #include "io/image_file.h"
+#include "io/mesh/write_mesh.h"
 #include "io/write_scene.h"
-#include "volume/write_mesh.h"
 
 namespace photohull::synth {
 namespace fs = std::filesystem;

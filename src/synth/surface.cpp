@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "core/error.h"
-#include "volume/read_mesh.h"
+#include "io/mesh/read_mesh.h"
 
 namespace photohull::synth {
 namespace {

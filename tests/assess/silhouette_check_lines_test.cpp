@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "assess/silhouette_check.h"
-#include "calib/mask_lines.h"
-#include "calib/silhouette.h"
 #include "carving/rods.h"
+#include "masks/mask_lines.h"
+#include "masks/silhouette.h"
 #include "meshes.h"
 #include "support/silhouettes.h"
 

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "calib/silhouette.h"
 #include "core/clip_ray.h"
+#include "masks/silhouette.h"
 #include "meshes.h"
 #include "support/silhouettes.h"
 

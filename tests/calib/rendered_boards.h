@@ -8,9 +8,9 @@
 #include <opencv2/aruco/charuco.hpp>
 
 #include "calib/calibrate_board.h"
-#include "calib/undistort.h"
 #include "core/error.h"
-#include "pictures.h"
+#include "support/pictures.h"
+#include "views/undistort.h"
 
 namespace photohull {
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "volume/analytic_volumes.h"
+#include "support/analytic_volumes.h"
 
 namespace photohull::carving {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "calib/mask_lines.h"
-#include "calib/silhouette.h"
 #include "carving/rods.h"
+#include "masks/mask_lines.h"
+#include "masks/silhouette.h"
 
 namespace photohull::carving {
 namespace {

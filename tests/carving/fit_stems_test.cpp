@@ -5,8 +5,8 @@
 
 #include <numbers>
 
-#include "calib/mask_lines.h"
 #include "carving/rods.h"
+#include "masks/mask_lines.h"
 #include "render/meshes.h"
 
 namespace photohull::carving {

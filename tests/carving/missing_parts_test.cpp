@@ -3,12 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include "calib/mask_lines.h"
-#include "calib/silhouette.h"
 #include "carving/fit_grid.h"
 #include "carving/rods.h"
 #include "carving/thin_parts.h"
-#include "volume/analytic_volumes.h"
+#include "masks/mask_lines.h"
+#include "masks/silhouette.h"
+#include "support/analytic_volumes.h"
 
 namespace photohull::carving {
 namespace {

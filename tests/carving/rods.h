@@ -4,8 +4,8 @@
 #include <numbers>
 #include <vector>
 
-#include "calib/drawn_masks.h"
 #include "core/mesh.h"
+#include "masks/drawn_masks.h"
 #include "support/cameras.h"
 
 namespace photohull::test {

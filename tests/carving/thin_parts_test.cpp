@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "carving/fit_grid.h"
+#include "support/analytic_volumes.h"
 #include "support/silhouettes.h"
-#include "volume/analytic_volumes.h"
 
 namespace photohull::carving {
 namespace {

@@ -7,7 +7,8 @@
 #include <set>
 #include <sstream>
 
-#include "cli/command_line.h"
+#include "cli/commands.h"
+#include "cli/lab/lab_commands.h"
 #include "core/error.h"
 #include "sphere_scene.h"
 #include "support/effort.h"
@@ -58,7 +59,8 @@ void collect(const CLI::App& app, std::vector<Option>& options) {
 class CommandLines : public SphereScene {
  protected:
   CommandLines() {
-    collect(*cli::make_parser(), options_);
+    collect(*cli::make_parser(cli::main_commands()), options_);
+    collect(*cli::make_parser(cli::lab_commands()), options_);
     fs::create_directories(path("cwd"));
     write_bytes(path("spec.json"), R"({"image": {"width": 48, "height": 40, "samples": 1},
         "cameras": {"layout": "hemisphere", "count": 4}, "truth_samples": 500})");

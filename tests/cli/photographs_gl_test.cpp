@@ -2,10 +2,10 @@
 #include <nlohmann/json.hpp>
 
 #include "io/image_file.h"
+#include "io/mesh/write_mesh.h"
 #include "io/write_scene.h"
 #include "sphere_scene.h"
-#include "volume/analytic_volumes.h"
-#include "volume/write_mesh.h"
+#include "support/analytic_volumes.h"
 
 namespace photohull::test {
 namespace {

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "io/image_file.h"
+#include "io/mesh/read_mesh.h"
 #include "sphere_scene.h"
-#include "volume/read_mesh.h"
 
 namespace photohull::test {
 namespace {

@@ -6,9 +6,9 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "io/mesh/write_mesh.h"
 #include "sphere_scene.h"
-#include "volume/analytic_volumes.h"
-#include "volume/write_mesh.h"
+#include "support/analytic_volumes.h"
 #include "volume/write_vdb.h"
 
 namespace photohull::test {

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "io/mesh/write_mesh.h"
 #include "sphere_scene.h"
-#include "volume/analytic_volumes.h"
-#include "volume/write_mesh.h"
+#include "support/analytic_volumes.h"
 
 namespace photohull::test {
 namespace {

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "cli/front/command_table.h"
 #include "io/image_file.h"
 #include "io/load_scene.h"
 #include "io/write_scene.h"
@@ -23,13 +24,30 @@ class Usage : public SphereScene {
 };
 
 TEST_F(Usage, HelpShowsExamples) {
-  EXPECT_THAT(succeed({"--help"}).out, HasSubstr("Examples:"));
-  for (const char* command : {"reconstruct", "info", "devices"}) {
-    const Finished help = succeed({command, "--help"});
+  const std::string all = succeed({"--help"}).out;
+  EXPECT_THAT(all, HasSubstr("Examples:"));
+  for (const cli::CommandEntry& command : cli::command_table()) {
+    EXPECT_THAT(all, HasSubstr(std::string(command.description)));
+    const Finished help = succeed({std::string(command.name), "--help"});
     EXPECT_THAT(help.out, HasSubstr("Examples:\n  photohull "));
     EXPECT_EQ(help.err, "");
   }
   EXPECT_THAT(succeed({"--version"}).out, StartsWith("photohull "));
+}
+
+TEST_F(Usage, SaysWhichProgramIsMissingBesideIt) {
+  const std::string alone = path("photohull");
+  std::filesystem::copy_file(PHOTOHULL_PROGRAM, alone);
+  EXPECT_THAT(run_program({alone, "--version"}).out, StartsWith("photohull "));
+  const std::pair<const char*, const char*> programs[] = {{"info", "photohull-main"},
+                                                          {"chart", "photohull-lab"}};
+  for (const auto& [command, program] : programs) {
+    const Finished run = run_program({alone, command, "--help"});
+    EXPECT_EQ(run.code, 1);
+    EXPECT_EQ(run.err, "photohull: " + path(program) +
+                           ": cannot be started: No such file or directory; it belongs beside "
+                           "photohull\n");
+  }
 }
 
 TEST_F(Usage, InfoTellsWhatWasUnderstood) {

@@ -5,9 +5,9 @@
 #include "core/image.h"
 #include "eval/error_image.h"
 #include "eval/error_mesh.h"
+#include "io/mesh/write_mesh.h"
 #include "shapes.h"
 #include "support/scratch_folder.h"
-#include "volume/write_mesh.h"
 
 namespace photohull::eval {
 namespace {

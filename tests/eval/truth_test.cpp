@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "io/mesh/write_mesh.h"
 #include "shapes.h"
 #include "support/scratch_folder.h"
-#include "volume/write_mesh.h"
 
 namespace photohull::eval {
 namespace {

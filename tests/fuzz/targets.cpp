@@ -7,22 +7,22 @@
 #include <optional>
 
 #include "archive.h"
-#include "chart/external.h"
-#include "chart/plan.h"
-#include "chart/results_file.h"
-#include "chart/stress_plan.h"
-#include "chart/stress_record.h"
 #include "cli/number_list.h"
 #include "cli/scene_arguments.h"
 #include "core/error.h"
 #include "io/image_file.h"
 #include "io/load_scene.h"
+#include "io/mesh/read_mesh.h"
 #include "io/select_views.h"
 #include "io/write_scene.h"
+#include "lab/chart/external.h"
+#include "lab/chart/plan.h"
+#include "lab/chart/results_file.h"
+#include "lab/chart/stress_plan.h"
+#include "lab/chart/stress_record.h"
 #include "pipeline/tuning.h"
 #include "refine/checkpoint.h"
 #include "synth/spec.h"
-#include "volume/read_mesh.h"
 
 namespace photohull::fuzz {
 namespace fs = std::filesystem;

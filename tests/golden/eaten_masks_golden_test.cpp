@@ -5,10 +5,10 @@
 #include <cstdio>
 
 #include "eval/evaluate.h"
+#include "io/mesh/write_mesh.h"
 #include "pipeline/reconstruct.h"
 #include "support/scratch_folder.h"
 #include "synth/synthesize.h"
-#include "volume/write_mesh.h"
 
 namespace photohull::golden {
 namespace {

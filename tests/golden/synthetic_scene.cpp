@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "io/mesh/write_mesh.h"
 #include "synth/synthesize.h"
-#include "volume/write_mesh.h"
 
 namespace photohull::golden {
 namespace {

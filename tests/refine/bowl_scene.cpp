@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/silhouette.h"
+#include "masks/silhouette.h"
 #include "support/gl_context.h"
 #include "volume/extract_mesh.h"
 

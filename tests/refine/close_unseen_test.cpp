@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "volume/analytic_volumes.h"
+#include "support/analytic_volumes.h"
 #include "volume/distance_from_mesh.h"
 #include "volume/extract_mesh.h"
 

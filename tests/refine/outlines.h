@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "carving/hull.h"
+#include "support/analytic_volumes.h"
 #include "support/cameras.h"
 #include "support/silhouettes.h"
-#include "volume/analytic_volumes.h"
 #include "volume/extract_mesh.h"
 
 namespace photohull::refine {

@@ -7,8 +7,8 @@
 
 #include "bowl_scene.h"
 #include "core/error.h"
+#include "support/analytic_volumes.h"
 #include "support/gl_context.h"
-#include "volume/analytic_volumes.h"
 #include "volume/extract_mesh.h"
 
 namespace photohull::refine {

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "support/analytic_volumes.h"
 #include "support/gl_context.h"
 #include "support/silhouettes.h"
-#include "volume/analytic_volumes.h"
 
 namespace photohull::refine {
 namespace {

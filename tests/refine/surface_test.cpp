@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "volume/analytic_volumes.h"
+#include "support/analytic_volumes.h"
 #include "volume/extract_mesh.h"
 
 namespace photohull::refine {

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "support/analytic_volumes.h"
 #include "support/cameras.h"
-#include "volume/analytic_volumes.h"
 #include "volume/components.h"
 
 namespace photohull::refine {

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "support/analytic_volumes.h"
 #include "support/cameras.h"
-#include "volume/analytic_volumes.h"
 
 namespace photohull::refine {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "volume/analytic_volumes.h"
+#include "support/analytic_volumes.h"
 #include "volume/extract_mesh.h"
 
 namespace photohull::refine {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "match_scene.h"
-#include "volume/analytic_volumes.h"
+#include "support/analytic_volumes.h"
 
 namespace photohull::refine {
 

@@ -8,11 +8,11 @@
 
 #include "core/error.h"
 #include "eval/evaluate.h"
+#include "io/mesh/read_mesh.h"
 #include "random_scene.h"
 #include "support/effort.h"
 #include "support/scratch_folder.h"
 #include "synth/synthesize.h"
-#include "volume/read_mesh.h"
 
 namespace photohull::test {
 namespace {

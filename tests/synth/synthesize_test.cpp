@@ -10,10 +10,10 @@
 #include "core/error.h"
 #include "io/image_file.h"
 #include "io/load_scene.h"
+#include "io/mesh/write_mesh.h"
 #include "support/scratch_folder.h"
 #include "synth/degrade_cameras.h"
 #include "synth/place_cameras.h"
-#include "volume/write_mesh.h"
 
 namespace photohull::synth {
 namespace {

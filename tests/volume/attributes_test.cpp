@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "analytic_volumes.h"
+#include "support/analytic_volumes.h"
 #include "volume/extract_mesh.h"
 
 namespace photohull {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "volume/analytic_volumes.h"
+#include "support/analytic_volumes.h"
 
 namespace photohull {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <random>
 
-#include "analytic_volumes.h"
 #include "core/error.h"
+#include "support/analytic_volumes.h"
 #include "volume/extract_mesh.h"
 
 namespace photohull {

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "volume/analytic_volumes.h"
+#include "support/analytic_volumes.h"
 #include "volume/extract_mesh.h"
 
 namespace photohull {

@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "analytic_volumes.h"
+#include "support/analytic_volumes.h"
 
 namespace photohull {
 namespace {

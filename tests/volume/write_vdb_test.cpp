@@ -6,8 +6,8 @@
 
 #include <cstdio>
 
-#include "analytic_volumes.h"
 #include "core/error.h"
+#include "support/analytic_volumes.h"
 #include "support/scratch_folder.h"
 
 namespace photohull {

@@ -1,0 +1,24 @@
+#include "commands.h"
+
+#include "version.h"
+
+namespace photohull::cli {
+namespace {
+
+void add_all(CLI::App& app) {
+  add_reconstruct(app);
+  add_info(app);
+  add_masks(app);
+  add_convert(app);
+  add_calibrate(app);
+  add_refine_cameras(app);
+  add_synthesize(app);
+  add_evaluate(app, nullptr);
+  add_devices(app);
+}
+
+}  // namespace
+
+Commands main_commands() { return {add_all, version_json}; }
+
+}  // namespace photohull::cli

@@ -1,0 +1,43 @@
+#include "cli/front/command_table.h"
+
+#include <algorithm>
+#include <string>
+
+#include "core/error.h"
+
+namespace photohull::cli {
+namespace {
+
+constexpr CommandEntry kCommands[] = {
+    {"reconstruct", "carve a volume and a mesh from photographs", kMainProgram},
+    {"info", "tell what was understood of a scene", kMainProgram},
+    {"masks", "find the object in photographs, as reconstruct does", kMainProgram},
+    {"convert", "write a scene's cameras for another program", kMainProgram},
+    {"calibrate", "find cameras' lenses and poses from photographs of a board", kMainProgram},
+    {"refine-cameras", "make cameras that are slightly wrong fit the photographs", kMainProgram},
+    {"synthesize", "make calibrated photographs of a surface that is known exactly", kMainProgram},
+    {"evaluate", "measure a mesh by the exact surface or by photographs", kMainProgram,
+     "--reliability-plot"},
+    {"chart", "run a plan of reconstructions and draw speed against accuracy", kLabProgram},
+    {"stress", "degrade synthetic scenes step by step and see where reconstruction breaks",
+     kLabProgram},
+    {"bench", "measure parts of the program by themselves", kLabProgram},
+    {"devices", "list the EGL devices and which one 'auto' takes", kMainProgram},
+};
+
+}  // namespace
+
+std::span<const CommandEntry> command_table() { return kCommands; }
+
+const CommandEntry* find_command(std::string_view name) {
+  const auto found = std::ranges::find(kCommands, name, &CommandEntry::name);
+  return found == std::end(kCommands) ? nullptr : found;
+}
+
+CLI::App* add_command(CLI::App& app, std::string_view name) {
+  const CommandEntry* entry = find_command(name);
+  PHOTOHULL_CHECK(entry != nullptr);
+  return app.add_subcommand(std::string(entry->name), std::string(entry->description));
+}
+
+}  // namespace photohull::cli

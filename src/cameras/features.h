@@ -1,0 +1,21 @@
+// SIFT features of a view [Lowe04]. Internal to cameras; only for files that know OpenCV.
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "core/image.h"
+#include "photo/align_patch.h"
+
+namespace photohull {
+
+struct Features {
+  std::vector<glm::dvec2> pixels;
+  cv::Mat descriptors;  ///< a row each
+  GreyImage grey;       ///< smoothed a little, for align_patch
+};
+
+/// The `count` strongest features, on the object where the view has a mask.
+Features detect_features(const View& view, int count);
+
+}  // namespace photohull

@@ -1,0 +1,415 @@
+#include "cameras/refine_cameras.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "cameras/bundle.h"
+#include "cameras/frontier.h"
+#include "cameras/gauge.h"
+#include "cameras/surface_patches.h"
+#include "core/error.h"
+#include "core/median.h"
+#include "photo/grey_image.h"
+
+namespace photohull {
+namespace {
+
+constexpr int kFewestTracks = 30;            // for the similarity that fixes the gauge
+constexpr std::size_t kGaugePoints = 200;    // that fix it, at most
+constexpr std::size_t kTrialTracks = 1500;   // that tell whether views share an error
+constexpr double kOutlier = 4;               // spreads
+constexpr double kLeastSigma = 0.03;         // pixels: nothing is measured better
+constexpr double kLeastTangentSigma = 0.15;  // pixels: contours err alike where they touch
+constexpr double kUsualError = 1;            // pixels, of given poses
+constexpr double kAlike = 1.5;    // times what independent errors of poses leave in their mean
+constexpr double kNoWorse = 1.2;  // times the residual without what views share
+
+using Cameras = std::vector<Camera>;
+
+/// Standard deviation of one coordinate, were the residuals' lengths those of two normal ones.
+double spread_of_lengths(std::vector<double> lengths) {
+  return median(std::move(lengths)) / 1.1774;
+}
+double spread_of_distances(std::vector<double> d) { return 1.4826 * median(std::move(d)); }
+
+/// Points of tracks by the cameras, NaN where there is none, and the tracks' residuals.
+struct Triangulated {
+  std::vector<glm::dvec3> points;
+  std::vector<double> rms;
+};
+
+Triangulated triangulate_all(const Cameras& cameras, std::span<const Track> tracks) {
+  Triangulated result{std::vector<glm::dvec3>(tracks.size()), std::vector<double>(tracks.size())};
+  tbb::parallel_for(std::size_t(0), tracks.size(), [&](std::size_t i) {
+    const auto point = triangulate(cameras, tracks[i]);
+    result.points[i] = point.value_or(glm::dvec3(NAN));
+    result.rms[i] = point ? reprojection_rms(cameras, tracks[i], *point) : INFINITY;
+  });
+  return result;
+}
+
+std::vector<double> tangent_distances(const Cameras& cameras,
+                                      std::span<const FrontierPair> tangents) {
+  std::vector<double> distances;
+  for (const FrontierPair& t : tangents) {
+    const glm::dvec2 d = epipolar_distances(cameras[t.view_a], cameras[t.view_b], t);
+    distances.push_back(std::abs(d.x));
+    distances.push_back(std::abs(d.y));
+  }
+  return distances;
+}
+
+/// Mean of log(1 + r^2 / (2 sigma^2)): what grows with every residual, and with none without bound.
+double robust_cost(const std::vector<double>& residuals, double sigma) {
+  if (residuals.empty()) return 0;
+  double sum = 0;
+  for (const double r : residuals)
+    sum += std::isfinite(r) ? std::log1p(r * r / (2 * sigma * sigma)) : std::log1p(1e6);
+  return sum / double(residuals.size());
+}
+
+/// Spread evenly over any list, the same every time.
+bool is_held_out(std::size_t index, double share) {
+  return std::fmod(double(index + 1) * 0.6180339887498949, 1.0) < share;
+}
+
+/// So many of a list, spread evenly over it.
+template <typename T>
+std::vector<T> some(const std::vector<T>& list, std::size_t most) {
+  const std::size_t step = std::max<std::size_t>(1, (list.size() + most - 1) / most);
+  std::vector<T> result;
+  for (std::size_t i = 0; i < list.size(); i += step) result.push_back(list[i]);
+  return result;
+}
+
+class Refiner {
+ public:
+  /// `given`: what the result is compared with, and held near to; `start`: where it begins.
+  Refiner(std::span<const View> views, Cameras given, Cameras start,
+          const RefineCamerasOptions& options, std::vector<Track> tracks, Progress& progress)
+      : options_(options),
+        progress_(progress),
+        given_(std::move(given)),
+        start_(std::move(start)),
+        outlines_(outlines_of(views)) {
+    for (std::size_t i = 0; i < tracks.size(); ++i)
+      (is_held_out(i, options.held_out) ? judging_ : adjusting_).push_back(std::move(tracks[i]));
+  }
+
+  CameraRefinement run() {
+    middle_ = find_middle();
+    if (options_.intrinsics != SharedIntrinsics::kWhereAlike) return refine(options_.intrinsics);
+    CameraRefinement poses = refine(SharedIntrinsics::kNone);
+    const double views = double(given_.size());
+    if (!(poses.moved_alike > kAlike * poses.moved / std::sqrt(views))) return poses;
+    // Some of the tracks suffice to tell.
+    const std::vector<Track> all = std::exchange(adjusting_, some(adjusting_, kTrialTracks));
+    const CameraRefinement shared = refine(SharedIntrinsics::kAll);
+    adjusting_ = all;
+    constexpr double kShared = 3;  // parameters, which spare the poses' motions in the images
+    const bool spares =
+        4 * views * std::log(poses.moved / shared.moved) > kShared * std::log(2 * views);
+    const bool fits = shared.all.after < kNoWorse * poses.all.after &&
+                      shared.tangents_after < kNoWorse * poses.tangents_after;
+    return spares && fits ? refine(SharedIntrinsics::kAll) : poses;
+  }
+
+ private:
+  CameraRefinement refine(SharedIntrinsics intrinsics) {
+    Cameras cameras = start_;
+    prior_sigma_ = std::max(kUsualError, 2 * spread(judge(given_, nullptr)));
+    CameraRefinement result;
+    // A turn looks almost like an offset of the principal point: while poses are held, the offset
+    // is what all views have in common.
+    if (intrinsics != SharedIntrinsics::kNone && try_round(cameras, intrinsics, true, result))
+      prior_sigma_ = 2 * spread(judge(cameras, nullptr));  // poses explain what is left
+    const bool last = intrinsics != SharedIntrinsics::kAll;
+    bool with_intrinsics = false;
+    for (int round = 0; round < options_.rounds; ++round) {
+      progress_.check_cancelled();
+      progress_.update(0.9 + 0.1 * round / options_.rounds);
+      const auto shared = with_intrinsics ? SharedIntrinsics::kAll : SharedIntrinsics::kNone;
+      if (try_round(cameras, shared, false, result)) continue;
+      // Poses come first; what all views share follows once they have settled.
+      if (with_intrinsics || last) break;
+      with_intrinsics = true;
+    }
+    if (result.changed && options_.held.empty()) cameras = fix_gauge(cameras);
+    result.tracks = int(adjusting_.size() + judging_.size());
+    report(cameras, result);
+    result.cameras = std::move(cameras);
+    return result;
+  }
+
+  /// One adjustment, taken when what is held out agrees better. False once it has settled.
+  bool try_round(Cameras& cameras, SharedIntrinsics intrinsics, bool hold_poses,
+                 CameraRefinement& result) const {
+    std::array<double, 3> shared;
+    const Judgement before = judge(cameras, nullptr);
+    Cameras better = adjust(cameras, intrinsics, hold_poses, shared);
+    const Judgement after = judge(better, &before);
+    if (!(after.cost < before.cost * (1 - 1e-9))) return false;
+    ++result.rounds;
+    result.changed = true;
+    cameras = std::move(better);
+    result.focal_factor *= shared[0];
+    result.principal += glm::dvec2(shared[1], shared[2]);
+    return after.cost <= 0.999 * before.cost;
+  }
+
+  struct Judgement {
+    double track_sigma = 1, tangent_sigma = 1, cost = 0;
+    std::vector<FrontierPair> tangents;
+  };
+
+  double spread(const Judgement& j) const {
+    const bool few = judging_.size() < std::size_t(kFewestTracks);
+    return std::max(few ? 0 : j.track_sigma, j.tangent_sigma);
+  }
+
+  /// Where the optical axes pass nearest: around there is the object.
+  glm::dvec3 find_middle() const {
+    glm::dmat3 normal(0.0);
+    glm::dvec3 right(0.0);
+    for (const Camera& camera : given_) {
+      const glm::dvec3 d = camera.forward();
+      const glm::dmat3 across = glm::dmat3(1.0) - glm::outerProduct(d, d);
+      normal += across;
+      right += across * camera.center();
+    }
+    const double n = double(given_.size());
+    if (glm::determinant(normal) > 1e-6 * n * n * n) return glm::inverse(normal) * right;
+    std::vector<glm::dvec3> points;
+    for (const glm::dvec3& p : triangulate_all(given_, adjusting_).points)
+      if (!std::isnan(p.x)) points.push_back(p);
+    glm::dvec3 sum(0.0);
+    for (const glm::dvec3& p : points) sum += p;
+    return points.empty() ? given_[0].center() + given_[0].forward() : sum / double(points.size());
+  }
+
+  std::vector<FrontierPair> tangents(const Cameras& cameras, bool held_out) const {
+    std::vector<FrontierPair> chosen;
+    for (const FrontierPair& pair : frontier_pairs(cameras, outlines_)) {
+      // By the pair of views, so that the choice stays when tangents are found anew.
+      const std::size_t index = std::size_t(pair.view_a) * given_.size() + std::size_t(pair.view_b);
+      if (is_held_out(index, options_.held_out) == held_out) chosen.push_back(pair);
+    }
+    return chosen;
+  }
+
+  /// Held-out residuals, against their spread before (`reference`) where there is one.
+  Judgement judge(const Cameras& cameras, const Judgement* reference) const {
+    Judgement j;
+    std::vector<double> lengths = triangulate_all(cameras, judging_).rms;
+    const std::vector<double> distances = tangent_distances(cameras, tangents(cameras, true));
+    j.track_sigma = std::max(kLeastSigma, spread_of_lengths(lengths));
+    j.tangent_sigma = std::max(kLeastTangentSigma, spread_of_distances(distances));
+    const Judgement& scale = reference ? *reference : j;
+    const double n = double(lengths.size()), m = double(distances.size());
+    if (n + m > 0)
+      j.cost = (n * robust_cost(lengths, scale.track_sigma) +
+                m * robust_cost(distances, scale.tangent_sigma)) /
+               (n + m);
+    return j;
+  }
+
+  Cameras adjust(const Cameras& cameras, SharedIntrinsics intrinsics, bool hold_poses,
+                 std::array<double, 3>& shared) const {
+    const Triangulated all = triangulate_all(cameras, adjusting_);
+    BundleInput input;
+    input.track_sigma = std::max(kLeastSigma, spread_of_lengths(all.rms));
+    std::vector<Track> kept;
+    for (std::size_t i = 0; i < adjusting_.size(); ++i)
+      if (all.rms[i] < kOutlier * 1.5 * input.track_sigma) {
+        kept.push_back(adjusting_[i]);
+        input.points.push_back(all.points[i]);
+      }
+    const std::vector<FrontierPair> pairs = tangents(cameras, false);
+    input.tangent_sigma =
+        std::max(kLeastTangentSigma, spread_of_distances(tangent_distances(cameras, pairs)));
+    input.tracks = kept;
+    input.tangents = pairs;
+    input.intrinsics = intrinsics;
+    input.hold_poses = hold_poses;
+    input.held = options_.held;
+    input.middle = middle_;
+    input.prior_sigma = prior_sigma_;  // what neither tracks nor tangents determine stays as given
+    return adjust_bundle(input, cameras, given_, shared);
+  }
+
+  /// The given poses with the intrinsics of `cameras`: what differs are the poses alone.
+  Cameras given_with(const Cameras& cameras) const {
+    Cameras result = given_;
+    for (std::size_t i = 0; i < result.size(); ++i) result[i].intrinsics = cameras[i].intrinsics;
+    return result;
+  }
+
+  /// Moved, turned and scaled to where the given poses have the points, or, where there are few,
+  /// to the given centres.
+  Cameras fix_gauge(const Cameras& cameras) const {
+    const Triangulated now = triangulate_all(cameras, adjusting_);
+    const double limit = kOutlier * spread_of_lengths(now.rms);
+    std::vector<glm::dvec3> points;
+    for (std::size_t i = 0; i < adjusting_.size(); ++i)
+      if (now.rms[i] < limit) points.push_back(now.points[i]);
+    if (points.size() < std::size_t(kFewestTracks)) {
+      std::vector<glm::dvec3> from, to;
+      for (std::size_t i = 0; i < cameras.size(); ++i) {
+        from.push_back(cameras[i].center());
+        to.push_back(given_[i].center());
+      }
+      return with_world_moved(cameras, from, to);
+    }
+    return with_world_as_given(cameras, given_with(cameras), some(points, kGaugePoints), middle_);
+  }
+
+  void report(const Cameras& cameras, CameraRefinement& result) const {
+    result.views.resize(cameras.size());
+    const Triangulated before = triangulate_all(given_, judging_);
+    const Triangulated after = triangulate_all(cameras, judging_);
+    const Cameras unmoved = given_with(cameras);
+    const double limit = kOutlier * spread_of_lengths(after.rms);
+    double moved = 0;
+    std::vector<glm::dvec2> moved_by(cameras.size(), glm::dvec2(0.0));
+    for (std::size_t i = 0; i < judging_.size(); ++i) {
+      if (!(after.rms[i] < limit) || !std::isfinite(before.rms[i])) continue;
+      for (const Observation& o : judging_[i].observations) {
+        const auto b = given_[o.view].project(before.points[i]),
+                   a = cameras[o.view].project(after.points[i]);
+        const auto same = unmoved[o.view].project(after.points[i]);
+        if (!a || !b || !same) continue;
+        for (ViewAgreement* v : {&result.views[o.view], &result.all}) {
+          v->before += glm::dot(*b - o.pixel, *b - o.pixel);
+          v->after += glm::dot(*a - o.pixel, *a - o.pixel);
+          ++v->observations;
+        }
+        moved += glm::dot(*a - *same, *a - *same);
+        moved_by[o.view] += *a - *same;
+      }
+    }
+    result.moved = result.all.observations ? std::sqrt(moved / result.all.observations) : 0;
+    glm::dvec2 sum(0.0);
+    int known = 0;
+    for (std::size_t v = 0; v < cameras.size(); ++v) {
+      if (result.views[v].observations == 0) continue;
+      sum += moved_by[v] / double(result.views[v].observations);
+      ++known;
+    }
+    result.moved_alike = known ? glm::length(sum) / known : 0;
+    for (ViewAgreement& v : result.views) finish(v);
+    finish(result.all);
+    result.tangents = int(frontier_pairs(cameras, outlines_).size());
+    result.tangents_before = median(tangent_distances(given_, tangents(given_, true)));
+    result.tangents_after = median(tangent_distances(cameras, tangents(cameras, true)));
+  }
+
+  static void finish(ViewAgreement& v) {
+    if (v.observations == 0) return;
+    v.before = std::sqrt(v.before / v.observations);
+    v.after = std::sqrt(v.after / v.observations);
+  }
+
+  RefineCamerasOptions options_;
+  Progress& progress_;
+  Cameras given_, start_;
+  std::vector<Outline> outlines_;
+  std::vector<Track> adjusting_, judging_;
+  glm::dvec3 middle_{0.0};
+  double prior_sigma_ = 1;  ///< pixels: how wrong the given poses may well be
+};
+
+/// Patches of the surface of the hull that these cameras cut.
+std::vector<Track> hull_patches(const Cameras& cameras, std::span<const View> views,
+                                std::span<const GreyImage> images, const Box& box,
+                                Progress& progress) {
+  constexpr int kCells = 96, kPoints = 4000;
+  return patch_tracks(cameras, images, hull_points(cameras, views, box, kCells, kPoints), {},
+                      progress);
+}
+
+/// Do views have so few observations that patches must help?
+bool has_few(std::span<const Track> tracks, std::size_t views, int few) {
+  std::vector<double> counts(views, 0);
+  for (const Track& track : tracks)
+    for (const Observation& o : track.observations) ++counts[std::size_t(o.view)];
+  return median(counts) < few;
+}
+
+std::vector<Track> joined(std::vector<Track> a, const std::vector<Track>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+}  // namespace
+
+const char* to_string(TrackSource source) {
+  switch (source) {
+    case TrackSource::kBoth:
+      return "both";
+    case TrackSource::kGiven:
+      return "given";
+    case TrackSource::kFound:
+      return "found";
+  }
+  return "unknown";
+}
+
+CameraRefinement refine_cameras(std::span<const View> views, const RefineCamerasOptions& options,
+                                Progress& progress) {
+  if (views.size() < 3)
+    throw Error(
+        concat("cameras are refined against each other, which needs three views or more; "
+               "there are ",
+               views.size()));
+  Cameras given;
+  for (const View& view : views) given.push_back(view.camera);
+  std::span<const Track> others;
+  if (options.source != TrackSource::kFound) others = options.given;
+  const std::vector<Track> features =
+      find_tracks(views, options.tracks, progress, others, options.source != TrackSource::kGiven);
+  std::vector<Track> patches;
+  std::vector<GreyImage> images(views.size());
+  const bool with_patches = options.box && has_few(features, views.size(), options.few_features);
+  if (with_patches) {
+    tbb::parallel_for(std::size_t(0), views.size(),
+                      [&](std::size_t i) { images[i] = smoothed(grey_image(views[i].image)); });
+    patches = hull_patches(given, views, images, *options.box, progress);
+  }
+  CameraRefinement result =
+      Refiner(views, given, given, options, joined(features, patches), progress).run();
+  if (with_patches && result.changed) {
+    // Better cameras cut a better hull, whose patches are found in more places.
+    const std::vector<Track> again =
+        hull_patches(result.cameras, views, images, *options.box, progress);
+    CameraRefinement second =
+        Refiner(views, given, result.cameras, options, joined(features, again), progress).run();
+    if (second.changed) {
+      second.rounds += result.rounds;
+      second.focal_factor *= result.focal_factor;
+      second.principal += result.principal;
+      result = std::move(second);
+      patches = again;
+    }
+  }
+  result.given_tracks = int(others.size());
+  result.patches = int(patches.size());
+  return result;
+}
+
+double tangent_disagreement(std::span<const View> views) {
+  Cameras cameras;
+  for (const View& view : views) cameras.push_back(view.camera);
+  return tangent_disagreement(cameras, outlines_of(views));
+}
+
+double tangent_disagreement(std::span<const Camera> cameras, std::span<const Outline> outlines) {
+  const std::vector<double> distances =
+      tangent_distances(Cameras(cameras.begin(), cameras.end()), frontier_pairs(cameras, outlines));
+  return distances.empty() ? NAN : median(distances);
+}
+
+}  // namespace photohull

@@ -1,0 +1,53 @@
+// glTF 2.0 and its binary form: the JSON, and numbers out of its buffers. Internal to io/mesh.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace photohull {
+
+/// Reads trust nothing: every length and index is checked, and throws the Error of fail_to_read.
+class GltfFile {
+ public:
+  explicit GltfFile(std::filesystem::path path);
+
+  [[noreturn]] void fail(const std::string& what) const;
+  const nlohmann::json& root() const { return root_; }
+  /// An element of one of the file's lists of objects ("meshes", "nodes").
+  const nlohmann::json& element(const char* list, std::uint64_t index) const;
+  /// A whole number of an object; `fallback` where it is absent.
+  std::uint64_t index(const nlohmann::json& object, const char* key, std::uint64_t fallback) const;
+  /// The same for one that must be there.
+  std::uint64_t index(const nlohmann::json& object, const char* key) const;
+  /// A list of exactly `count` numbers; empty where it is absent.
+  std::vector<double> numbers(const nlohmann::json& object, const char* key,
+                              std::size_t count) const;
+  /// The elements of a list of whole numbers; empty where it is absent.
+  std::vector<std::uint64_t> indices(const nlohmann::json& object, const char* key) const;
+
+  /// The values of an accessor: VEC3 of floats, and SCALAR of unsigned integers.
+  std::vector<glm::vec3> vectors(std::uint64_t accessor);
+  std::vector<std::uint32_t> integers(std::uint64_t accessor);
+
+ private:
+  struct Span {
+    const char* first = nullptr;
+    std::uint64_t count = 0, stride = 0;
+  };
+  std::string split_binary(const std::string& bytes);
+  std::string decode(const std::string& uri) const;
+  const std::string& buffer(std::uint64_t index);
+  Span span(const nlohmann::json& accessor, std::uint64_t element_bytes);
+
+  std::filesystem::path path_;
+  nlohmann::json root_;
+  std::string binary_;                // of a .glb
+  std::vector<std::string> buffers_;  // as far as they were needed
+  std::vector<bool> loaded_;
+};
+
+}  // namespace photohull

@@ -1,0 +1,45 @@
+// How much a photograph's pixels differ from its background, and masks from that. Private to
+// module masks: includes OpenCV.
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "core/image.h"
+#include "masks/background.h"
+
+namespace photohull {
+
+/// Distances from the background and what they mean, as BackgroundModel has them.
+struct MaskEvidence {
+  cv::Mat distance;  ///< CV_8U
+  int weak = 0;      ///< near strong pixels, the object reaches down to here
+  int strong = 0;    ///< from here on a pixel is the object's beyond doubt
+  double doubt = 0;  ///< [0, 1]: share of the object's pixels between weak and strong
+};
+
+/// By the colours of the background.
+MaskEvidence compare_with_model(const BackgroundModel& model, const ColourImage& image);
+
+/// The object, rather too large than too small (mask_from_background says how).
+Mask mask_from_evidence(const MaskEvidence& evidence);
+
+/// Coverage along the contour of a binary object (CV_8U, 255 inside), in place.
+void soften_contour(const cv::Mat& distance, cv::Mat& object);
+
+/// What differs from a photograph of the same view without the object: noise is measured along the
+/// frame, where there is little of the object; exposure may differ; what is darker but has the
+/// plate's hue and texture may be shadow, and counts as weak at most. Distances are four times the
+/// deviations of the noise. Both images have the same size.
+MaskEvidence compare_with_plate(const ColourImage& image, const ColourImage& plate);
+
+/// Moves the contour to where OpenCV's GrabCut [Rother04] puts it between what surely is the
+/// object and surely is not. Pixels of strong evidence stay the object's. The mask stays as it is
+/// where it has nothing certain on either side.
+Mask cut_band(const MaskEvidence& evidence, const ColourImage& image, const Mask& mask);
+
+/// How sure a mask is, [0, 1]: the share of its contour with clear object on one side and clear
+/// background on the other, times how much of it is not in doubt, times its overlap (intersection
+/// over union) with `other`, a mask found in another way, where there is one.
+double mask_confidence(const MaskEvidence& evidence, const Mask& mask, const Mask* other);
+
+}  // namespace photohull

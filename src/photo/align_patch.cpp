@@ -1,0 +1,59 @@
+#include "photo/align_patch.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+
+namespace photohull {
+
+std::optional<AlignedPatch> align_patch(const GreyImage& image, const glm::dvec2& source,
+                                        const GreyImage& other, const PatchPlace& start, int radius,
+                                        double farthest, double least_gradient) {
+  constexpr int kSteps = 15;
+  constexpr double kConverged = 0.003;  // pixels
+  using Vector = Eigen::Matrix<double, 8, 1>;
+  PatchPlace place = start;
+  double gain = 1, offset = 0, agreement = 0;
+  bool converged = false;
+  for (int step = 0; step <= kSteps && !converged; ++step) {
+    Eigen::Matrix<double, 8, 8> normal = Eigen::Matrix<double, 8, 8>::Zero();
+    Vector right = Vector::Zero();
+    double n = 0, s = 0, t = 0, ss = 0, tt = 0, st = 0;
+    for (int y = -radius; y <= radius; ++y)
+      for (int x = -radius; x <= radius; ++x) {
+        const glm::dvec2 from = source + glm::dvec2(x, y);
+        const glm::dvec2 to = place.center + place.shape * glm::dvec2(x, y);
+        if (!image.holds(from.x, from.y) || !other.holds(to.x - 1, to.y - 1) ||
+            !other.holds(to.x + 1, to.y + 1))
+          return std::nullopt;
+        const double a = image.at(from.x, from.y), b = other.at(to.x, to.y);
+        const double bx = 0.5 * (other.at(to.x + 1, to.y) - other.at(to.x - 1, to.y));
+        const double by = 0.5 * (other.at(to.x, to.y + 1) - other.at(to.x, to.y - 1));
+        Vector j;
+        j << bx, by, bx * x, bx * y, by * x, by * y, -a, -1.0;
+        normal += j * j.transpose();
+        right += j * (gain * a + offset - b);
+        n += 1, s += a, t += b, ss += a * a, tt += b * b, st += a * b;
+      }
+    const double variance = (n * ss - s * s) * (n * tt - t * t);
+    agreement = variance > 0 ? (n * st - s * t) / std::sqrt(variance) : 0;
+    // The weaker of the gradient's two directions must stand out of 8-bit rounding.
+    const double trace = normal(0, 0) + normal(1, 1);
+    const double determinant = normal(0, 0) * normal(1, 1) - normal(0, 1) * normal(0, 1);
+    const double weaker = 0.5 * (trace - std::sqrt(std::max(0.0, trace * trace - 4 * determinant)));
+    if (!(weaker > n * least_gradient * least_gradient)) return std::nullopt;
+    const Eigen::LDLT<Eigen::Matrix<double, 8, 8>> solver(normal);
+    if (solver.info() != Eigen::Success) return std::nullopt;
+    const Vector d = solver.solve(right);
+    if (!d.allFinite()) return std::nullopt;
+    place.center += glm::dvec2(d[0], d[1]);
+    place.shape += glm::dmat2(d[2], d[4], d[3], d[5]);
+    gain += d[6], offset += d[7];
+    if (glm::distance(place.center, start.center) > farthest) return std::nullopt;
+    converged = std::hypot(d[0], d[1]) < kConverged;
+  }
+  const double area = glm::determinant(place.shape) / glm::determinant(start.shape);
+  if (!converged || !(area > 0.5 && area < 2)) return std::nullopt;
+  return AlignedPatch{place, agreement};
+}
+
+}  // namespace photohull
