@@ -45,16 +45,15 @@ void check_output(const std::string& scene, const io::LoadSceneOptions& load,
 
 std::vector<CLI::Option*> SceneArguments::add_reading_options(CLI::App& command) {
   Described described;
-  describe(described, load);
-  return add_flags(command, described,
-                   {"format", "masks", "background", "images", "pixel_center", "strict"});
+  io::describe_reading(described, load);
+  return add_flags(command, described);
 }
 
 void SceneArguments::add_to(CLI::App& command) {
   add_scene(command, scene);
   Described described;
   describe(described, box, load.box);
-  describe(described, load);
+  io::describe_views(described, load);
   add_flags(command, described, {"box", "box_scale", "views", "hold_out"});
   add_reading_options(command);
 }

@@ -239,7 +239,7 @@ void LoadSceneOptions::validate() const {
   }
 }
 
-void describe(Described& to, LoadSceneOptions& o) {
+void describe_views(Described& to, LoadSceneOptions& o) {
   to.text("views", &o.views,
           concat("views to use, e.g. \"0-10,15,img_*.png\"; spread:N (N that show the object from "
                  "all sides) or all (default: all; to reconstruct, spread:",
@@ -249,6 +249,9 @@ void describe(Described& to, LoadSceneOptions& o) {
           "views to leave out of these, a list of the same kind; 'photohull evaluate --photos' "
           "judges by them")
       .if_empty = "write e.g. 0,8,16";
+}
+
+void describe_reading(Described& to, LoadSceneOptions& o) {
   to.choice("format", &o.format, scene_formats(), "how the scene is read (default: detected)");
   to.text("masks", mask_words(o),
           "auto (files, alpha, else a background model), background (always that), none, or a "

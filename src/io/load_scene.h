@@ -76,8 +76,10 @@ struct LoadSceneOptions {
   void validate() const;
 };
 
-/// Those of them that a command line has, but for the box (pipeline/complete_box.h).
-void describe(Described& to, LoadSceneOptions& options);
+/// Which views are used. The box is described in pipeline/complete_box.h.
+void describe_views(Described& to, LoadSceneOptions& options);
+/// How the scene's files are read.
+void describe_reading(Described& to, LoadSceneOptions& options);
 
 /// What `most_views` is for commands that reconstruct: more cost time and add nothing, as measured
 /// in docs/benchmarks.md, "How many views".

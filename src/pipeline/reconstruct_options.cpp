@@ -98,6 +98,7 @@ void describe_voxels(Described& to, ReconstructOptions& o) {
             "voxels along the box's longest side");
   to.number("voxel_size", &o.voxel_size, above(0), "world units",
             "voxel size in world units; excludes the resolution");
+  io::describe_views(to, o.load);
   describe(to, o.box, o.load.box);
   to.choice("lattice", &o.lattice, std::array{Lattice::kFit, Lattice::kFixed},
             "fit (voxels centred on the box) or fixed: they begin in the box's lower corner, and "
@@ -317,7 +318,7 @@ void ReconstructOptions::validate() const {
 void describe(Described& to, ReconstructOptions& o) {
   describe_voxels(to, o);
   describe_outcome(to, o);
-  describe(to, o.load);
+  io::describe_reading(to, o.load);
   to.affects(Stage::kHull);
   describe_masks(to, o);
   to.affects(Stage::kSurface);
