@@ -36,6 +36,7 @@ void check(const VoteOptions& o) {
   require(o.least_weight > 0, "vote.least_weight must be positive");
   require(o.again_weight > 0, "vote.again_weight must be positive");
   require(o.rounds >= 0 && o.rounds <= 20, "vote.rounds must be 0 to 20");
+  require(o.tiles >= 1 && o.tiles <= 32, "vote.tiles must be 1 to 32");
   require(o.last_rounds >= 0 && o.last_rounds <= 20, "vote.last_rounds must be 0 to 20");
   require(o.bare_reach >= 0 && o.bare_reach <= OpenVoteOptions::kAnyReach,
           "vote.bare_reach must be 0 to 1048576 rays");

@@ -28,9 +28,11 @@
 
 namespace photohull::refine {
 
-/// Which rays that meet no surface vote again where no silhouettes bound space: those at most so
-/// many rays from one that does, at all levels but the last, and at that.
+/// How rays vote where no silhouettes bound space. Of those that meet no surface, those vote again
+/// that are at most `reach` rays from one that does, at the last level `last_reach`.
 struct OpenVoteOptions {
+  int rounds = 5;  ///< in the place of VoteOptions::rounds, at all levels but the last
+  int tiles = 6;   ///< in the place of VoteOptions::tiles
   int reach = kAnyReach, last_reach = 8;
   static constexpr int kAnyReach = 1 << 20;
 };

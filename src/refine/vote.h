@@ -18,6 +18,7 @@ struct VoteOptions {
   double again_score = 0.7;  ///< likewise: below, the surface explains nothing, a ray finds nothing
   double tap_spacing = 0.7;  ///< of the patches across the rays, voxels
   double nearest_partner = 4;  ///< degrees between a view and those that its rays are matched with
+  int tiles = 1;               ///< along either side of a view, each matched with views of its own
   double best_pairs = 0.5;     ///< share of the pairs of views that the score is the mean of
   double least_score = 0.5;    ///< of the best sample on a ray; below, the ray says nothing
   double distinct_by = 0.25;   ///< lead over the second best that gives a ray full weight
