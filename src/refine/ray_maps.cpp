@@ -59,7 +59,7 @@ class RayMapper {
         options_(options),
         cameras_(on_grid(cameras, hull.grid)),
         partners_(choose_partners(cameras_, {glm::dvec3(0), glm::dvec3(hull.grid.voxels())},
-                                  options.nearest_partner)),
+                                  options.nearest_partner, options.tiles)),
         search_(context, images, gpu_views(images), noise_sigma, options) {}
 
   /// View by view, so that memory is that of one view's rays.
@@ -163,8 +163,9 @@ class RayMapper {
         if (first < 0) continue;
         first -= 1;
         last += 1;
-        rows[std::size_t(y)].push_back(
-            {x, y, c.centre + first * d, d, last - first, (m * d).z, at < 0 ? -1 : at - first});
+        rows[std::size_t(y)].push_back({x, y, c.centre + first * d, d, last - first, (m * d).z,
+                                        at < 0 ? -1 : at - first,
+                                        partners_[v].tile(x, y, map.width, map.height)});
       }
     });
     std::vector<Ray> rays;
@@ -232,7 +233,7 @@ class RayMapper {
   }
 
   double confidence(double score) const {
-    return std::clamp((score - options_.least_score) / 0.3, 0.0, 1.0);
+    return std::clamp((score - options_.least_score) / kFullConfidence, 0.0, 1.0);
   }
 
   /// The ray's say: what it shows lies `along` voxels from its start.
@@ -253,7 +254,7 @@ class RayMapper {
   const SparseVolume* surface_;
   const VoteOptions& options_;
   std::vector<projtex::GridCamera> cameras_;
-  std::vector<shaders::MatchChoice> partners_;
+  std::vector<ViewPartners> partners_;
   RaySearch search_;
 };
 

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
-#include "core/viewing_depth.h"
+#include "core/clip_ray.h"
 
 namespace photohull::refine {
 namespace {
@@ -16,14 +17,20 @@ double degrees_between(const glm::dvec3& a, const glm::dvec3& b) {
   return glm::degrees(std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0)));
 }
 
-/// What a view within the box looks at.
-glm::dvec3 looked_at(const projtex::GridCamera& camera, const Box& box) {
+/// What the middle ray of a tile meets, if the scene fills the box: where it leaves the box that
+/// the view stands in; else the part of it in the box that is as deep as the box's middle.
+std::optional<glm::dvec3> looked_at(const projtex::GridCamera& camera, const Box& box,
+                                    const glm::dvec2& pixel) {
   const glm::dmat3 inverse =
       glm::inverse(glm::dmat3(camera.projection[0], camera.projection[1], camera.projection[2]));
-  const double depth =
-      viewing_depth(camera.projection, camera.centre, camera.width, camera.height, box);
-  const glm::dvec2 middle = 0.5 * glm::dvec2(camera.width - 1, camera.height - 1);
-  return camera.centre + depth * (inverse * glm::dvec3(middle, 1));
+  const glm::dvec3 ray = inverse * glm::dvec3(pixel, 1);  // a step along it is one of depth
+  const auto part = clip_ray(box, camera.centre, ray);
+  if (!part) return std::nullopt;
+  const double middle = (camera.projection * glm::dvec4(box.center(), 1)).z;
+  return camera.centre + (box.contains(camera.centre)
+                              ? part->second
+                              : std::clamp(middle, part->first, part->second)) *
+                             ray;
 }
 
 bool on_image(const projtex::GridCamera& camera, const glm::dvec3& point) {
@@ -54,33 +61,49 @@ int next_partner(std::span<const glm::dvec3> directions, std::span<const int> ch
   return best;
 }
 
+shaders::MatchChoice choose(std::span<const glm::dvec3> directions, int own, double nearest) {
+  std::vector<int> chosen{own};
+  while (chosen.size() < shaders::kMatchViews) {
+    const int next = next_partner(directions, chosen, nearest);
+    if (next < 0) break;
+    chosen.push_back(next);
+  }
+  shaders::MatchChoice c{{-1, -1, -1, -1}, {-1, -1, 0, int(chosen.size())}, glm::ivec4(-1)};
+  for (std::size_t k = 0; k < chosen.size(); ++k)
+    (k < 4 ? c.first[int(k)] : c.second[int(k - 4)]) = chosen[k];
+  return c;
+}
+
+/// Unit, from a place to the cameras that have it on their image, and to `own`; else 0.
+std::vector<glm::dvec3> directions_from(const glm::dvec3& place,
+                                        std::span<const projtex::GridCamera> cameras,
+                                        std::size_t own) {
+  std::vector<glm::dvec3> out;
+  for (std::size_t j = 0; j < cameras.size(); ++j)
+    out.push_back(j == own || on_image(cameras[j], place)
+                      ? glm::normalize(cameras[j].centre - place)
+                      : glm::dvec3(0));
+  return out;
+}
+
 }  // namespace
 
-std::vector<shaders::MatchChoice> choose_partners(std::span<const projtex::GridCamera> cameras,
-                                                  const Box& box, double nearest) {
+std::vector<ViewPartners> choose_partners(std::span<const projtex::GridCamera> cameras,
+                                          const Box& box, double nearest, int tiles) {
   std::vector<glm::dvec3> about_middle;
   for (const auto& camera : cameras)
     about_middle.push_back(glm::normalize(camera.centre - box.center()));
-  std::vector<shaders::MatchChoice> out;
+  std::vector<ViewPartners> out(cameras.size());
   for (std::size_t i = 0; i < cameras.size(); ++i) {
-    std::vector<glm::dvec3> directions = about_middle;
-    if (box.contains(cameras[i].centre)) {
-      const glm::dvec3 target = looked_at(cameras[i], box);
-      for (std::size_t j = 0; j < cameras.size(); ++j)
-        directions[j] = i == j || on_image(cameras[j], target)
-                            ? glm::normalize(cameras[j].centre - target)
-                            : glm::dvec3(0);
+    const projtex::GridCamera& camera = cameras[i];
+    out[i].across = tiles;
+    for (int tile = 0; tile < tiles * tiles; ++tile) {
+      const glm::dvec2 pixel(camera.width * (tile % tiles + 0.5) / tiles - 0.5,
+                             camera.height * (tile / tiles + 0.5) / tiles - 0.5);
+      const auto place = tiles > 1 ? looked_at(camera, box, pixel) : std::nullopt;
+      out[i].tiles.push_back(
+          choose(place ? directions_from(*place, cameras, i) : about_middle, int(i), nearest));
     }
-    std::vector<int> chosen{int(i)};
-    while (chosen.size() < shaders::kMatchViews) {
-      const int next = next_partner(directions, chosen, nearest);
-      if (next < 0) break;
-      chosen.push_back(next);
-    }
-    shaders::MatchChoice c{{-1, -1, -1, -1}, {-1, -1, 0, int(chosen.size())}, glm::ivec4(-1)};
-    for (std::size_t k = 0; k < chosen.size(); ++k)
-      (k < 4 ? c.first[int(k)] : c.second[int(k - 4)]) = chosen[k];
-    out.push_back(c);
   }
   return out;
 }

@@ -12,10 +12,23 @@
 
 namespace photohull::refine {
 
+/// The views that one view's rays are matched with: a choice for each of its tiles, for what is
+/// seen in different parts of a photograph may be on the images of different neighbours.
+struct ViewPartners {
+  int across = 1;                           ///< tiles along either side
+  std::vector<shaders::MatchChoice> tiles;  ///< row-major
+
+  /// Of the ray at (x, y) on a lattice of width x height rays over the image.
+  int tile(int x, int y, int width, int height) const {
+    return y * across / height * across + x * across / width;
+  }
+};
+
 /// For every view itself and then views near it, at angles between them, `nearest` degrees at
-/// least, that are seen from the middle of the box (voxels). For a view that stands within the box,
-/// from the point on its axis at its viewing depth, and only views that have it on their image.
-std::vector<shaders::MatchChoice> choose_partners(std::span<const projtex::GridCamera> cameras,
-                                                  const Box& box, double nearest);
+/// least, that are seen from the middle of the box (voxels). With several `tiles` along either side
+/// of the views, those are seen from what each tile looks at, and only views count that have it on
+/// their image.
+std::vector<ViewPartners> choose_partners(std::span<const projtex::GridCamera> cameras,
+                                          const Box& box, double nearest, int tiles);
 
 }  // namespace photohull::refine

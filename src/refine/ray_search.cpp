@@ -21,6 +21,7 @@ constexpr int kLengths[] = {8, 16, 32, 64};                 // samples along a r
 constexpr std::size_t kMostThreads = std::size_t(1) << 21;  // of a dispatch
 constexpr double kHopeful = 0.2;               // below the least score, of what is worth spreading
 constexpr double kElsewhere = 2.5;             // voxels between places that are not the same
+constexpr int kRoundsOfAll = 2;                // later ones are for rays that are not sure yet
 constexpr int kGuesses = 8;                    // planes that a ray tries in a round
 constexpr double kLeastCosine = 0.2;           // between a plane's normal and the ray
 constexpr double kTilt = 0.7;                  // of the first round's guesses: tangent of the angle
@@ -180,21 +181,23 @@ RaySearch::RaySearch(gpu::Context& context, const projtex::ImageSet& images,
       options_(options) {}
 
 RaySearch::Scores RaySearch::match(std::span<const shaders::BakeVertex> surfels,
-                                   const shaders::MatchChoice& partners, int offsets) const {
+                                   std::span<const shaders::MatchChoice> choices,
+                                   int offsets) const {
   const auto program =
       gpu::Program::compute("refine_match_patches.comp.glsl", "#define PATCH_RADIUS 1\n");
   const std::size_t batch = gpu::batch_size(
       std::max(sizeof(shaders::MatchChoice), std::size_t(offsets) * sizeof(float)), surfels.size());
   Scores out;
-  for (std::size_t first = 0; first < surfels.size(); first += batch)
-    match(program, surfels.subspan(first, std::min(batch, surfels.size() - first)), partners,
-          offsets, out);
+  for (std::size_t first = 0; first < surfels.size(); first += batch) {
+    const std::size_t count = std::min(batch, surfels.size() - first);
+    match(program, surfels.subspan(first, count), choices.subspan(first, count), offsets, out);
+  }
   return out;
 }
 
 void RaySearch::match(const gpu::Program& program, std::span<const shaders::BakeVertex> surfels,
-                      const shaders::MatchChoice& partners, int offsets, Scores& out) const {
-  const std::vector<shaders::MatchChoice> choices(surfels.size(), partners);
+                      std::span<const shaders::MatchChoice> choices, int offsets,
+                      Scores& out) const {
   shaders::MatchParameters p{};
   p.counts = {int(surfels.size()), int(views_.size()), offsets, 0};
   p.search = {0, -1, float(options_.tap_spacing), 1};
@@ -203,7 +206,7 @@ void RaySearch::match(const gpu::Program& program, std::span<const shaders::Bake
   const std::size_t samples = surfels.size() * std::size_t(offsets);
   const Buffer uniforms(sizeof p, &p), views = Buffer::of(views_);
   const Buffer points(surfels.size() * sizeof(shaders::BakeVertex), surfels.data());
-  const Buffer choice_buffer = Buffer::of(choices);
+  const Buffer choice_buffer(choices.size_bytes(), choices.data());
   const Buffer scores(samples * sizeof(float)), textures(surfels.size() * sizeof(float));
   uniforms.bind_uniform(0);
   views.bind_storage(0);
@@ -219,34 +222,40 @@ void RaySearch::match(const gpu::Program& program, std::span<const shaders::Bake
   out.texture.insert(out.texture.end(), texture.begin(), texture.end());
 }
 
-void RaySearch::scores_along(std::span<const Ray> rays, const shaders::MatchChoice& partners,
-                             int count, const Decide& decide) const {
+void RaySearch::scores_along(std::span<const Ray> rays, const ViewPartners& partners, int count,
+                             const Decide& decide) const {
   const std::size_t batch = kMostThreads / std::size_t(count);
   for (std::size_t first = 0; first < rays.size(); first += batch) {
     std::vector<shaders::BakeVertex> surfels;
-    for (const Ray& ray : rays.subspan(first, std::min(batch, rays.size() - first)))
+    std::vector<shaders::MatchChoice> choices;
+    for (const Ray& ray : rays.subspan(first, std::min(batch, rays.size() - first))) {
       surfels.push_back({glm::vec4(ray.from, step_of(ray, count)), glm::vec4(-ray.direction, 0)});
-    const Scores s = match(surfels, partners, count);
+      choices.push_back(partners.tiles[std::size_t(ray.tile)]);
+    }
+    const Scores s = match(surfels, choices, count);
     for (std::size_t i = 0; i < surfels.size(); ++i)
       decide(first + i, s.score.data() + i * std::size_t(count));
   }
 }
 
 std::vector<float> RaySearch::textures(std::span<const Ray> rays,
-                                       const shaders::MatchChoice& partners) const {
+                                       const ViewPartners& partners) const {
   std::vector<float> out;
   for (std::size_t first = 0; first < rays.size(); first += kMostThreads) {
     std::vector<shaders::BakeVertex> surfels;
-    for (const Ray& ray : rays.subspan(first, std::min(kMostThreads, rays.size() - first)))
+    std::vector<shaders::MatchChoice> choices;
+    for (const Ray& ray : rays.subspan(first, std::min(kMostThreads, rays.size() - first))) {
       surfels.push_back({glm::vec4(ray.from + 0.5 * ray.length * ray.direction, 1),
                          glm::vec4(-ray.direction, 0)});
-    const Scores s = match(surfels, partners, 1);
+      choices.push_back(partners.tiles[std::size_t(ray.tile)]);
+    }
+    const Scores s = match(surfels, choices, 1);
     out.insert(out.end(), s.texture.begin(), s.texture.end());
   }
   return out;
 }
 
-void RaySearch::sweep(std::span<const Ray> rays, const shaders::MatchChoice& partners,
+void RaySearch::sweep(std::span<const Ray> rays, const ViewPartners& partners,
                       std::span<Finding> findings) const {
   std::vector<std::size_t> by_length[std::size(kLengths)];
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -269,7 +278,7 @@ void RaySearch::sweep(std::span<const Ray> rays, const shaders::MatchChoice& par
 }
 
 void RaySearch::spread(std::span<const Ray> rays, int width, int height,
-                       const shaders::MatchChoice& partners, std::span<Finding> findings) const {
+                       const ViewPartners& partners, std::span<Finding> findings) const {
   const Lattice lattice(rays, width, height);
   std::vector<std::size_t> unknown;
   for (std::size_t i = 0; i < rays.size(); ++i)
@@ -279,20 +288,24 @@ void RaySearch::spread(std::span<const Ray> rays, int width, int height,
     const std::vector<Finding> before(findings.begin(), findings.end());
     std::vector<std::size_t> trying;
     for (const std::size_t i : unknown)
-      if (lattice.best_about(i, before, round) >= options_.least_score - kHopeful)
+      if (lattice.best_about(i, before, round) >= options_.least_score - kHopeful &&
+          (round < kRoundsOfAll || before[i].score < options_.least_score + kFullConfidence))
         trying.push_back(i);
     for (std::size_t first = 0; first < trying.size(); first += batch) {
       const auto part = std::span<const std::size_t>(trying).subspan(
           first, std::min(batch, trying.size() - first));
       std::vector<shaders::BakeVertex> surfels(part.size() * kGuesses);
+      std::vector<shaders::MatchChoice> choices(surfels.size());
       tbb::parallel_for(std::size_t(0), part.size(), [&](std::size_t i) {
         const Guesses guesses = lattice.guesses(part[i], before, round);
         const Ray& ray = rays[part[i]];
-        for (std::size_t k = 0; k < kGuesses; ++k)
+        for (std::size_t k = 0; k < kGuesses; ++k) {
           surfels[i * kGuesses + k] = {glm::vec4(ray.from + guesses[k].along * ray.direction, 1),
                                        glm::vec4(guesses[k].normal, 0)};
+          choices[i * kGuesses + k] = partners.tiles[std::size_t(ray.tile)];
+        }
       });
-      const Scores s = match(surfels, partners, 1);
+      const Scores s = match(surfels, choices, 1);
       tbb::parallel_for(std::size_t(0), part.size(), [&](std::size_t i) {
         Finding& found = findings[part[i]];
         const Ray& ray = rays[part[i]];

@@ -10,12 +10,16 @@
 
 #include "gpu/context.h"
 #include "projtex/image_set.h"
+#include "refine/ray_partners.h"
 #include "refine/vote.h"
 #include "shared/bake.h"
 #include "shared/refine.h"
 #include "shared/view.h"
 
 namespace photohull::refine {
+
+/// Above the least score that tells anything, of a finding that is believed in full.
+inline constexpr double kFullConfidence = 0.3;
 
 /// A ray of one view through a grid; lengths in voxels.
 struct Ray {
@@ -24,6 +28,7 @@ struct Ray {
   double length = 0;
   double depth_per_length = 1;  ///< along the optical axis
   double surface = -1;          ///< where it meets a known surface, from `from`; negative: nowhere
+  int tile = 0;                 ///< of its view: which views it is matched with
 };
 
 /// What a ray found: a small plane that the views show alike.
@@ -51,34 +56,34 @@ class RaySearch {
   /// Calls decide(i, scores) with the scores of `count` patches across the i-th ray, `step_of`
   /// voxels apart from its start on. Throws Error when the device cannot hold a batch.
   using Decide = std::function<void(std::size_t, const float*)>;
-  void scores_along(std::span<const Ray> rays, const shaders::MatchChoice& partners, int count,
+  void scores_along(std::span<const Ray> rays, const ViewPartners& partners, int count,
                     const Decide& decide) const;
 
   /// Shares of the variance at the rays' ends in the reference view that noise does not explain.
-  std::vector<float> textures(std::span<const Ray> rays,
-                              const shaders::MatchChoice& partners) const;
+  std::vector<float> textures(std::span<const Ray> rays, const ViewPartners& partners) const;
 
   /// The best places along the rays for patches that face the camera; known findings stay.
-  void sweep(std::span<const Ray> rays, const shaders::MatchChoice& partners,
+  void sweep(std::span<const Ray> rays, const ViewPartners& partners,
              std::span<Finding> findings) const;
 
   /// PatchMatch [Barnes09, Bleyer11]: each ray that is not known tries its neighbours' planes, the
   /// plane through their places, and planes a little off its own, finer by half with every round.
   /// Rays are left out that have found nothing near the least score that tells anything, and whose
-  /// neighbours have not either.
+  /// neighbours have not either; after two rounds those, too, that are believed in full.
   /// `width`, `height`: of the lattice.
-  void spread(std::span<const Ray> rays, int width, int height,
-              const shaders::MatchChoice& partners, std::span<Finding> findings) const;
+  void spread(std::span<const Ray> rays, int width, int height, const ViewPartners& partners,
+              std::span<Finding> findings) const;
 
  private:
   struct Scores {
     std::vector<float> score, texture;
   };
-  Scores match(std::span<const shaders::BakeVertex> surfels, const shaders::MatchChoice& partners,
-               int offsets) const;
+  /// `choices`: one for each surfel.
+  Scores match(std::span<const shaders::BakeVertex> surfels,
+               std::span<const shaders::MatchChoice> choices, int offsets) const;
   /// Adds the scores of as many surfels as storage blocks hold.
   void match(const gpu::Program& program, std::span<const shaders::BakeVertex> surfels,
-             const shaders::MatchChoice& partners, int offsets, Scores& out) const;
+             std::span<const shaders::MatchChoice> choices, int offsets, Scores& out) const;
 
   gpu::Context& context_;
   const projtex::ImageSet& images_;

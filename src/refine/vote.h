@@ -17,7 +17,7 @@ struct VoteOptions {
   double tap_spacing = 0.7, nearest_partner = 4, best_pairs = 0.5, least_score = 0.5;
   double distinct_by = 0.25, band = 1.5;
   double least_weight = 1.5, again_weight = 2, freeing_weight = 3;
-  int rounds = 2, last_rounds = 1, bare_reach = 0;
+  int rounds = 2, last_rounds = 1, tiles = 1, bare_reach = 0;
   static constexpr int kAnyReach = 1 << 20;  ///< rays: wherever they are
 };
 
@@ -55,6 +55,9 @@ inline void describe(Described& to, VoteOptions& o) {
             "levels but the last");
   to.number("last_rounds", &o.last_rounds, from_to(0, 20), "",
             "rounds of trying neighbours' planes at the last level");
+  to.number(
+      "tiles", &o.tiles, from_to(1, 32), "",
+      "parts along either side of a photograph whose rays are matched with views of their own");
   to.number("bare_reach", &o.bare_reach, from_to(0, VoteOptions::kAnyReach), "rays",
             "greatest distance between a ray that meets no surface and votes again, and one that "
             "meets some");

@@ -31,7 +31,7 @@ class RaySearchTest : public WallScene {
     for (const Camera& camera : projtex::cameras_of(views_))
       cameras_.push_back(projtex::to_grid(camera, test::kGrid));
     partners_ = choose_partners(cameras_, {dvec3(0), dvec3(test::kGrid.voxels())},
-                                VoteOptions{}.nearest_partner);
+                                VoteOptions{}.nearest_partner, 1);
     // From the middle view through points of the plane that lie well before the wall.
     const dvec3 eye = cameras_[kView].centre;
     for (int y = 0; y < kEdge; ++y)
@@ -77,7 +77,7 @@ class RaySearchTest : public WallScene {
 
   static constexpr std::size_t kView = 3;
   std::vector<projtex::GridCamera> cameras_;
-  std::vector<shaders::MatchChoice> partners_;
+  std::vector<ViewPartners> partners_;
   std::vector<Ray> rays_;
 };
 
