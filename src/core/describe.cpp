@@ -35,6 +35,12 @@ std::optional<double> number_of(const Option& option) {
       option.place);
 }
 
+/// Also where there is no number.
+bool in_range(const Option& option) {
+  const auto value = number_of(option);
+  return !value || option.range.holds(*value);
+}
+
 bool is_whole(const Option& option) {
   return std::holds_alternative<int*>(option.place) ||
          std::holds_alternative<std::optional<int>*>(option.place) ||
@@ -173,8 +179,7 @@ const Option* Described::find(const std::string& name) const {
 
 void Described::check() const {
   for (const Option& option : options_)
-    if (const auto value = number_of(option); value && !option.range.holds(*value))
-      throw UsageError(concat(option.name, " ", obligation(option)));
+    if (!in_range(option)) throw UsageError(concat(option.name, " ", obligation(option)));
   if (!broken_.empty()) throw UsageError(broken_.front());
 }
 
@@ -219,12 +224,11 @@ void read_option(const Option& option, const std::string& text) {
                    if (!v.read(text)) refuse(option, text);
                  }},
       option.place);
-  check_option(option);
+  if (!in_range(option)) refuse(option, text);
 }
 
 void check_option(const Option& option) {
-  const auto value = number_of(option);
-  if (value && !option.range.holds(*value)) refuse(option, text_of(option));
+  if (!in_range(option)) refuse(option, text_of(option));
 }
 
 bool is_number(const Option& option) {

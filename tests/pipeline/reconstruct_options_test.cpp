@@ -80,6 +80,8 @@ TEST_F(OptionText, NumbersOutOfRangeAreNamed) {
   EXPECT_EQ(refusal("supersample", "9"), "--supersample 9: expected 1 to 8");
   EXPECT_EQ(refusal("mask_offset", "101"),
             "--mask-offset 101: expected auto, or pixels from -100 to 100");
+  EXPECT_EQ(refusal("noise", "1e9"), "--noise 1e9: expected 8-bit codes from 0 to 255")
+      << "as it was written";
 }
 
 TEST_F(OptionText, ValuesThatAProgramSetsAreCheckedInTheSameWords) {
