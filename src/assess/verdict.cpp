@@ -226,7 +226,9 @@ void Judge::coverage() {
                " of the surface: add views there, or use --unseen open"));
   if (s_.match.matched < kEnoughMatched)  // else colours differ, and the surface is right
     weigh(s_.unsure, kUnsure,
-          concat("confidence is below one half on ", percent(s_.unsure), " of the surface"));
+          concat("confidence is below one half on ", percent(s_.unsure),
+                 " of the surface: other photographs do not show the same there, or it is plain; "
+                 "look at them, and at photohull info --cameras"));
   weigh(cut_by_box() ? s_.at_box : 0, kAtBox,
         concat(percent(s_.at_box),
                " of the surface lies on the box's sides: the box cuts the object off (make --box "
