@@ -112,6 +112,15 @@ std::size_t cameras_within(const Box& box, std::span<const SourceView> views) {
   }));
 }
 
+std::string told_of_cameras_within(const Box& box, const std::string& source,
+                                   std::span<const SourceView> views) {
+  const std::size_t within = cameras_within(box, views);
+  if (within == 0) return "";
+  return concat("; ", within, " of ", views.size(), " cameras stand inside the box from ", source,
+                ": unless it is a room, make --box smaller, or check that the poses are "
+                "world-to-camera");
+}
+
 void check_cameras_outside(const Box& box, const std::string& source,
                            std::span<const SourceView> views) {
   for (const SourceView& view : views)

@@ -25,6 +25,11 @@ std::optional<std::string> hopeless_setup(const Box& box, const std::string& sou
 /// How many cameras stand inside the box.
 std::size_t cameras_within(const Box& box, std::span<const SourceView> views);
 
+/// "; N of M cameras stand inside the box", with what to do: the end of a sentence that says that
+/// nothing was found. Empty where none does.
+std::string told_of_cameras_within(const Box& box, const std::string& source,
+                                   std::span<const SourceView> views);
+
 /// Throws Error when a camera stands inside the box.
 void check_cameras_outside(const Box& box, const std::string& source,
                            std::span<const SourceView> views);

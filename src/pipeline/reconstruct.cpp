@@ -18,6 +18,7 @@
 #include "mesh/remove_unseen.h"
 #include "mesh/sharpen_edges.h"
 #include "mesh/simplify_mesh.h"
+#include "pipeline/checks.h"
 #include "pipeline/explained_picture.h"
 #include "pipeline/hull_stage.h"
 #include "pipeline/inputs.h"
@@ -303,9 +304,10 @@ class Job {
       report_.islands_area_share = gone.area_share;
     }
     if (mesh.triangles.empty())
-      throw Error(
-          "no surface is left that a camera sees and that is more likely right than wrong; check "
-          "the cameras (photohull info), or look at all of it with --unseen closed");
+      throw Error(concat(
+          "no surface was found that a camera sees and that is more likely right than wrong; check "
+          "the cameras (photohull info), or look at all of it with --unseen closed",
+          told_of_cameras_within(*in_.scene.box, in_.scene.box_source, in_.scene.views)));
   }
 
   void simplify(TriMesh& mesh) {

@@ -53,17 +53,11 @@ SparseVolume RefineStage::run(HullStage& hull, const projtex::ImageSet& images, 
       context_, in_.grid, [&](const GridSpec& grid) { return hull.carve(grid); },
       in_.silhouettes_of_views(), images, in_.cameras, refine_, progress_, &counts, &checkpoint);
   note(counts);
-  if (volume.inside_voxels() == 0 && !in_.any_mask()) {
-    const std::size_t within = cameras_within(*in_.scene.box, in_.scene.views);
+  if (volume.inside_voxels() == 0 && !in_.any_mask())
     throw Error(concat(
         "no surface was found: without masks the photographs must show texture that several of "
         "them agree on; give masks (--masks), more views, or check the cameras (photohull info)",
-        within == 0 ? ""
-                    : concat("; ", within, " of ", in_.scene.views.size(),
-                             " cameras stand inside the box from ", in_.scene.box_source,
-                             ": unless it is a room, make --box smaller, or check that the poses "
-                             "are world-to-camera")));
-  }
+        told_of_cameras_within(*in_.scene.box, in_.scene.box_source, in_.scene.views)));
   if (volume.inside_voxels() == 0)
     throw Error(
         "refinement left nothing: the photographs disagree everywhere; check the cameras "

@@ -74,6 +74,14 @@ shaders::MatchChoice choose(std::span<const glm::dvec3> directions, int own, dou
   return c;
 }
 
+bool all_see(const shaders::MatchChoice& choice, std::span<const projtex::GridCamera> cameras,
+             const glm::dvec3& place) {
+  for (int k = 0; k < choice.second.w; ++k)
+    if (!on_image(cameras[std::size_t(k < 4 ? choice.first[k] : choice.second[k - 4])], place))
+      return false;
+  return true;
+}
+
 /// Unit, from a place to the cameras that have it on their image, and to `own`; else 0.
 std::vector<glm::dvec3> directions_from(const glm::dvec3& place,
                                         std::span<const projtex::GridCamera> cameras,
@@ -96,13 +104,16 @@ std::vector<ViewPartners> choose_partners(std::span<const projtex::GridCamera> c
   std::vector<ViewPartners> out(cameras.size());
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     const projtex::GridCamera& camera = cameras[i];
+    const shaders::MatchChoice usual = choose(about_middle, int(i), nearest);
     out[i].across = tiles;
     for (int tile = 0; tile < tiles * tiles; ++tile) {
       const glm::dvec2 pixel(camera.width * (tile % tiles + 0.5) / tiles - 0.5,
                              camera.height * (tile / tiles + 0.5) / tiles - 0.5);
       const auto place = tiles > 1 ? looked_at(camera, box, pixel) : std::nullopt;
-      out[i].tiles.push_back(
-          choose(place ? directions_from(*place, cameras, i) : about_middle, int(i), nearest));
+      const bool suits =
+          !place || (!box.contains(camera.centre) && all_see(usual, cameras, *place));
+      out[i].tiles.push_back(suits ? usual
+                                   : choose(directions_from(*place, cameras, i), int(i), nearest));
     }
   }
   return out;

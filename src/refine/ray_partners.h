@@ -26,8 +26,9 @@ struct ViewPartners {
 
 /// For every view itself and then views near it, at angles between them, `nearest` degrees at
 /// least, that are seen from the middle of the box (voxels). With several `tiles` along either side
-/// of the views, those are seen from what each tile looks at, and only views count that have it on
-/// their image.
+/// of the views, others are chosen for a tile where not all of these have on their images what it
+/// looks at, or where the view stands within the box: views that have it, at angles seen from
+/// there.
 std::vector<ViewPartners> choose_partners(std::span<const projtex::GridCamera> cameras,
                                           const Box& box, double nearest, int tiles);
 
