@@ -4,7 +4,7 @@
 The box that `photohull info --box auto` finds in each scene's photographs, against the truth: how much of it the box
 holds, and its volume over the truth's own box. The truth is the vertices of gt.ply where the scene has it, and their
 tight box; else the scene's known box itself, of which the box must then hold the volume (KNOWN for `fountain`). Prints the table of
-docs/box.md: by the masks that the scene has, and without masks."""
+docs/guide/box.md: by the masks that the scene has, and without masks."""
 import argparse, json, os, subprocess, tempfile, time
 import numpy as np
 

@@ -3,7 +3,7 @@
                           [--methods hull,space-carving] [--resolution 128] [--samples 200000]
 
 Reconstructs scenes with exact truth, judges every mesh with `photohull evaluate` and with
-DATA/tools/evaluate.py, and prints the tables of docs/evaluate.md: some figures of both side by side, the
+DATA/tools/evaluate.py, and prints the tables of docs/guide/evaluate.md: some figures of both side by side, the
 greatest relative difference over all figures that both give (save the maxima, which hang on single samples),
 the same between two seeds of evaluate.py for comparison, and the seconds that each took."""
 import argparse, json, os, subprocess, tempfile, time

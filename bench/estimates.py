@@ -2,13 +2,13 @@
 """bench/estimates.py [--program build/release/photohull] [--datasets ../shared/datasets] [--results bench/results/estimates.json] [--fresh | --again | --fit]
 
 What `photohull info` says that a run will cost, against what `photohull reconstruct` then takes: peak memory and CPU time,
-over scenes, methods, resolutions and masks (RUNS). Prints the table of docs/limits.md and the ratios taken / said that are worst.
+over scenes, methods, resolutions and masks (RUNS). Prints the table of docs/guide/limits.md and the ratios taken / said that are worst.
 Runs that --results does not hold yet are made, one after the other, and kept there as they end (all: about 25 minutes on two idle
 cores; --fresh makes all of them anew). --again only asks `info` anew, and --fit prints the constants of
 src/pipeline/estimate.cpp that suit the kept runs best."""
 import argparse, json, math, os, subprocess, tempfile
 
-# Constants that these runs hardly tell, at least: decoding, by the large photographs of docs/limits.md;
+# Constants that these runs hardly tell, at least: decoding, by the large photographs of docs/guide/limits.md;
 # a hull's bricks; sweeps of all of a box at 256 voxels, by runs of an earlier version.
 KNOWN = {'kPixelSeconds': 1e-8, 'kHullFaceSeconds': 2e-6, 'kUnmaskedSweepFaceBytes': 1200}
 FAIR = 1.5  # the factor that estimates are to be within

@@ -8,7 +8,7 @@ makes the scenes of datasets/synthetic, reconstructs each by refinement and as a
 within a voxel of it. Every other scene by name, from the second on, is fitted to (of the two halves
 the one with more wrong vertices to learn from): the logistic function by refinement, then what
 hulls lack in odds. Each scene weighs the same. Prints the constants, and for each scene
-what the program's own confidence gives: calibration error, Brier score, AUC (docs/evaluate.md);
+what the program's own confidence gives: calibration error, Brier score, AUC (docs/guide/evaluate.md);
 --also adds scenes that are measured only. What is there in the work folder is not made again.
 Needs numpy.
 """

@@ -5,7 +5,7 @@
 Judges reconstructions of photographs that have no true surface by photographs that were not used: holds out every
 eighth view, reconstructs by each method, and predicts the held-out views from the mesh (photohull evaluate --photos), with
 colours from all other views and with those at least 20 degrees away only, which is stricter. Prints tables for
-docs/benchmarks.md; a ratio is that of the mean ZNCC to the hull's. Scenes that do have a true surface (gt.ply) get a row for that surface itself, which
+docs/measurements/benchmarks.md; a ratio is that of the mean ZNCC to the hull's. Scenes that do have a true surface (gt.ply) get a row for that surface itself, which
 no mesh should beat, and F-scores at 0.25 % beside the ZNCC. --keep leaves meshes and pictures of the worst
 views in a folder."""
 import argparse, json, os, subprocess, sys, tempfile

@@ -2,7 +2,7 @@
 """bench/masks.py [--program build/release/photohull] [--specs bench/specs/masks_*.json] [--out bench/results/masks.json] [--keep FOLDER]
 
 Masks made from the background of rendered scenes, against the exact ones: by the background's colours and by
-photographs without the object, each without and with GrabCut. Prints a table for docs/masks.md: intersection over
+photographs without the object, each without and with GrabCut. Prints a table for docs/guide/masks.md: intersection over
 union (the mean and the worst view), the share of the object that is missed, confidence (mean and least), and whether confidence tells the good masks
 (IoU of 0.95 at least) from the bad ones: the chance that of two such masks the better one has more of it."""
 import argparse, glob, json, os, subprocess, tempfile, time

@@ -4,7 +4,7 @@
 
 What photographs of different exposure, white balance and vignetting cost, and what --photometric brings back. Each
 spec is rendered as it is and without these degradations ("alike"); both are reconstructed with every eighth view
-held out. Prints a table for docs/cameras.md: F at 0.25 % of the diagonal, the error of the gains against
+held out. Prints a table for docs/guide/cameras.md: F at 0.25 % of the diagonal, the error of the gains against
 the synthesizer's true ones (up to a factor a channel), by how much the photographs disagree on the colour of a surface point, the error of predicted photographs (PSNR;
 with the gains of all views measured on the mesh where --photometric is on), and the stage's CPU seconds."""
 import argparse, json, math, os, subprocess, tempfile

@@ -4,7 +4,7 @@
 
 What refined cameras are worth: synthesizes scenes of datasets/synthetic (or spec files by path) with poses put off by
 so many pixels (root mean square over the object, each view by itself), refines them, and measures against the exact cameras
-and the exact surface. Prints a table for docs/cameras.md and keeps the figures as JSON. Columns:
+and the exact surface. Prints a table for docs/guide/cameras.md and keeps the figures as JSON. Columns:
   px      error of the cameras before and after: points of gt_visible.ply, as the exact cameras see them, are triangulated
           by the cameras in question; the similarity that brings them nearest to the exact points is taken off [Umeyama91];
           what is left is the distance in pixels between the projections by both, root mean square.

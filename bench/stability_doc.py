@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Puts the tables and curves of `photohull stress` into docs/stability.md.
+"""Puts the tables and curves of `photohull stress` into docs/measurements/stability.md.
 
     build/release/photohull stress bench/plans/stress.json --out out/stress
     build/release/photohull stress bench/plans/stress_marks.json --out out/stress_marks
@@ -90,12 +90,12 @@ def pictures(folder, wanted):
         if not wanted(chart.stem.removeprefix("stress--")):
             continue
         shutil.copy(chart, DOCS / "images" / chart.name)
-        lines.append(f"![Breakdown curves: {chart.stem[8:]}](images/{chart.name})")
+        lines.append(f"![Breakdown curves: {chart.stem[8:]}](../images/{chart.name})")
     return "\n\n".join(lines)
 
 
 def replace(parts):
-    page = DOCS / "stability.md"
+    page = DOCS / "measurements" / "stability.md"
     text = page.read_text()
     for name, content in parts.items():
         pattern = rf"(<!-- stress:{name} -->\n).*?(<!-- /stress:{name} -->)"

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """bench/temple_hull.py [--program build/release/photohull] [--data ../shared] [--out bench/results/temple_hull.json]
 
-Measures the hull of templeRing at two resolutions, from photographs to files, for docs/benchmarks.md. Each run is a
+Measures the hull of templeRing at two resolutions, from photographs to files, for docs/measurements/benchmarks.md. Each run is a
 process of its own; CPU seconds are user + system of the whole process. Run it twice on a new machine: the first run
 of a shader compiles it, later ones read it from the driver's cache."""
 import argparse, json, os, subprocess, sys, tempfile

@@ -7,7 +7,7 @@ Each spec of datasets/synthetic is photographed small, with two seeds, and recon
 (VARIANTS). results.json of the folder holds for each run F at 0.5 % of the diagonal, of the parts that are
 seen, and the verdict with its reasons and the signals that it rests on. Runs that are there are not repeated.
 The tables at the end count the calls, and in how many of them the first reason is the right one, apart for
-seed 1, on which limits were fitted, and for the others; docs/stability.md has them.
+seed 1, on which limits were fitted, and for the others; docs/measurements/stability.md has them.
 """
 import argparse
 import json

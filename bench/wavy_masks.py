@@ -5,7 +5,7 @@
     bench/wavy_masks.py out/scene out/wavy                    # by 1 pixel, the deviation in x and in y
     build/release/photohull reconstruct out/wavy --out out/result --resolution 192
 
-Needs numpy and oiiotool (OpenImageIO). The figures are in docs/benchmarks.md, "Evidence of all views".
+Needs numpy and oiiotool (OpenImageIO). The figures are in docs/measurements/benchmarks.md, "Evidence of all views".
 """
 import argparse
 import shutil

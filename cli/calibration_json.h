@@ -1,4 +1,4 @@
-// The files that `photohull calibrate` writes (docs/cameras.md).
+// The files that `photohull calibrate` writes (docs/guide/cameras.md).
 #pragma once
 
 #include <string>

@@ -281,7 +281,7 @@ void add_evaluate(CLI::App& app, DrawReliability draw) {
         "--error-image", "--error-range", "--reliability", "--align"})
     c->get_option(name)->needs(truth);
   a->photos.add_to(*c);
-  c->add_flag("--json", a->json, "print JSON (docs/evaluate.md)");
+  c->add_flag("--json", a->json, "print JSON (docs/guide/evaluate.md)");
   c->footer(
       "Examples:\n"
       "  photohull evaluate out/bunny/mesh.ply --truth scenes/bunny\n"

@@ -2,7 +2,7 @@
 # -P CheckIncludes.cmake. USES has a line a module: its name, its folder, the modules it may use.
 # Fails where a file includes another module's header that is not its module's to use or is private,
 # where a module names another that it does not include, where modules use one another in a circle, and
-# where the table of docs/architecture.md says something else.
+# where the table of docs/design/architecture.md says something else.
 cmake_minimum_required(VERSION 3.25)
 
 file(STRINGS ${USES} lines)
@@ -72,15 +72,15 @@ foreach(name ${modules})
   endforeach()
 endforeach()
 
-# The table of docs/architecture.md has a row a module, whose last column but one lists what it uses.
-file(READ ${ROOT}/docs/architecture.md page)
+# The table of docs/design/architecture.md has a row a module, whose last column but one lists what it uses.
+file(READ ${ROOT}/docs/design/architecture.md page)
 foreach(name ${modules})
   string(REGEX REPLACE "^src/" "" title ${folder_of_${name}})
   set(told)
   if(page MATCHES "\n\\| `${title}/?` \\|[^\n]*\\|([^|\n]*)\\|[^|\n]*\\|\n")
     string(REGEX MATCHALL "[a-z/]+" told "${CMAKE_MATCH_1}")
   else()
-    list(APPEND faults "docs/architecture.md has no row `${title}`")
+    list(APPEND faults "docs/design/architecture.md has no row `${title}`")
   endif()
   string(REPLACE "/" "_" told "${told}")
   set(used ${uses_${name}})
@@ -89,7 +89,7 @@ foreach(name ${modules})
   if(NOT "${told}" STREQUAL "${used}")
     list(JOIN told ", " told)
     list(JOIN used ", " used)
-    list(APPEND faults "docs/architecture.md says that ${name} uses '${told}', not '${used}'")
+    list(APPEND faults "docs/design/architecture.md says that ${name} uses '${told}', not '${used}'")
   endif()
 endforeach()
 

@@ -1,6 +1,6 @@
 # photohull_module(NAME [VECTOR_ROOTS] SOURCES files... [PUBLIC libs...] [PRIVATE libs...])
 # One static library per folder of src/. PRIVATE links keep a dependency's headers out of the
-# modules above; the arrows are those of docs/architecture.md, and include lines keep to them
+# modules above; the arrows are those of docs/design/architecture.md, and include lines keep to them
 # (CheckIncludes.cmake). VECTOR_ROOTS lets square roots become vector code.
 function(photohull_module name)
   cmake_parse_arguments(ARG "VECTOR_ROOTS" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})

@@ -4,7 +4,7 @@
 # Feeds every reader of foreign files (scenes, images, meshes, specs, plans, option values) with damaged
 # input under the address and undefined-behaviour sanitizers, by clang's libFuzzer. Input that
 # crashes a reader, makes it throw anything but photohull::Error, takes 5 seconds or asks for 512
-# MiB at once is kept in build/asan/found/ and fails the run. docs/robustness.md tells more.
+# MiB at once is kept in build/asan/found/ and fails the run. docs/design/robustness.md tells more.
 #
 #   --seconds N    for each target (default: 10)
 #   --target NAME  only this one; build/asan/tests/fuzz/photohull_fuzz --list prints the names

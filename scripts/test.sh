@@ -2,7 +2,7 @@
 # Usage: scripts/test.sh [--asan]
 #
 # Sets photohull up (see scripts/setup.sh), runs all its tests, and then checks what tests cannot:
-# formatting, scripts, citations, installation and the Debian package.
+# formatting, scripts, citations, links in the docs, installation and the Debian package.
 #
 #   --asan   build once more with clang and the address and undefined-behaviour sanitizers, and run
 #            the unit tests so instead of without them; run the fuzzers and clang-tidy too
@@ -129,7 +129,7 @@ if [ $with_asan = yes ]; then
 else
   scripts/setup.sh
 fi
-install_missing clang clang-format clang-tidy shellcheck dpkg-dev file
+install_missing clang clang-format clang-tidy shellcheck dpkg-dev file python3
 started=$SECONDS
 
 if [ $with_asan = yes ]; then
@@ -140,6 +140,7 @@ fi
 check "clang-format" formatting
 check "shellcheck" shell_scripts
 check "citations" citations
+check "links in the docs" scripts/check_links.py
 check "cmake --install" installation
 check "cpack -G DEB" debian_package
 if [ $with_asan = yes ]; then

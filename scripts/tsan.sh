@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Usage: scripts/tsan.sh [TEST...]
 #
-# Runs unit tests under the thread sanitizer (preset tsan; docs/robustness.md). TBB hands the work to
+# Runs unit tests under the thread sanitizer (preset tsan; docs/design/robustness.md). TBB hands the work to
 # the threads, and what the sanitizer cannot see there looks like races everywhere: so TBB is built
 # with it, too, from Debian's source package, which needs the network once.
 #

@@ -215,7 +215,8 @@ void add_bench_visibility(CLI::App& bench) {
   s->footer(
       "Truth is by exact rays from the viewpoint to what a second camera sees. Times on software "
       "devices\n"
-      "are processor time. docs/visibility.md explains the techniques and has the results.\n\n"
+      "are processor time. docs/measurements/visibility.md explains the techniques and has the "
+      "results.\n\n"
       "Examples:\n"
       "  photohull bench visibility --quick\n"
       "  photohull bench visibility --scenes leaves,wires --resolutions 1024 --out out/visibility");

@@ -172,7 +172,7 @@ void add_bench(CLI::App& app) {
       "light,\n"
       "on white noise and on zones up to the Nyquist frequency. Times on software devices are "
       "processor\n"
-      "time. docs/sampling.md explains the samplers and has the results.\n\n"
+      "time. docs/measurements/sampling.md explains the samplers and has the results.\n\n"
       "Examples:\n"
       "  photohull bench sampling\n"
       "  photohull bench sampling --squares 64 --out out/sampling");

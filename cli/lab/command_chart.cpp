@@ -92,7 +92,7 @@ void run(const Arguments& a) {
 void add_chart(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
   CLI::App* c = add_command(app, "chart");
-  c->add_option("plan", a->plan, "JSON file: scenes, methods, resolutions (docs/charts.md)")
+  c->add_option("plan", a->plan, "JSON file: scenes, methods, resolutions (docs/guide/charts.md)")
       ->required();
   c->add_option("--out", a->out, "folder for results and charts; made when it does not exist")
       ->required();

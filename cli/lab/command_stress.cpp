@@ -100,7 +100,8 @@ void run(const Arguments& a) {
 void add_stress(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
   CLI::App* c = add_command(app, "stress");
-  c->add_option("plan", a->plan, "JSON file: scenes, degradations, settings (docs/stability.md)")
+  c->add_option("plan", a->plan,
+                "JSON file: scenes, degradations, settings (docs/measurements/stability.md)")
       ->required();
   c->add_option("--out", a->out, "folder for results and charts; made when it does not exist")
       ->required();

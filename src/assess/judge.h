@@ -12,8 +12,8 @@
 namespace photohull::assess {
 
 /// Fitted on the runs of bench/plans/stress.json, seed 1, but where another fit is told of
-/// (docs/stability.md): beyond the first figure results are doubtful, beyond the second they count
-/// as failed.
+/// (docs/measurements/stability.md): beyond the first figure results are doubtful, beyond the
+/// second they count as failed.
 struct Limits {
   double doubtful, failed;
 };

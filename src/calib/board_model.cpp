@@ -64,7 +64,7 @@ LensModel model_of(const Distortion& distortion) {
   }
   throw Error(
       "the known lens has distortion that boards are not calibrated with; give one that is "
-      "pinhole, brown, rational or fisheye (docs/formats.md)");
+      "pinhole, brown, rational or fisheye (docs/reference/formats.md)");
 }
 
 Lens lens_of(const KnownLens& known) {

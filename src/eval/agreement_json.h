@@ -8,7 +8,7 @@
 namespace photohull::eval {
 
 /// JSON, indented by two: `around`, the JSON object that to_json(Evaluation) gives, or one that
-/// names the result, with the key "photos" added (docs/evaluate.md).
+/// names the result, with the key "photos" added (docs/guide/evaluate.md).
 std::string to_json(const PhotoAgreement& agreement, const std::string& around = {});
 
 }  // namespace photohull::eval

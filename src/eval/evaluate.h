@@ -1,4 +1,4 @@
-// How good a reconstruction is. Definitions in docs/evaluate.md.
+// How good a reconstruction is. Definitions in docs/guide/evaluate.md.
 #pragma once
 
 #include <cstdint>

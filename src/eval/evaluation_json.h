@@ -7,7 +7,7 @@
 
 namespace photohull::eval {
 
-/// The evaluation as JSON, indented by two, with the keys of docs/evaluate.md.
+/// The evaluation as JSON, indented by two, with the keys of docs/guide/evaluate.md.
 std::string to_json(const Evaluation& evaluation);
 
 }  // namespace photohull::eval

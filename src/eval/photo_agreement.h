@@ -1,5 +1,5 @@
 // How well a mesh predicts photographs that were not used to make it. Definitions in
-// docs/evaluate.md.
+// docs/guide/evaluate.md.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Does a mesh's confidence mean what it says? Definitions in docs/evaluate.md.
+// Does a mesh's confidence mean what it says? Definitions in docs/guide/evaluate.md.
 #pragma once
 
 #include <cstddef>

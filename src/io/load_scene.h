@@ -37,7 +37,7 @@ struct LoadSceneOptions {
   /// Format of the scene; detected from the files' names where absent.
   std::optional<SceneFormat> format;
   /// Coordinates of the centre of the top-left pixel in the file: 0, 0.5 or 1. Absent: the
-  /// format's own convention (docs/formats.md). For files whose writer
+  /// format's own convention (docs/reference/formats.md). For files whose writer
   /// followed another one.
   std::optional<double> pixel_center;
   /// Region of interest in world coordinates; replaces the scene's own. Finite. Corners that are
@@ -82,11 +82,11 @@ void describe_views(Described& to, LoadSceneOptions& options);
 void describe_reading(Described& to, LoadSceneOptions& options);
 
 /// What `most_views` is for commands that reconstruct: more cost time and add nothing, as measured
-/// in docs/benchmarks.md, "How many views".
+/// in docs/measurements/benchmarks.md, "How many views".
 inline constexpr std::size_t kEnoughViews = 120;
 
 /// Reads a scene from a folder or from the file that lists its views, in any SceneFormat
-/// (docs/formats.md).
+/// (docs/reference/formats.md).
 /// Poses, intrinsics and pixel centres come back in the program's own conventions (core/camera.h);
 /// rotations are exactly orthonormal. Image and mask sizes are read from the files' headers, no
 /// pixel is decoded. The box is, in this order: options.box, bbox.txt in the scene's folder, the

@@ -1,5 +1,5 @@
 // Each format's finder, recogniser, reader and writer, as formats.h lists them. Internal to io.
-// The readers' files say where the conventions come from; docs/formats.md sums them up.
+// The readers' files say where the conventions come from; docs/reference/formats.md sums them up.
 #pragma once
 
 #include <filesystem>

@@ -28,8 +28,8 @@ struct Cost {
 };
 
 /// Estimates fitted on runs over methods, resolutions, numbers and sizes of photographs, with and
-/// without masks (docs/limits.md has the table). How much surface a box holds is not known before:
-/// that of the runs is taken, as a share of the box's faces.
+/// without masks (docs/guide/limits.md has the table). How much surface a box holds is not known
+/// before: that of the runs is taken, as a share of the box's faces.
 Cost estimate_cost(const CostQuestion& question);
 
 }  // namespace photohull::pipeline

@@ -16,8 +16,8 @@
 namespace photohull::pipeline {
 namespace {
 
-// Constants without a reason of their own were chosen on the scenes of docs/box.md, which tells
-// what other values give there.
+// Constants without a reason of their own were chosen on the scenes of docs/guide/box.md, which
+// tells what other values give there.
 constexpr std::size_t kEnough = 100;  // points that tell alone
 constexpr std::size_t kFewest = 20;   // points that tell anything
 constexpr double kAllAround = 120;    // degrees between two axes: what is behind the object for

@@ -13,7 +13,7 @@
 namespace photohull::pipeline {
 
 /// Pixels, along an edge, that the smallest voxels keep at the least when photographs are reduced.
-/// docs/limits.md has the comparison that it comes from.
+/// docs/guide/limits.md has the comparison that it comes from.
 inline constexpr double kPixelsPerVoxel = 3;
 
 /// Reads "1/4" or "0.25"; nothing for what is not in (0, 1].

@@ -25,8 +25,8 @@ namespace {
 // Sharpness beside neighbours below which a view is strongly blurred: 0.80 and more in bunny,
 // fandisk, trellis, glazed, plaster, armadillo, tabletop, both rings and fountain; 0.79 to 0.85 in
 // views moved by 4 pixels, 0.69 to 0.74 by 8, 0.63 to 0.69 by 16 (folds and arch,
-// docs/stability.md). Without silhouettes views are missed more: leaving out those of 8 pixels
-// costs folds 4 points of F at 0.25 %, leaving out those of 16 gains one.
+// docs/measurements/stability.md). Without silhouettes views are missed more: leaving out those of
+// 8 pixels costs folds 4 points of F at 0.25 %, leaving out those of 16 gains one.
 constexpr double kBlurred = 0.75, kBlurredWithoutMasks = 0.69;
 constexpr std::size_t kMostNamed = 5;
 constexpr double kUnexplained = 0.02;  // of the foreground: more is told

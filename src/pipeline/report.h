@@ -1,4 +1,4 @@
-// What a reconstruction did, as report.json tells it (docs/report.md).
+// What a reconstruction did, as report.json tells it (docs/reference/report.md).
 #pragma once
 
 #include <cmath>

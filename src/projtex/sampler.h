@@ -33,7 +33,7 @@ inline constexpr int kPadding = 1 << (kSampleLevels - 1);
 
 inline constexpr int kMaxSupersample = 8;
 
-/// What the sweep uses unless told otherwise; docs/sampling.md says why.
+/// What the sweep uses unless told otherwise; docs/measurements/sampling.md says why.
 inline constexpr Sampler kDefaultSampler = Sampler::kAnisotropic;
 
 /// Name on the command line: "mipmap", "centroid", ...

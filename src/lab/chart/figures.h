@@ -20,8 +20,8 @@ struct Figures {
   std::optional<double> f_at(double threshold_percent) const;
 };
 
-/// What `photohull evaluate --json` printed (docs/evaluate.md), over the surface that cameras see;
-/// throws Error when it has no F-score.
+/// What `photohull evaluate --json` printed (docs/guide/evaluate.md), over the surface that cameras
+/// see; throws Error when it has no F-score.
 Figures figures_of_evaluation(const Json& evaluation);
 
 }  // namespace photohull::chart

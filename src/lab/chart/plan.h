@@ -1,4 +1,4 @@
-// What a chart is to compare: a JSON file (docs/charts.md).
+// What a chart is to compare: a JSON file (docs/guide/charts.md).
 #pragma once
 
 #include <filesystem>

@@ -10,7 +10,7 @@
 namespace photohull::chart {
 
 /// results.json: the plan's title and threshold, all records, the external figures, the Pareto
-/// front of each scene and of the mean, and the fitted exponents (docs/charts.md). Written
+/// front of each scene and of the mean, and the fitted exponents (docs/guide/charts.md). Written
 /// atomically.
 void write_results(const std::filesystem::path& file, const Plan& plan,
                    const std::vector<RunRecord>& records, const std::vector<Outcome>& external);

@@ -1,4 +1,5 @@
-// What is degraded, how far, and what is to be compared: a JSON file (docs/stability.md).
+// What is degraded, how far, and what is to be compared: a JSON file
+// (docs/measurements/stability.md).
 #pragma once
 
 #include <cstdint>

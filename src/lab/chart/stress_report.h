@@ -11,7 +11,7 @@
 namespace photohull::chart {
 
 /// results.json: plan, curves with breakdown points, marks, verdicts, and all samples with their
-/// reports (docs/stability.md). Written atomically.
+/// reports (docs/measurements/stability.md). Written atomically.
 void write_stress_results(const std::filesystem::path& file, const StressPlan& plan,
                           const StressSummary& summary);
 
