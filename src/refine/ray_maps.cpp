@@ -233,7 +233,7 @@ class RayMapper {
   }
 
   double confidence(double score) const {
-    return std::clamp((score - options_.least_score) / kFullConfidence, 0.0, 1.0);
+    return std::clamp((score - options_.least_score) / 0.3, 0.0, 1.0);
   }
 
   /// The ray's say: what it shows lies `along` voxels from its start.

@@ -21,7 +21,6 @@ constexpr int kLengths[] = {8, 16, 32, 64};                 // samples along a r
 constexpr std::size_t kMostThreads = std::size_t(1) << 21;  // of a dispatch
 constexpr double kHopeful = 0.2;               // below the least score, of what is worth spreading
 constexpr double kElsewhere = 2.5;             // voxels between places that are not the same
-constexpr int kRoundsOfAll = 2;                // later ones are for rays that are not sure yet
 constexpr int kGuesses = 8;                    // planes that a ray tries in a round
 constexpr double kLeastCosine = 0.2;           // between a plane's normal and the ray
 constexpr double kTilt = 0.7;                  // of the first round's guesses: tangent of the angle
@@ -288,8 +287,7 @@ void RaySearch::spread(std::span<const Ray> rays, int width, int height,
     const std::vector<Finding> before(findings.begin(), findings.end());
     std::vector<std::size_t> trying;
     for (const std::size_t i : unknown)
-      if (lattice.best_about(i, before, round) >= options_.least_score - kHopeful &&
-          (round < kRoundsOfAll || before[i].score < options_.least_score + kFullConfidence))
+      if (lattice.best_about(i, before, round) >= options_.least_score - kHopeful)
         trying.push_back(i);
     for (std::size_t first = 0; first < trying.size(); first += batch) {
       const auto part = std::span<const std::size_t>(trying).subspan(

@@ -18,9 +18,6 @@
 
 namespace photohull::refine {
 
-/// Above the least score that tells anything, of a finding that is believed in full.
-inline constexpr double kFullConfidence = 0.3;
-
 /// A ray of one view through a grid; lengths in voxels.
 struct Ray {
   int x = 0, y = 0;                  ///< on the lattice of the view's rays
@@ -69,7 +66,7 @@ class RaySearch {
   /// PatchMatch [Barnes09, Bleyer11]: each ray that is not known tries its neighbours' planes, the
   /// plane through their places, and planes a little off its own, finer by half with every round.
   /// Rays are left out that have found nothing near the least score that tells anything, and whose
-  /// neighbours have not either; after two rounds those, too, that are believed in full.
+  /// neighbours have not either.
   /// `width`, `height`: of the lattice.
   void spread(std::span<const Ray> rays, int width, int height, const ViewPartners& partners,
               std::span<Finding> findings) const;

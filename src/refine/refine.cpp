@@ -212,7 +212,6 @@ class Refiner {
   VoteOptions vote_options(bool last) const {
     VoteOptions options = options_.vote;
     if (!is_bounded()) {
-      options.rounds = options_.open.rounds;
       options.tiles = options_.open.tiles;
       options.bare_reach = last ? options_.open.last_reach : options_.open.reach;
     }

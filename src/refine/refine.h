@@ -31,13 +31,11 @@ namespace photohull::refine {
 
 /// How rays vote where no silhouettes bound space.
 struct OpenVoteOptions {
-  int rounds = 5, tiles = 6;
+  int tiles = 6;
   int reach = VoteOptions::kAnyReach, last_reach = 8;
 };
 
 inline void describe(Described& to, OpenVoteOptions& o) {
-  to.number("rounds", &o.rounds, from_to(0, 20), "",
-            "the same as vote.rounds where there are no masks");
   to.number("tiles", &o.tiles, from_to(1, 32), "",
             "the same as vote.tiles where there are no masks");
   to.number("reach", &o.reach, from_to(0, VoteOptions::kAnyReach), "rays",
