@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "masks/silhouette.h"
 #include "masks/drawn_masks.h"
 #include "masks/silhouette.h"
 #include "support/ray_cast.h"
