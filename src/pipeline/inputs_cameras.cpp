@@ -9,9 +9,11 @@
 #include "cameras/feature_tracks.h"
 #include "cameras/refine_cameras.h"
 #include "carving/missing_parts.h"
+#include "carving/object_box.h"
 #include "core/error.h"
 #include "masks/mask_bias.h"
 #include "masks/mask_lines.h"
+#include "pipeline/checks.h"
 #include "pipeline/inputs.h"
 #include "pipeline/refine_cameras.h"
 #include "projtex/gpu_views.h"
@@ -113,6 +115,11 @@ bool Inputs::masks_are_eaten() const {
 /// Tips below the masks' sampling end too early, each view's elsewhere: outlines that are made to
 /// agree at them leave the rest contradicting each other.
 bool Inputs::fill_no_less(std::span<const Camera> refined) const {
+  // Rays have no end near a camera; with one in the box there is nothing to reconstruct.
+  if (cameras_within(*scene.box, scene.views) > 0) return true;
+  const Box box = carving::box_is_oversized(*scene.box, views)
+                      ? carving::object_box(*scene.box, views)
+                      : *scene.box;
   std::vector<Mask> masks(views.size());
   std::vector<std::vector<LinePoint>> found(views.size());
   std::vector<SilhouetteDistance> distances(views.size());
@@ -132,7 +139,7 @@ bool Inputs::fill_no_less(std::span<const Camera> refined) const {
   const auto unexplained = [&](std::span<const Camera> with) {
     int count = 0;
     for (const carving::ExplainedView& v :
-         carving::find_missing_parts(*scene.box, with, all, {}, &progress_).views)
+         carving::find_missing_parts(box, with, all, {}, &progress_).views)
       count += v.unexplained;
     return count;
   };
