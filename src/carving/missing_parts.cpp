@@ -143,7 +143,7 @@ class Searcher {
     if (!part) return std::nullopt;
     std::optional<MissingPart> best;
     double best_score = 0;
-    for (double t = part->first; t < part->second;) {
+    for (double t = begin_of(*part); t < part->second;) {
       const double pixel = t * ray.footprint, half = 0.5 * kCoarse * pixel, end = t + 2 * half;
       double skip = 0;
       const bool hopeless = judge(ray.at(t + half), half, skip) <= best_score;
@@ -170,10 +170,16 @@ class Searcher {
 
   /// explain() along a part of the ray, by steps of at least so many pixels. `last`: the view that
   /// is asked first.
+  /// Steps are pixels wide, and those at a camera that stands in the box have no width.
+  static double begin_of(const std::pair<double, double>& part) {
+    constexpr double kNearest = 0.01;  // of the farthest depth
+    return std::max(part.first, kNearest * part.second);
+  }
+
   std::optional<MissingPart> look_along(const Ray& ray, const std::pair<double, double>& part,
                                         double finest, std::size_t& last, Seed& seed) const {
     double least = kBorne, where = 0;
-    for (double t = part.first; t < part.second;) {
+    for (double t = begin_of(part); t < part.second;) {
       const dvec3 p = ray.at(t);
       double beside = 0;
       const double skip = rejected_by(p, last, beside);
