@@ -13,7 +13,6 @@
 #include "core/error.h"
 #include "masks/mask_bias.h"
 #include "masks/mask_lines.h"
-#include "pipeline/checks.h"
 #include "pipeline/inputs.h"
 #include "pipeline/refine_cameras.h"
 #include "projtex/gpu_views.h"
@@ -115,8 +114,6 @@ bool Inputs::masks_are_eaten() const {
 /// Tips below the masks' sampling end too early, each view's elsewhere: outlines that are made to
 /// agree at them leave the rest contradicting each other.
 bool Inputs::fill_no_less(std::span<const Camera> refined) const {
-  // Rays have no end near a camera; with one in the box there is nothing to reconstruct.
-  if (cameras_within(*scene.box, scene.views) > 0) return true;
   const Box box = carving::box_is_oversized(*scene.box, views)
                       ? carving::object_box(*scene.box, views)
                       : *scene.box;
