@@ -263,15 +263,6 @@ TEST(FindMissingParts, DoubtfulForegroundOfMadeMasksAsksForNothing) {
   EXPECT_EQ(unexplained(), 0);
 }
 
-TEST(FindMissingParts, EndsWhereCamerasStandInTheBox) {
-  Scene scene(8);
-  scene.put_off(0);
-  const Box around{dvec3(-8), dvec3(8)};  // the cameras are 6 away from its middle
-  EXPECT_EQ(scene.find({}, around).views.size(), 8u);
-  const Box beside{dvec3(-4), dvec3(4)};  // the one twice as large has them
-  EXPECT_EQ(scene.find({}, beside).views.size(), 8u);
-}
-
 TEST(FindMissingParts, TwoRunsGiveTheSame) {
   Scene scene(12);
   scene.put_off(2);
