@@ -23,7 +23,7 @@ namespace {
 
 struct Arguments {
   SceneArguments scene;
-  pipeline::ReconstructOptions job;  ///< those that decide on voxels, and how photographs are read
+  pipeline::ReconstructOptions job;  ///< those that decide on voxels
   bool json = false, cameras = false, masks = false;
   std::optional<std::string> picture;
 };
@@ -31,11 +31,9 @@ struct Arguments {
 pipeline::ReconstructOptions job_options(const Arguments& a) {
   check_scene(a.scene.scene);
   pipeline::ReconstructOptions o = a.job;
-  o.output = "none";  // nothing is written
-  o.load = a.scene.load;
   o.box = a.scene.box;
-  o.load.most_views = io::kEnoughViews;  // as reconstruct has it
   o.validate();
+  a.scene.load.validate();
   return o;
 }
 
@@ -78,7 +76,7 @@ PreparedViews prepare(std::span<const double> scales, const SceneArguments& argu
   Scene read = scene;
   pipeline::scale_scene(scales, read);
   PreparedViews prepared =
-      prepare_views(read, pipeline::reduced_loader(scene, scales), options, progress);
+      prepare_views(read, pipeline::reduced_loader(pipeline::file_reader(), scene, scales), options, progress);
   std::vector<bool> keep;
   std::size_t next = 0;  // of those that were decoded, in the same order
   for (const SourceView& view : scene.views) {
@@ -106,10 +104,12 @@ void write_picture(const std::string& path, const pipeline::Inspection& info,
 void run(const Arguments& a) {
   if (a.picture && a.picture->empty()) throw UsageError("--picture is empty: give a PNG file");
   const pipeline::ReconstructOptions job = job_options(a);
-  Scene scene = io::load_scene(a.scene.scene, job.load);
+  io::LoadSceneOptions load = a.scene.load;
+  load.most_views = io::kEnoughViews;  // as reconstruct has it
+  Scene scene = io::load_scene(a.scene.scene, load);
   std::vector<ScenePoint> points;
   const std::string no_box = find_box(a, scene, points);
-  pipeline::Inspection info = pipeline::inspect(scene, job);
+  pipeline::Inspection info = pipeline::inspect(scene, job, load.masks);
   std::optional<CameraDiagnosis> diagnosis;
   std::optional<PreparedViews> prepared;
   if (a.cameras || a.masks) {
@@ -119,7 +119,7 @@ void run(const Arguments& a) {
     if (scene.left_out.size() > known) {
       // Of what else was found in the photographs --check-masks tells.
       if (!a.masks) scene.warnings.push_back(prepared->warnings.front());
-      info = pipeline::inspect(scene, job);
+      info = pipeline::inspect(scene, job, load.masks);
     }
     if (a.cameras) {
       progress.stage("cameras", 3);
@@ -143,7 +143,8 @@ void add_info(CLI::App& app) {
   CLI::App* c = add_command(app, "info");
   a->scene.add_to(*c);
   Described job;
-  describe(job, a->job);
+  io::LoadSceneOptions unused;  // those of the scene have flags already
+  describe(job, a->job, unused);
   add_flags(*c, job,
             {"resolution", "voxel_size", "quality", "method", "image_scale", "max_memory"});
   c->add_flag("--json", a->json, "print JSON");

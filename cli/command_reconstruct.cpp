@@ -8,7 +8,8 @@
 #include "core/parse_name.h"
 #include "option_flags.h"
 #include "pipeline/image_scale.h"
-#include "pipeline/reconstruct.h"
+#include "pipeline/stage_weights.h"
+#include "pipeline/write_results.h"
 #include "scene_arguments.h"
 #include "terminal_progress.h"
 
@@ -17,67 +18,69 @@ namespace {
 
 struct Arguments {
   pipeline::ReconstructOptions job;
+  io::LoadSceneOptions load;
   std::string scene, out;
   bool json = false;
 };
 
-pipeline::ReconstructOptions to_options(const Arguments& a) {
+void check(const Arguments& a) {
   check_scene(a.scene);
-  pipeline::ReconstructOptions o = a.job;
-  o.scene = a.scene;
-  o.output = a.out;
-  o.load.most_views = io::kEnoughViews;
-  o.validate();
-  return o;
+  a.job.validate();
+  a.load.validate();
+  if (a.out.empty()) throw UsageError("--out is empty: give a folder for the results");
 }
 
 void print_summary(const pipeline::Report& report, const std::string& out) {
   const glm::ivec3 n = report.grid.voxels();
-  std::printf("%d views, %d x %d x %d voxels of %g, %lld triangles\n", report.views, n.x, n.y, n.z,
-              report.grid.voxel_size, static_cast<long long>(report.triangles));
-  if (report.smallest_scale < 1)
+  std::printf("%d views, %d x %d x %d voxels of %g, %lld triangles\n", report.photographs.views, n.x, n.y, n.z,
+              report.grid.voxel_size, static_cast<long long>(report.mesh.triangles));
+  if (report.photographs.smallest_scale < 1)
     std::printf("photographs read at %s of their size\n",
-                pipeline::image_scale_text(report.smallest_scale).c_str());
-  if (report.voxels_judged)
+                pipeline::image_scale_text(report.photographs.smallest_scale).c_str());
+  if (const pipeline::SweepFindings& sweep = report.surface.sweep; sweep.voxels_judged > 0)
     std::printf("judged %lld voxels in %d sweeps, carved %lld\n",
-                static_cast<long long>(report.voxels_judged), report.sweeps,
-                static_cast<long long>(report.voxels_carved));
-  if (!report.photometric_line.empty()) std::printf("%s\n", report.photometric_line.c_str());
+                static_cast<long long>(sweep.voxels_judged), sweep.sweeps,
+                static_cast<long long>(sweep.voxels_carved));
+  if (!report.photometric.line.empty()) std::printf("%s\n", report.photometric.line.c_str());
   std::printf("%.2f s (%.2f CPU s), peak memory %lld MiB, on %s\n", report.wall_seconds,
               report.cpu_seconds, static_cast<long long>(report.peak_memory_bytes >> 20),
               report.device.c_str());
   for (const std::string& file : report.files) std::printf("  %s/%s\n", out.c_str(), file.c_str());
-  std::printf("verdict: %s\n", assess::to_string(report.verdict.level));
-  for (const std::string& reason : report.verdict.reasons) std::printf("  %s\n", reason.c_str());
-  for (const std::string& note : report.verdict.notes) std::printf("  %s\n", note.c_str());
-  std::printf("coverage: %s\n", report.verdict.coverage.c_str());
+  const assess::Verdict& verdict = report.verdict.verdict;
+  std::printf("verdict: %s\n", assess::to_string(verdict.level));
+  for (const std::string& reason : verdict.reasons) std::printf("  %s\n", reason.c_str());
+  for (const std::string& note : verdict.notes) std::printf("  %s\n", note.c_str());
+  std::printf("coverage: %s\n", verdict.coverage.c_str());
 }
 
 /// The files are there all the same, to look at.
 void throw_if_failed(const assess::Verdict& verdict) {
   if (verdict.level != assess::Level::kFailed) return;
   throw Error("the result failed its own checks: " + verdict.reasons.front(),
-              assess::kFailedVerdict);
+              ErrorKind::kDoubted);
 }
 
 void run(const Arguments& a) {
-  const pipeline::ReconstructOptions options = to_options(a);
-  check_output(a.scene, options.load, a.out);
-  TerminalProgress progress(pipeline::total_weight(options));
-  const pipeline::Report report = pipeline::reconstruct(options, progress);
+  check(a);
+  check_output(a.scene, a.load, a.out);
+  TerminalProgress progress(pipeline::total_weight(a.job));
+  io::LoadSceneOptions load = a.load;
+  load.most_views = io::kEnoughViews;
+  const pipeline::Report report = pipeline::reconstruct_to_folder(
+      a.job, pipeline::load_photographs(a.scene, load), a.out, progress);
   progress.finish();
   if (a.json)
     std::fputs(report.to_json().c_str(), stdout);
   else
     print_summary(report, a.out);
-  throw_if_failed(report.verdict);
+  throw_if_failed(report.verdict.verdict);
 }
 
 void add_options(CLI::App& c, Arguments& a) {
   add_scene(c, a.scene);
   c.add_option("--out", a.out, "folder for the results; made when it does not exist")->required();
   Described job;
-  describe(job, a.job);
+  describe(job, a.job, a.load);
   add_flags(c, job);
   c.add_flag("--json", a.json, "print report.json on standard output instead of a summary");
 }
@@ -95,7 +98,7 @@ void check_reconstruct(const std::vector<std::string>& arguments) {
   } catch (const CLI::ParseError& e) {
     throw UsageError(parse_fault(command, e));
   }
-  to_options(a);
+  check(a);
 }
 
 void add_reconstruct(CLI::App& app) {

@@ -84,7 +84,7 @@ void run(const Arguments& a) {
   options.box = scene.box;
   const CameraRefinement refinement = refine_cameras(prepared.views, options, progress);
   progress.finish();
-  pipeline::apply(refinement, scene);
+  pipeline::apply(refinement, scene.views);
   io::write_scene(scene, format, a.out);
   const std::string report = pipeline::to_json(refinement, scene, refinement.changed);
   write_atomically(fs::path(a.out) / "refinement.json", report);

@@ -4,7 +4,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include "core/error.h"
+#include "cli/front/exit_code.h"
 
 namespace {
 
@@ -27,7 +27,7 @@ void check_before_libraries(int, char**, char**) {
   const long cores = sysconf(_SC_NPROCESSORS_ONLN);
   if (data.rlim_cur >= kLibraries + rlim_t(cores > 0 ? cores : 1) * stack.rlim_cur) return;
   say_that_memory_is_short();
-  _exit(int(photohull::ExitCode::kFailure));
+  _exit(photohull::cli::exit_code(photohull::ErrorKind::kFailed));
 }
 
 [[gnu::section(".preinit_array"),

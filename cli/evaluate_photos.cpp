@@ -76,13 +76,13 @@ pipeline::Photometric parse_photometric(const std::string& text) {
 }
 
 /// The line that says what was done.
-std::string make_alike(pipeline::Photometric photometric, const Scene& scene, const TriMesh& mesh,
+std::string make_alike(pipeline::Photometric photometric, const TriMesh& mesh,
                        PreparedViews& prepared, const Progress& progress) {
   std::vector<double> noise;
   for (const View& view : prepared.views) noise.push_back(estimate_image_noise(view.image));
   std::nth_element(noise.begin(), noise.begin() + long(noise.size() / 2), noise.end());
   const pipeline::PhotometricOutcome found = pipeline::correct_photometric(
-      photometric, scene, mesh, mean_edge(mesh), noise[noise.size() / 2], prepared.views, progress);
+      photometric, mesh, mean_edge(mesh), noise[noise.size() / 2], prepared.views, progress);
   if (!found.warning.empty()) prepared.warnings.push_back(found.warning);
   return found.line;
 }
@@ -173,7 +173,7 @@ eval::PhotoAgreement judge_photos(const PhotoArguments& a, const TriMesh& mesh,
   const pipeline::Photometric photometric = parse_photometric(a.photometric);
   std::string correction;
   if (photometric != pipeline::Photometric::kOff)
-    correction = make_alike(photometric, scene, mesh, prepared, progress);
+    correction = make_alike(photometric, mesh, prepared, progress);
 
   progress.stage("predictions", 0.8 * kPhotoWeight);
   eval::PhotoMaps worst;

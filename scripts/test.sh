@@ -109,6 +109,10 @@ installation() {
   "$scratch/prefix/bin/photohull" --version | grep -F "$(project_version)"
   "$scratch/prefix/bin/photohull" --version --json | grep -F OpenVDB
   "$scratch/prefix/bin/photohull" chart --help | grep -F -- --draw-only
+  # The library, as another program finds and uses it.
+  cmake -S examples -B "$scratch/examples" -DCMAKE_PREFIX_PATH="$scratch/prefix"
+  cmake --build "$scratch/examples"
+  "$scratch/examples/reconstruct_in_memory" datasets/templeSparseRing | grep -F "signed distance"
 }
 
 project_version() { sed -n 's/^project(photohull VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt; }

@@ -9,6 +9,7 @@
 #include <new>
 #include <string>
 
+#include "cli/front/exit_code.h"
 #include "cli/front/parse_faults.h"
 #include "core/error.h"
 #include "core/progress.h"
@@ -18,11 +19,11 @@ namespace {
 
 extern "C" void on_interrupt(int signal) {
   // The second Ctrl-C ends the process at once.
-  if (cancellation_requested()) {
+  if (process_cancellation().cancelled()) {
     std::signal(signal, SIG_DFL);
     std::raise(signal);
   }
-  request_cancellation();
+  process_cancellation().cancel();
 }
 
 std::string joined(const std::vector<std::string>& names) {
@@ -90,19 +91,20 @@ int run_command_line(int argc, const char* const* argv, const Commands& commands
 int report_failures(const std::function<void()>& work) {
   try {
     work();
-    return int(ExitCode::kSuccess);
+    return kExitSuccess;
   } catch (const Error& e) {
     std::fprintf(stderr, "photohull: %s\n", e.what());
-    return int(e.code());
+    return exit_code(e.kind());
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "photohull: out of memory; lower --resolution or use fewer --views\n");
   } catch (const std::exception& e) {
     std::fprintf(stderr, "photohull: unexpected failure: %s\n", e.what());
   }
-  return int(ExitCode::kFailure);
+  return exit_code(ErrorKind::kFailed);
 }
 
 void handle_signals() {
+  process_cancellation();  // is made here, not in a handler
   // What the caller ignores (nohup, background jobs of scripts) stays ignored.
   for (const int signal : {SIGINT, SIGTERM, SIGHUP})
     if (std::signal(signal, SIG_IGN) != SIG_IGN) std::signal(signal, on_interrupt);

@@ -8,7 +8,6 @@
 #include "assess/common_error.h"
 #include "assess/explained.h"
 #include "assess/match_probes.h"
-#include "core/error.h"
 
 namespace photohull::assess {
 
@@ -47,9 +46,6 @@ struct Signals {
 enum class Level { kGood, kDoubtful, kFailed };
 
 const char* to_string(Level level);
-
-/// What the process reports to its caller when a result failed by its verdict; the files are there.
-inline constexpr ExitCode kFailedVerdict{3};
 
 struct Verdict {
   Level level = Level::kGood;

@@ -148,7 +148,7 @@ std::vector<Match> match_all(std::span<const View> views, const std::vector<Feat
       options.pairs.empty() ? neighbour_pairs(views, options) : options.pairs;
   std::vector<std::vector<Match>> found(pairs.size());
   tbb::parallel_for(std::size_t(0), pairs.size(), [&](std::size_t p) {
-    if (cancellation_requested()) return;
+    if (progress.cancelled()) return;
     const auto [i, j] = pairs[p];
     const std::vector<int> there =
         best_matches(features[i], features[j], views[i].camera, views[j].camera, options);
@@ -219,7 +219,7 @@ std::vector<Track> find_tracks(std::span<const View> views, const TrackOptions& 
                                Progress& progress, std::span<const Track> given, bool search) {
   std::vector<Features> features(views.size());
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
-    if (!cancellation_requested())
+    if (!progress.cancelled())
       features[i] = search ? detect_features(views[i], options.features)
                            : Features{{}, {}, smoothed(grey_image(views[i].image))};
   });
@@ -236,7 +236,7 @@ std::vector<Track> find_tracks(std::span<const View> views, const TrackOptions& 
   std::vector<Camera> cameras;
   for (const View& view : views) cameras.push_back(view.camera);
   tbb::parallel_for(std::size_t(0), tracks.size(), [&](std::size_t t) {
-    if (!cancellation_requested()) polish(views, cameras, features, options, tracks[t]);
+    if (!progress.cancelled()) polish(views, cameras, features, options, tracks[t]);
   });
   progress.check_cancelled();
   std::erase_if(tracks, [](const Track& t) { return t.observations.size() < 2; });

@@ -57,13 +57,13 @@ std::vector<PairMatches> match_without_cameras(std::span<const View> views,
                                                Progress& progress) {
   std::vector<Features> features(views.size());
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
-    if (!cancellation_requested()) features[i] = detect_features(views[i], kFeatures);
+    if (!progress.cancelled()) features[i] = detect_features(views[i], kFeatures);
   });
   progress.check_cancelled();
   std::vector<PairMatches> found(pairs.size());
   tbb::parallel_for(std::size_t(0), pairs.size(), [&](std::size_t i) {
     const auto [a, b] = pairs[i];
-    if (!cancellation_requested())
+    if (!progress.cancelled())
       found[i] = match(features[std::size_t(a)], features[std::size_t(b)], a, b);
   });
   progress.check_cancelled();

@@ -235,7 +235,7 @@ std::vector<Track> patch_tracks(std::span<const Camera> cameras, std::span<const
   const PatchMatcher matcher(cameras, images, options);
   std::vector<Track> tracks(points.size());
   tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t i) {
-    if (!cancellation_requested()) tracks[i] = matcher.match(points[i]);
+    if (!progress.cancelled()) tracks[i] = matcher.match(points[i]);
   });
   progress.check_cancelled();
   std::erase_if(tracks, [](const Track& t) { return t.observations.size() < 2; });

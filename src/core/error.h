@@ -7,42 +7,45 @@
 
 namespace photohull {
 
-/// What the process reports to its caller.
-enum class ExitCode : int {
-  kSuccess = 0,
-  kFailure = 1,     ///< The job could not be done with this input or on this machine.
-  kUsage = 2,       ///< The command line is wrong.
-  kCancelled = 130  ///< Ctrl-C.
+/// What kind of failure it is: for programs, which act on it. The command line makes its exit code of
+/// it (cli/front/exit_code.h).
+enum class ErrorKind {
+  kFailed,    ///< the job cannot be done with this input or on this machine
+  kUsage,     ///< options that are wrong, or do not go together
+  kMemory,    ///< what would have been done does not fit into memory
+  kDevice,    ///< the graphics device is lost, or out of memory
+  kDoubted,   ///< there is a result, and it failed its own checks
+  kCancelled  ///< the caller asked to stop
 };
 
 /// A user-facing failure. The message is one sentence: the file, the field, what was found, the
 /// mend.
 class Error : public std::runtime_error {
  public:
-  explicit Error(const std::string& message, ExitCode code = ExitCode::kFailure)
-      : std::runtime_error(message), code_(code) {}
-  ExitCode code() const { return code_; }
+  explicit Error(const std::string& message, ErrorKind kind = ErrorKind::kFailed)
+      : std::runtime_error(message), kind_(kind) {}
+  ErrorKind kind() const { return kind_; }
 
  private:
-  ExitCode code_;
+  ErrorKind kind_;
 };
 
-/// An option or argument outside its legal range (exit code 2).
+/// An option or argument outside its legal range.
 class UsageError : public Error {
  public:
-  explicit UsageError(const std::string& message) : Error(message, ExitCode::kUsage) {}
+  explicit UsageError(const std::string& message) : Error(message, ErrorKind::kUsage) {}
 };
 
-/// What would have been done does not fit into memory: no fault of the input (exit code 1).
+/// What would have been done does not fit into memory: no fault of the input.
 class MemoryError : public Error {
  public:
-  explicit MemoryError(const std::string& message) : Error(message) {}
+  explicit MemoryError(const std::string& message) : Error(message, ErrorKind::kMemory) {}
 };
 
-/// Thrown at the next safe point after the user asked to stop (exit code 130).
+/// Thrown at the next safe point after the user asked to stop.
 class Cancelled : public Error {
  public:
-  Cancelled() : Error("cancelled", ExitCode::kCancelled) {}
+  Cancelled() : Error("cancelled", ErrorKind::kCancelled) {}
 };
 
 /// Joins its arguments with operator<<.

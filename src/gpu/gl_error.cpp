@@ -32,12 +32,12 @@ void throw_gl_error(unsigned error, const std::string& what, const std::string& 
   if (error == GL_OUT_OF_MEMORY)
     throw Error(concat("the graphics device is out of memory at ", what, "; ", mend,
                        ", or give another --device"),
-                kDeviceFailed);
+                ErrorKind::kDevice);
   if (error == GL_CONTEXT_LOST)
     throw Error(concat("the graphics device was lost at ", what,
                        ": its driver was reset, or it was removed; run the same command again, or "
                        "give another --device"),
-                kDeviceFailed);
+                ErrorKind::kDevice);
   throw Error(concat("OpenGL failed at ", what, ": ", name_of(error),
                      "; give another --device, such as software"));
 }

@@ -7,14 +7,11 @@
 
 namespace photohull::gpu {
 
-/// Exit code of a process whose device ran out of memory or was lost.
-inline constexpr ExitCode kDeviceFailed{4};
-
 /// The error that OpenGL has pending, which this clears; GL_CONTEXT_LOST where the device was reset
 /// or removed; GL_NO_ERROR.
 unsigned pending_error();
 
-/// Throws Error, for a lost context and for memory with kDeviceFailed. `what` says what failed,
+/// Throws Error, for a lost context and for memory of the kind kDevice. `what` says what failed,
 /// as in "a buffer of 12 MiB"; `mend` what takes less memory.
 [[noreturn]] void throw_gl_error(unsigned error, const std::string& what,
                                  const std::string& mend = "lower --resolution");

@@ -15,6 +15,7 @@
 #include "io/image_file.h"
 #include "io/jpeg_rows.h"
 #include "io/open_image.h"
+#include "io/row_writer.h"
 
 namespace photohull::io {
 namespace fs = std::filesystem;
@@ -22,7 +23,6 @@ namespace {
 
 constexpr int kStrip = 64;  // rows read at once: a multiple of most files' compressed blocks
 constexpr float kHalfMax = 65504.0f;
-constexpr int kCurve = 65535;
 
 /// Linear light of every 8-bit and 16-bit value.
 template <int count>
@@ -30,17 +30,6 @@ const std::vector<float>& linear_light() {
   static const std::vector<float> table = [] {
     std::vector<float> t(count);
     for (int i = 0; i < count; ++i) t[std::size_t(i)] = float(linear_from_srgb(i / (count - 1.0)));
-    return t;
-  }();
-  return table;
-}
-
-/// 8-bit sRGB of linear light; so fine that rounding differs from the exact by 0.06 levels at most.
-const std::vector<std::uint8_t>& srgb_curve() {
-  static const std::vector<std::uint8_t> table = [] {
-    std::vector<std::uint8_t> t(kCurve + 1);
-    for (int i = 0; i <= kCurve; ++i)
-      t[std::size_t(i)] = std::uint8_t(std::lround(255 * srgb_from_linear(double(i) / kCurve)));
     return t;
   }();
   return table;
@@ -98,40 +87,11 @@ struct FromFloat {
   }
 };
 
-/// Rows of linear RGBA appended to an image.
-class Writer {
- public:
-  explicit Writer(ColourImage& image) : image_(image) {
-    image.bytes.resize(std::size_t(image.width) * std::size_t(image.height) *
-                       image.bytes_per_pixel());
-  }
-
-  void operator()(const float* row) {
-    for (int x = 0; x < image_.width; ++x, row += 4)
-      if (image_.encoding == ColourImage::Encoding::kSrgb8) {
-        for (int c = 0; c < 3; ++c)
-          image_.bytes[at_++] =
-              curve_[std::size_t(std::clamp(row[c], 0.0f, 1.0f) * float(kCurve) + 0.5f)];
-        image_.bytes[at_++] = std::uint8_t(255 * std::clamp(row[3], 0.0f, 1.0f) + 0.5f);
-      } else {
-        for (int c = 0; c < 4; ++c, at_ += 2) {
-          const std::uint16_t bits = half(row[c]).bits();
-          std::memcpy(&image_.bytes[at_], &bits, 2);
-        }
-      }
-  }
-
- private:
-  ColourImage& image_;
-  const std::vector<std::uint8_t>& curve_ = srgb_curve();
-  std::size_t at_ = 0;
-};
-
 template <typename T, typename ToLinear>
 void average_rows(OpenImage& file, OIIO::TypeDesc type, const ToLinear& to_linear, double scale,
                   ColourImage& image) {
   const int width = file.spec.width, channels = file.layout.channels;
-  AreaAverage average(width, file.spec.height, glm::dvec2(1 / scale), 4, Writer(image));
+  AreaAverage average(width, file.spec.height, glm::dvec2(1 / scale), 4, RowWriter(image));
   std::vector<float> linear(4 * std::size_t(width));
   for_each_row<T>(file, type, [&](int, const T* in) {
     for (int x = 0; x < width; ++x, in += channels) to_linear(in, &linear[4 * std::size_t(x)]);
@@ -165,7 +125,7 @@ void decode_jpeg(const OpenImage& file, double scale, ColourImage& image) {
     const std::vector<float>& curve = linear_light<256>();
     std::vector<float> linear(row.size(), 1.0f);
     AreaAverage average(double(file.spec.width) / reduction, double(file.spec.height) / reduction,
-                        glm::dvec2(1 / (scale * reduction)), 4, Writer(image));
+                        glm::dvec2(1 / (scale * reduction)), 4, RowWriter(image));
     for (int y = 0; y < rows.height(); ++y) {
       if (!rows.read_row(row.data())) refuse(file, rows);
       for (std::size_t i = 0; i < row.size(); i += 4)

@@ -112,15 +112,16 @@ bool MaskBias::counts() const {
 }
 
 MaskBias measure_mask_bias(std::span<const View> views,
-                           std::span<const SilhouetteDistance> silhouettes) {
+                           std::span<const SilhouetteDistance* const> silhouettes) {
   int longest = 0;
-  for (const SilhouetteDistance& s : silhouettes) longest = std::max({longest, s.width, s.height});
+  for (const SilhouetteDistance* s : silhouettes)
+    if (s) longest = std::max({longest, s->width, s->height});
   const int reach = int(std::lround(std::max(kReach, kReachShare * longest)));
   const auto profiles_of = [&](const auto& brightness) {
     std::vector<Profile> profiles(views.size(), Profile(reach));
     tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
-      if (!silhouettes[i].pixels.empty())
-        profiles[i] = profile_of(smoothed(brightness(i)), silhouettes[i], reach);
+      if (silhouettes[i])
+        profiles[i] = profile_of(smoothed(brightness(i)), *silhouettes[i], reach);
     });
     return profiles;
   };
@@ -142,7 +143,7 @@ MaskBias measure_mask_bias(std::span<const View> views,
   // the outline is to be moved so that the masks have theirs where the photographs have it.
   const auto beside = [&](double moved) {  // pixels, from the photographs' place
     const Profile own = mean_of(profiles_of([&](std::size_t k) {
-                                  return picture_of(views[k].mask, silhouettes[k], moved);
+                                  return picture_of(views[k].mask, *silhouettes[k], moved);
                                 }),
                                 reach);
     return place_of(own, peak_of(own)) - place;

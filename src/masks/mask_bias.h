@@ -22,9 +22,9 @@ struct MaskBias {
 /// them: texture on both sides averages out, the outline stands out. Distances to 16 pixels (or 2 %
 /// of the image's longer side) on both sides are tried. Where the photographs' strongest slope lies
 /// is compared with where the masks' own coverage has it, for parts narrower than two pixels have
-/// it beside their outline. `silhouettes` are those of the views' masks, empty for views without.
+/// it beside their outline. `silhouettes` are those of the views' masks, null for views without.
 MaskBias measure_mask_bias(std::span<const View> views,
-                           std::span<const SilhouetteDistance> silhouettes);
+                           std::span<const SilhouetteDistance* const> silhouettes);
 
 /// Moves the contour outward by `pixels` (inward where negative), in the mask and its distances.
 void move_outline(double pixels, Mask& mask, SilhouetteDistance& silhouette);

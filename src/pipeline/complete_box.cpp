@@ -72,11 +72,12 @@ bool were_given(const PreparedViews& prepared) {
   });
 }
 
-FoundBox find_in_photographs(MaskPolicy masks, const Scene& scene, Progress& progress) {
+FoundBox find_in_photographs(MaskPolicy masks, const PhotographReader& reader, const Scene& scene,
+                             Progress& progress) {
   std::vector<std::size_t> kept = io::spread_views(scene.views, scene.box, kMostViews);
   Scene reduced = scene_of(scene, kept);
   const std::vector<double> scales = reduced_scales(reduced);
-  const ViewLoader loader = reduced_loader(reduced, scales);
+  const ViewLoader loader = reduced_loader(reader, reduced, scales);
   scale_scene(scales, reduced);
   PrepareOptions options;
   options.masks = masks;
@@ -150,13 +151,13 @@ bool looks_for_box(const BoxOptions& options, const Scene& scene) {
 }
 
 BoxFindings complete_box(const BoxOptions& options, MaskPolicy masks, Scene& scene,
-                         Progress& progress) {
+                         Progress& progress, const PhotographReader& reader) {
   options.validate();
   BoxFindings findings;
   if (looks_for_box(options, scene)) {
     const bool guessed = scene.box && scene.box_source == kSparsePoints;
     try {
-      FoundBox found = find_in_photographs(masks, scene, progress);
+      FoundBox found = find_in_photographs(masks, reader, scene, progress);
       scene.box = found.box;
       scene.box_source = std::move(found.source);
       scene.warnings.insert(scene.warnings.end(), found.warnings.begin(), found.warnings.end());

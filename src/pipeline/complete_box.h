@@ -8,6 +8,7 @@
 #include "core/describe.h"
 #include "core/progress.h"
 #include "core/scene.h"
+#include "pipeline/photographs.h"
 #include "views/prepare_views.h"
 
 namespace photohull::pipeline {
@@ -39,6 +40,6 @@ bool looks_for_box(const BoxOptions& options, const Scene& scene);
 /// box that load_scene made of sparse points stands only where none is found, which adds a warning
 /// to the scene. Then scales it. Throws Error as find_box and prepare_views do; Cancelled.
 BoxFindings complete_box(const BoxOptions& options, MaskPolicy masks, Scene& scene,
-                         Progress& progress);
+                         Progress& progress, const PhotographReader& reader = file_reader());
 
 }  // namespace photohull::pipeline

@@ -7,7 +7,7 @@
 
 #include "core/camera.h"
 #include "core/grid.h"
-#include "pipeline/reconstruct.h"
+#include "pipeline/reconstruct_options.h"
 
 namespace photohull::pipeline {
 
@@ -21,6 +21,8 @@ struct CostQuestion {
   Method method = Method::kRefine;
   Silhouettes masks = Silhouettes::kGiven;
 };
+
+inline constexpr double kFaceBytes = 377;  ///< a face of the box, in voxels: bricks, mesh and files
 
 struct Cost {
   std::int64_t bytes = 0;  ///< peak of the process

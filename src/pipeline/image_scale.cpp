@@ -91,13 +91,13 @@ bool halve_image_scales(const Box& box, std::span<const SourceView> views, doubl
   return any;
 }
 
-void keep_unexpected_sizes(std::span<const SourceView> views, std::vector<double>& scales) {
+void keep_unexpected_sizes(const PhotographReader& reader, std::span<const SourceView> views,
+                           std::vector<double>& scales) {
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (scales[i] == 1) continue;
     try {
-      const io::ImageSize size = io::read_image_size(views[i].image);
       const Intrinsics& k = views[i].camera.intrinsics;
-      if (size.width != k.width || size.height != k.height) scales[i] = 1;
+      if (reader.size(views[i].image) != glm::ivec2(k.width, k.height)) scales[i] = 1;
     } catch (const Error&) {
       scales[i] = 1;
     }
@@ -114,30 +114,6 @@ void scale_scene(std::span<const double> scales, Scene& scene) {
     for (SceneTrack::Observation& o : track.observations)
       if (const double scale = scales[std::size_t(o.view)]; scale != 1)
         o.pixel = scaled_pixel(o.pixel, scale);
-}
-
-ViewLoader reduced_loader(const Scene& scene, std::span<const double> scales) {
-  PHOTOHULL_CHECK_OP(scales.size(), ==, scene.views.size());
-  struct Reading {
-    double scale;
-    glm::dvec2 size;  // pixels of the photograph's file
-  };
-  std::map<fs::path, Reading> readings;
-  for (std::size_t i = 0; i < scales.size(); ++i) {
-    const SourceView& view = scene.views[i];
-    const Intrinsics& k = view.camera.intrinsics;
-    for (const fs::path* path : {&view.image, &view.mask, &view.plate})
-      readings[*path] = {scales[i], {k.width, k.height}};
-  }
-  return {
-      [readings](const fs::path& path) { return io::read_image(path, readings.at(path).scale); },
-      [readings](const fs::path& path) {
-        const Reading& reading = readings.at(path);
-        if (reading.scale == 1) return io::read_mask(path);
-        const io::ImageSize size = io::read_image_size(path);
-        return io::read_mask(path,
-                             reading.scale * (reading.size / glm::dvec2(size.width, size.height)));
-      }};
 }
 
 }  // namespace photohull::pipeline

@@ -8,7 +8,7 @@
 
 #include "core/box.h"
 #include "core/scene.h"
-#include "views/prepare_views.h"
+#include "pipeline/photographs.h"
 
 namespace photohull::pipeline {
 
@@ -37,14 +37,10 @@ bool halve_image_scales(const Box& box, std::span<const SourceView> views, doubl
 
 /// Scales below 1 become 1 where the photograph's header tells another size than the camera is for,
 /// or cannot be read: decoding tells what is wrong.
-void keep_unexpected_sizes(std::span<const SourceView> views, std::vector<double>& scales);
+void keep_unexpected_sizes(const PhotographReader& reader, std::span<const SourceView> views,
+                           std::vector<double>& scales);
 
 /// The scene as its photographs are at these scales: intrinsics and places of tracks.
 void scale_scene(std::span<const double> scales, Scene& scene);
-
-/// Reads the photographs, masks and backgrounds of the views at their scales, one each. `scene` is
-/// in its files' pixels. Masks that are of another size than their photographs, as they are where
-/// these are scaled copies, come in the size that the photographs are read in.
-ViewLoader reduced_loader(const Scene& scene, std::span<const double> scales);
 
 }  // namespace photohull::pipeline

@@ -22,6 +22,14 @@ constexpr std::string_view kCameraFiles[] = {".txt", ".bin", ".json",  ".xml", "
                                              ".out", ".nvm", ".mat",   ".yml", ".yaml",
                                              ".csv", ".sfm", ".camera"};
 
+std::string digits_of(const XXH128_hash_t& hash) {
+  char digits[33];
+  std::snprintf(digits, sizeof digits, "%016llx%016llx",
+                static_cast<unsigned long long>(hash.high64),
+                static_cast<unsigned long long>(hash.low64));
+  return digits;
+}
+
 /// False where it cannot be read.
 bool hash(InputFile& file) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.path.c_str(), "rb"),
@@ -37,12 +45,7 @@ bool hash(InputFile& file) {
     file.bytes += std::int64_t(count);
   }
   if (std::ferror(stream.get())) return false;
-  const XXH128_hash_t digest = XXH3_128bits_digest(state.get());
-  char digits[33];
-  std::snprintf(digits, sizeof digits, "%016llx%016llx",
-                static_cast<unsigned long long>(digest.high64),
-                static_cast<unsigned long long>(digest.low64));
-  file.xxh3_128 = digits;
+  file.xxh3_128 = digits_of(XXH3_128bits_digest(state.get()));
   return true;
 }
 
@@ -71,6 +74,10 @@ std::vector<fs::path> scene_files(const Scene& scene) {
 }
 
 }  // namespace
+
+std::string digest_of(std::span<const std::uint8_t> bytes) {
+  return digits_of(XXH3_128bits(bytes.data(), bytes.size()));
+}
 
 std::vector<InputFile> hash_inputs(const Scene& scene) {
   std::vector<InputFile> files;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,9 @@ struct InputFile {
   std::int64_t bytes = 0;
   std::string xxh3_128;  ///< 32 hexadecimal digits, as `xxhsum -H2` prints
 };
+
+/// XXH3 of 128 bits as 32 hexadecimal digits.
+std::string digest_of(std::span<const std::uint8_t> bytes);
 
 /// The scene's files (cameras, and the box where a file beside them has it), then each view's
 /// photograph, mask and photograph of the background. Files that cannot be read are left out: the

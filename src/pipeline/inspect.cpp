@@ -8,6 +8,7 @@
 #include "pipeline/checks.h"
 #include "pipeline/memory.h"
 #include "pipeline/plan.h"
+#include "pipeline/read_scene.h"
 
 namespace photohull::pipeline {
 namespace {
@@ -36,9 +37,10 @@ void measure_angles(Inspection& out) {
 }
 
 /// Everything about the job; throws as reconstruct would.
-void look_ahead(const Scene& scene, const ReconstructOptions& options, Inspection& out) {
+void look_ahead(const Scene& scene, const ReconstructOptions& options, io::MaskSource source,
+                Inspection& out) {
   const std::size_t within = cameras_within(*scene.box, scene.views);
-  const bool masks = options.load.masks != io::MaskSource::kNone &&
+  const bool masks = source != io::MaskSource::kNone &&
                      std::any_of(scene.views.begin(), scene.views.end(),
                                  [](const SourceView& view) { return !view.mask.empty(); });
   if (masks || options.effective_method() != Method::kRefine)
@@ -55,8 +57,8 @@ void look_ahead(const Scene& scene, const ReconstructOptions& options, Inspectio
   std::vector<Camera> cameras;
   for (const SourceView& view : scene.views) cameras.push_back(view.camera);
   out.voxel_size = carving::pixel_footprint(*scene.box, cameras);
-  out.memory_limit = options.max_memory ? *options.max_memory : default_max_memory();
-  Plan plan = plan_job(options, scene, *scene.box, true, out.memory_limit);
+  out.memory_limit = memory_limit(options);
+  Plan plan = plan_job({options, source}, scene, *scene.box, true, out.memory_limit);
   out.silhouettes = plan.silhouettes;
   out.grid = plan.grid;
   out.scales = std::move(plan.scales);
@@ -65,26 +67,28 @@ void look_ahead(const Scene& scene, const ReconstructOptions& options, Inspectio
   if (out.memory_bytes > out.memory_limit)
     out.warnings.push_back(concat("a reconstruction would take more memory than it may (",
                                   memory_text(out.memory_limit),
-                                  "; --max-memory): lower --resolution"));
+                                  "; ", flag_of("max_memory"), "): lower ",
+                                  flag_of("resolution")));
   if (out.grid.voxel_size > carving::voxel_size_for(*scene.box, 2))
     out.warnings.push_back("the box is hardly larger than a pixel: check its units");
   if (out.nearest_angle < kSmallestBaseline && within == 0)
     out.warnings.push_back("neighbouring views are nearly the same: depth will be uncertain");
   if (out.nearest_angle > kLargestBaseline && within == 0)
     out.warnings.push_back(
-        "neighbouring views are far apart: photo-consistency will find little; "
-        "add views or use --method hull");
+        concat("neighbouring views are far apart: photo-consistency will find little; add views or "
+               "use ",
+               flag_of("method"), " hull"));
 }
 
 }  // namespace
 
-Inspection inspect(const Scene& scene, const ReconstructOptions& options) {
+Inspection inspect(const Scene& scene, const ReconstructOptions& options, io::MaskSource masks) {
   Inspection out;
   out.scene = scene;
   out.warnings = scene.warnings;
   out.extents = measure_extents(scene);
   try {
-    if (scene.box) look_ahead(scene, options, out);
+    if (scene.box) look_ahead(scene, options, masks, out);
   } catch (const UsageError&) {
     throw;
   } catch (const Error&) {

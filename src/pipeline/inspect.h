@@ -9,7 +9,7 @@
 #include "core/grid.h"
 #include "core/scene.h"
 #include "pipeline/extents.h"
-#include "pipeline/reconstruct.h"
+#include "pipeline/reconstruct_options.h"
 
 namespace photohull::pipeline {
 
@@ -32,9 +32,10 @@ struct Inspection {
   std::vector<std::string> warnings;
 };
 
-/// Of what a job with these options (`scene` and `output` do not count) would do, without decoding
+/// Of what a job with these options would do, without decoding
 /// an image. What reconstruct would refuse the scene for is the result's failure, but not want of
 /// memory. Throws UsageError for options that do not suit the scene.
-Inspection inspect(const Scene& scene, const ReconstructOptions& options);
+Inspection inspect(const Scene& scene, const ReconstructOptions& options,
+                   io::MaskSource masks = io::MaskSource::kAuto);
 
 }  // namespace photohull::pipeline

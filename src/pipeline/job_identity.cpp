@@ -1,11 +1,9 @@
 #include "pipeline/job_identity.h"
 
-#include <xxhash.h>
-
-#include <cstdio>
 #include <iomanip>
 #include <sstream>
 
+#include "pipeline/input_hashes.h"
 #include "pipeline/tuning.h"
 
 namespace photohull::pipeline {
@@ -38,11 +36,11 @@ void add_camera(const SourceView& view, std::ostream& out) {
 }
 
 /// All that affect what refinement comes to.
-void add_options(ReconstructOptions options, std::ostream& out) {
+void add_options(ReconstructOptions options, io::LoadSceneOptions load, std::ostream& out) {
   options.method = options.effective_method();
   options.tune = assignments_until(Stage::kSurface, options);
   Described described;
-  describe(described, options);
+  describe(described, options, load);
   for (const Option& option : described.options())
     if (option.from <= Stage::kSurface)
       out << option.name << ' ' << std::quoted(text_of(option, kDigits)) << '\n';
@@ -50,30 +48,27 @@ void add_options(ReconstructOptions options, std::ostream& out) {
 
 }  // namespace
 
-std::string job_identity(const ReconstructOptions& options, const Scene& scene,
-                         const GridSpec& grid, const std::string& device) {
+std::string job_identity(const ReconstructOptions& options, const Photographs& photographs,
+                         const Subject& subject, const std::string& device) {
   std::ostringstream text;
   text << std::setprecision(kDigits) << PHOTOHULL_VERSION << '\n' << device << '\n';
-  add_options(options, text);
+  add_options(options, photographs.load, text);
+  const GridSpec& grid = subject.grid;
   text << grid.voxel_size << ' ' << grid.origin.x << ' ' << grid.origin.y << ' ' << grid.origin.z
        << ' ' << grid.bricks.x << ' ' << grid.bricks.y << ' ' << grid.bricks.z << '\n';
-  for (const glm::dvec3& corner : {scene.box->min, scene.box->max})
+  for (const glm::dvec3& corner : {subject.box.min, subject.box.max})
     text << corner.x << ' ' << corner.y << ' ' << corner.z << '\n';
   add_file("/proc/self/exe", text);  // versions change less often than programs
-  add_file(scene.path, text);
-  for (const SourceView& view : scene.views) {
-    add_file(view.image, text);
-    add_file(view.mask, text);
-    add_file(view.plate, text);
-    add_camera(view, text);
+  add_file(photographs.scene.path, text);
+  text << photographs.digest << '\n';
+  for (const View& view : subject.views) {
+    add_file(view.source.image, text);
+    add_file(view.source.mask, text);
+    add_file(view.source.plate, text);
+    add_camera(view.source, text);
   }
   const std::string all = text.str();
-  const XXH128_hash_t hash = XXH3_128bits(all.data(), all.size());
-  char digits[33];
-  std::snprintf(digits, sizeof digits, "%016llx%016llx",
-                static_cast<unsigned long long>(hash.high64),
-                static_cast<unsigned long long>(hash.low64));
-  return digits;
+  return digest_of({reinterpret_cast<const std::uint8_t*>(all.data()), all.size()});
 }
 
 }  // namespace photohull::pipeline

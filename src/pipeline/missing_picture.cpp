@@ -25,9 +25,9 @@ MissingPicture draw_missing(const CheckedResult& result,
   if (worst == fits.end() || worst->foreground == 0) return {};
   const auto v = std::size_t(worst - fits.begin());
   const View& view = result.views[v];
-  const SilhouetteDistance& used = result.silhouettes[v];
+  const SilhouetteDistance& used = view.silhouette.distance;
   SilhouetteDistance own;
-  if (!result.widened[v].empty()) own = silhouette_distance(view.mask);
+  if (!view.silhouette.widened.empty()) own = silhouette_distance(view.mask);
   const SilhouetteDistance& given = own.pixels.empty() ? used : own;
 
   MissingPicture picture{view.name, used.width, used.height, {}};
@@ -49,7 +49,7 @@ MissingPicture draw_missing(const CheckedResult& result,
                            255 * srgb_from_linear(kDarkened * std::clamp(light[c], 0.0f, 1.0f))));
     }
   });
-  for (const LinePoint& p : result.lines[v]) {
+  for (const LinePoint& p : view.silhouette.lines) {
     if (assess::covers_line(rays, view.camera, p, kTolerance)) continue;
     const int x = std::clamp(int(std::lround(p.x)), 0, used.width - 1);
     const int y = std::clamp(int(std::lround(p.y)), 0, used.height - 1);

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "core/describe.h"
 #include "core/error.h"
 #include "views/photometric_check.h"
 #include "views/photometric_samples.h"
@@ -34,7 +35,7 @@ TriMesh with_normals(TriMesh mesh) {
   return mesh;
 }
 
-std::string to_json(const PhotometricCalibration& c, const Scene& scene,
+std::string to_json(const PhotometricCalibration& c, const std::vector<View>& views,
                     const std::vector<int>& lenses, bool used) {
   ordered_json j = {{"solved", c.solved},
                     {"significant", c.significant},
@@ -51,7 +52,7 @@ std::string to_json(const PhotometricCalibration& c, const Scene& scene,
     j["lenses"].push_back({{"vignetting", c.vignetting[l]}, {"sigma", c.vignetting_sigma[l]}});
   j["views"] = ordered_json::array();
   for (std::size_t i = 0; i < c.views.size(); ++i)
-    j["views"].push_back({{"name", scene.views[i].name},
+    j["views"].push_back({{"name", views[i].name},
                           {"gain", array_of(c.views[i].gain)},
                           {"sigma", array_of(c.views[i].sigma)},
                           {"samples", c.views[i].samples},
@@ -92,14 +93,13 @@ const char* to_string(Photometric photometric) {
   return "?";
 }
 
-std::optional<PhotometricOutcome> find_alike(const Scene& scene, const TriMesh& mesh,
-                                             double voxel_size, double noise_sigma,
-                                             const std::vector<View>& views,
+std::optional<PhotometricOutcome> find_alike(const TriMesh& mesh, double voxel_size,
+                                             double noise_sigma, const std::vector<View>& views,
                                              const Progress& progress) {
   const bool complete = mesh.normals.size() == mesh.positions.size();
   const PhotometricCheck c = check_photometric(
       sample_photometric(complete ? mesh : with_normals(mesh), kPatch * voxel_size, views,
-                         frames_of(scene), noise_sigma, progress,
+                         frames_of(views), noise_sigma, progress,
                          std::max(kCheckPoints, kCheckPointsAView * views.size())),
       int(views.size()));
   if (c.differ || c.views < 2) return {};
@@ -124,12 +124,11 @@ std::optional<PhotometricOutcome> find_alike(const Scene& scene, const TriMesh& 
   return out;
 }
 
-PhotometricOutcome correct_photometric(Photometric photometric, const Scene& scene,
-                                       const TriMesh& mesh, double voxel_size, double noise_sigma,
+PhotometricOutcome correct_photometric(Photometric photometric, const TriMesh& mesh,
+                                       double voxel_size, double noise_sigma,
                                        std::vector<View>& views, const Progress& progress) {
-  PHOTOHULL_CHECK_OP(views.size(), ==, scene.views.size());
   PHOTOHULL_CHECK(photometric != Photometric::kOff);
-  const std::vector<PhotometricFrame> frames = frames_of(scene);
+  const std::vector<PhotometricFrame> frames = frames_of(views);
   const std::vector<int> lenses = shared_lenses(frames);
   PhotometricOutcome out;
   const bool complete = mesh.normals.size() == mesh.positions.size();
@@ -140,18 +139,19 @@ PhotometricOutcome correct_photometric(Photometric photometric, const Scene& sce
   const PhotometricCalibration& c = out.calibration;
   out.used = c.solved && (photometric == Photometric::kOn || c.pays);
   if (out.used) apply_photometric(c, frames, lenses, views);
-  out.json = to_json(c, scene, lenses, out.used);
+  out.json = to_json(c, views, lenses, out.used);
   out.line = to_line(c, out.used);
   if (photometric == Photometric::kOn && !c.solved)
     out.warning =
-        "--photometric on: too few surface points are seen by several views to measure gains; "
-        "colours stay as photographed";
+        concat(flag_of("photometric"),
+               " on: too few surface points are seen by several views to measure gains; colours "
+               "stay as photographed");
   else if (out.used) {
     std::string names;
     int count = 0;
     for (std::size_t i = 0; i < c.views.size(); ++i)
       if (!c.views[i].solved && ++count <= 5)
-        names += (names.empty() ? "" : ", ") + scene.views[i].name;
+        names += (names.empty() ? "" : ", ") + views[i].name;
     if (count > 0)
       out.warning = concat(count,
                            " views show too little of the surface to measure their gains, "

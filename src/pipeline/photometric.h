@@ -28,17 +28,16 @@ struct PhotometricOutcome {
 /// of their estimate, on some hundred points of the mesh, which may be coarse. Where they do not,
 /// the outcome says so and the photographs stay. Where they do, or where these points cannot tell,
 /// nothing is returned, and correct_photometric has to tell. Throws Error, Cancelled.
-std::optional<PhotometricOutcome> find_alike(const Scene& scene, const TriMesh& mesh,
-                                             double voxel_size, double noise_sigma,
-                                             const std::vector<View>& views,
+std::optional<PhotometricOutcome> find_alike(const TriMesh& mesh, double voxel_size,
+                                             double noise_sigma, const std::vector<View>& views,
                                              const Progress& progress);
 
 /// Measures the views' gains on the mesh (`voxel_size` in world units: about its
 /// error; normals that it lacks come from its faces) and, where
-/// asked for (kOn) or where it pays (kAuto), divides their pixels by them. `views` are those of
-/// the scene, cropped or not. Not to be called with kOff. Throws Error, Cancelled.
-PhotometricOutcome correct_photometric(Photometric photometric, const Scene& scene,
-                                       const TriMesh& mesh, double voxel_size, double noise_sigma,
+/// asked for (kOn) or where it pays (kAuto), divides their pixels by them. `views` may be
+/// cropped. Not to be called with kOff. Throws Error, Cancelled.
+PhotometricOutcome correct_photometric(Photometric photometric, const TriMesh& mesh,
+                                       double voxel_size, double noise_sigma,
                                        std::vector<View>& views, const Progress& progress);
 
 }  // namespace photohull::pipeline

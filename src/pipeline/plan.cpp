@@ -12,16 +12,16 @@ namespace photohull::pipeline {
 namespace {
 
 /// Alpha channels are not known before decoding: they count as masks that must be made.
-Silhouettes silhouettes_of(const ReconstructOptions& options, const Scene& scene) {
-  if (options.load.masks == io::MaskSource::kNone) return Silhouettes::kNone;
-  const bool given = options.load.masks != io::MaskSource::kBackground &&
+Silhouettes silhouettes_of(io::MaskSource masks, const Scene& scene) {
+  if (masks == io::MaskSource::kNone) return Silhouettes::kNone;
+  const bool given = masks != io::MaskSource::kBackground &&
                      std::any_of(scene.views.begin(), scene.views.end(),
                                  [](const SourceView& view) { return !view.mask.empty(); });
   return given ? Silhouettes::kGiven : Silhouettes::kMade;
 }
 
-void count_cost(const ReconstructOptions& options, const Scene& scene, const Box& box,
-                bool with_grid, Plan& plan) {
+void count_cost(const Request& request, const Scene& scene, const Box& box, bool with_grid,
+                Plan& plan) {
   CostQuestion question;
   for (std::size_t i = 0; i < plan.scales.size(); ++i) {
     question.files.push_back(scene.views[i].camera.intrinsics);
@@ -29,11 +29,11 @@ void count_cost(const ReconstructOptions& options, const Scene& scene, const Box
     Intrinsics& k = question.cameras.back().intrinsics;
     k = scaled_intrinsics(k, plan.scales[i]);
   }
-  question.method = options.effective_method();
-  question.masks = silhouettes_of(options, scene);
+  question.method = request.options.effective_method();
+  question.masks = silhouettes_of(request.masks, scene);
   plan.silhouettes = question.masks != Silhouettes::kNone;
   if (with_grid)
-    plan.grid = *(question.grid = lattice_of(options, box, question.cameras, plan.silhouettes));
+    plan.grid = *(question.grid = lattice_of(request.options, box, question.cameras, plan.silhouettes));
   plan.cost = estimate_cost(question);
 }
 
@@ -45,7 +45,7 @@ double voxel_size_of(const ReconstructOptions& options, const Box& box,
   const double largest = carving::voxel_size_for(box, 2);
   if (options.voxel_size) {
     if (*options.voxel_size > largest)
-      throw UsageError(concat("--voxel-size ", *options.voxel_size, ": at most ", largest,
+      throw UsageError(concat(flag_of("voxel_size"), " ", *options.voxel_size, ": at most ", largest,
                               ", half of the box's longest side"));
     return *options.voxel_size;
   }
@@ -56,7 +56,7 @@ double voxel_size_of(const ReconstructOptions& options, const Box& box,
     throw Error(concat("a pixel is ", footprint,
                        " world units large at the box's centre, too much for a box whose longest "
                        "side is ",
-                       2 * largest, "; check the box's units, or give --voxel-size"));
+                       2 * largest, "; check the box's units, or give ", flag_of("voxel_size")));
   return size;
 }
 
@@ -67,8 +67,9 @@ GridSpec lattice_of(const ReconstructOptions& options, const Box& box,
                                             : carving::fit_grid(box, size);
 }
 
-Plan plan_job(const ReconstructOptions& options, const Scene& scene, const Box& box, bool with_grid,
+Plan plan_job(const Request& request, const Scene& scene, const Box& box, bool with_grid,
               std::int64_t limit) {
+  const ReconstructOptions& options = request.options;
   Plan plan;
   plan.wanted.assign(scene.views.size(), options.image_scale.value_or(1));
   // Voxels that follow the pixels need these as they are.
@@ -77,32 +78,32 @@ Plan plan_job(const ReconstructOptions& options, const Scene& scene, const Box& 
       given ? voxel_size_of(options, box, {}, true) : std::numeric_limits<double>::infinity();
   if (given && !options.image_scale) {
     plan.wanted = image_scales(box, scene.views, voxel);
-    keep_unexpected_sizes(scene.views, plan.wanted);
+    keep_unexpected_sizes(request.reader, scene.views, plan.wanted);
   }
   plan.scales = plan.wanted;
-  count_cost(options, scene, box, with_grid, plan);
+  count_cost(request, scene, box, with_grid, plan);
   while (!options.image_scale && plan.cost.bytes > limit) {
     std::vector<double> smaller = plan.scales;
     if (!halve_image_scales(box, scene.views, voxel, smaller)) break;
-    keep_unexpected_sizes(scene.views, smaller);
+    keep_unexpected_sizes(request.reader, scene.views, smaller);
     if (smaller == plan.scales) break;
     plan.scales = std::move(smaller);
-    count_cost(options, scene, box, with_grid, plan);
+    count_cost(request, scene, box, with_grid, plan);
   }
   return plan;
 }
 
-Plan plan_reading(const ReconstructOptions& options, const Scene& scene, const Box& box,
-                  bool box_known, std::int64_t limit) {
-  if (box_known) return plan_job(options, scene, box, true, limit);
+Plan plan_reading(const Request& request, const Scene& scene, const Box& box, bool box_known,
+                  std::int64_t limit) {
+  if (box_known) return plan_job(request, scene, box, true, limit);
   try {
-    Plan plan = plan_job(options, scene, box, true, limit);
-    if (plan.cost.bytes > limit) count_cost(options, scene, box, false, plan);
+    Plan plan = plan_job(request, scene, box, true, limit);
+    if (plan.cost.bytes > limit) count_cost(request, scene, box, false, plan);
     return plan;
   } catch (const UsageError&) {
     throw;
   } catch (const Error&) {  // the lattice; whether it is right is seen when the box is known
-    return plan_job(options, scene, box, false, limit);
+    return plan_job(request, scene, box, false, limit);
   }
 }
 

@@ -10,7 +10,8 @@
 #include "core/grid.h"
 #include "core/scene.h"
 #include "pipeline/estimate.h"
-#include "pipeline/reconstruct.h"
+#include "pipeline/photographs.h"
+#include "pipeline/reconstruct_options.h"
 
 namespace photohull::pipeline {
 
@@ -24,6 +25,13 @@ double voxel_size_of(const ReconstructOptions& options, const Box& box,
 GridSpec lattice_of(const ReconstructOptions& options, const Box& box,
                     std::span<const Camera> cameras, bool silhouettes);
 
+/// What is to be done, and with which photographs.
+struct Request {
+  const ReconstructOptions& options;
+  io::MaskSource masks = io::MaskSource::kAuto;
+  PhotographReader reader = file_reader();
+};
+
 struct Plan {
   std::vector<double> wanted;  ///< of each view: the scale that the voxels need, or as forced
   std::vector<double> scales;  ///< the same, or smaller ones where memory asks for them
@@ -35,15 +43,15 @@ struct Plan {
 /// `scene` is in its files' pixels. `with_grid`: voxels count, else photographs alone. Scales are
 /// made smaller until the cost is at most `limit` bytes or nothing more can be done; a forced scale
 /// stays. Throws as voxel_size_of and carving::fit_grid do.
-Plan plan_job(const ReconstructOptions& options, const Scene& scene, const Box& box, bool with_grid,
+Plan plan_job(const Request& request, const Scene& scene, const Box& box, bool with_grid,
               std::int64_t limit);
 
 /// What is planned before photographs are decoded. `box_known`: masks do not make the box smaller.
 /// Else voxels count in all of the box as long as some scale makes that fit; where none does, what
 /// silhouettes leave of the box may still fit: the smallest scales, and the cost of the photographs
 /// alone. Throws as plan_job does, but not for a lattice of a box that is not known yet.
-Plan plan_reading(const ReconstructOptions& options, const Scene& scene, const Box& box,
-                  bool box_known, std::int64_t limit);
+Plan plan_reading(const Request& request, const Scene& scene, const Box& box, bool box_known,
+                  std::int64_t limit);
 
 /// The smallest scale as text: "1/8".
 std::string smallest_scale_text(std::span<const double> scales);

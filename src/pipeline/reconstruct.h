@@ -1,118 +1,55 @@
 // The main job: photographs in, volume and mesh out.
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
 #include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "carving/statistic.h"
+#include "core/grid.h"
+#include "core/mesh.h"
 #include "core/progress.h"
-#include "io/load_scene.h"
-#include "pipeline/complete_box.h"
-#include "pipeline/photometric.h"
-#include "pipeline/refine_cameras.h"
+#include "io/mesh/write_mesh.h"
+#include "pipeline/missing_picture.h"
+#include "pipeline/photographs.h"
+#include "pipeline/reconstruct_options.h"
 #include "pipeline/report.h"
-#include "projtex/sampler.h"
-#include "visibility/sweep_test.h"
+#include "render/preview.h"
+#include "volume/attributes.h"
 
 namespace photohull::pipeline {
 
-enum class Quality { kDraft, kNormal, kHigh };
-enum class Method { kHull, kVoxelColoring, kSpaceCarving, kRefine };
-
-/// Surface that no camera sees: closed as the hull has it, or left out of mesh.ply. Without
-/// silhouettes what is open also leaves out surface that is more likely wrong than right. Auto is
-/// closed where there are silhouettes.
-enum class Unseen { kAuto, kOpen, kClosed };
-
-/// Where voxels lie: centred on the box, or from its lower corner on (carving/fit_grid.h), which is
-/// the same for every scene with that box and voxels of that size.
-enum class Lattice { kFit, kFixed };
-/// Whether what surrounds the box is reconstructed too, on coarser grids. Auto does so where the
-/// box was found (not given) and fewer than half of the views have silhouettes.
-enum class Surroundings { kAuto, kOn, kOff };
-
-const char* to_string(Quality quality);
-const char* to_string(Method method);
-const char* to_string(Unseen unseen);
-const char* to_string(Lattice lattice);
-const char* to_string(Surroundings surroundings);
-
-/// How far mesh.ply may be from the uniform mesh; 0 keeps the uniform one.
-struct MeshError {
-  double value = 0;          ///< finite, >= 0
-  bool world_units = false;  ///< else voxels
+/// What confidence was computed from, and where the model does not fit (ReconstructOptions::evidence).
+struct Evidence {
+  TriMesh mesh;              ///< uniform, with the surface that no camera sees
+  VertexScalars scalars;     ///< of its vertices
+  MissingPicture missing;    ///< where the model leaves the masks empty; empty without masks
+  MissingPicture explained;  ///< what of a photograph the model explains; empty with masks
 };
 
-/// What each is, with its unit and legal values, describe() tells.
-struct ReconstructOptions {
-  std::filesystem::path scene;   ///< folder or file
-  std::filesystem::path output;  ///< folder; made when it does not exist
-  io::LoadSceneOptions load;
-  BoxOptions box;
-  std::optional<int> resolution;
-  std::optional<double> voxel_size;
-  Lattice lattice = Lattice::kFit;
-  Quality quality = Quality::kNormal;
-  std::optional<Method> method;
-  std::optional<RefineCameras> refine_cameras;  ///< by default see cameras/refine_cameras.h
-  Photometric photometric = Photometric::kAuto;
-  std::optional<double> mask_offset;  ///< nothing: measured (masks/mask_bias.h)
-  std::optional<int> views_may_miss;  ///< nothing: by evidence (carving/missing_parts.h)
-  bool keep_mask_holes = false;       ///< else they are mended (masks/torn_masks.h)
-  std::optional<double> noise;        ///< nothing: measured (photo/noise.h)
-  bool keep_views = false;
-  MeshError mesh_error;
-  Unseen unseen = Unseen::kAuto;
-  Surroundings surroundings = Surroundings::kOff;
-  std::optional<projtex::Sampler> sampler;
-  std::optional<int> supersample;
-  std::optional<carving::Statistic> consistency;
-  std::optional<visibility::SweepTest> visibility;
-  std::optional<double> r_consistency;
-  bool fresh = false;
-  bool evidence = false;
-  std::optional<double> image_scale;       ///< nothing: as the voxels need it (image_scale.h)
-  std::optional<std::int64_t> max_memory;  ///< nothing: default_max_memory()
-  std::string device = "auto";
-  int threads = 0;
-  std::vector<std::string> tune;  ///< see pipeline/tuning.h
-
-  /// Throws UsageError naming the option.
-  void validate() const;
-  Method effective_method() const;
-  /// Does the box stay as it is, however much larger than the object it may be?
-  bool box_stands() const { return box.exact || lattice == Lattice::kFixed; }
+/// All of it in memory, in world units.
+struct Reconstruction {
+  SparseVolume volume;          ///< truncated signed distances, voxels, negative inside
+  VolumeAttributes attributes;  ///< colours and confidence near its surface
+  TriMesh mesh;                 ///< with colours, normals and confidence
+  PreviewImage preview;
+  std::optional<Evidence> evidence;  ///< on demand
+  Report report;                     ///< of all but writing files
 };
 
-/// All but scene and output.
-void describe(Described& to, ReconstructOptions& options);
+/// Reconstructs scenes with the same options, one after another.
+class Reconstructor {
+ public:
+  /// Throws UsageError naming the option that is wrong.
+  explicit Reconstructor(ReconstructOptions options);
 
-using NamedValues = std::vector<std::pair<std::string, std::string>>;
+  /// Reports stages, warnings and progress to `progress`, and throws Cancelled at the next safe
+  /// point after its token was cancelled. Throws Error where nothing can be reconstructed;
+  /// MemoryError. A result that fails its own checks is none: report.verdict tells. With the option
+  /// `checkpoint`, levels that are done are kept in that folder.
+  Reconstruction run(const Photographs& photographs, Progress& progress) const;
 
-/// The options as they take effect: those that are not at their defaults, and those that the report
-/// always has. Without scene and output.
-NamedValues named_options(const ReconstructOptions& options);
+  const ReconstructOptions& options() const { return options_; }
 
-/// The same of those that change the results, in one line.
-std::string option_line(const ReconstructOptions& options);
-
-/// Voxel size in pixels' footprints when neither resolution nor voxel size is given. Outlines are
-/// known to a part of a pixel; without silhouettes depths of patches are all there is, which
-/// smaller voxels make no better.
-double footprint_factor(Quality quality, bool silhouettes);
-
-/// Sum of the weights of the stages that this job will announce to its Progress.
-double total_weight(const ReconstructOptions& options);
-
-/// Runs the job and puts volume.vdb, mesh.ply, preview.png and report.json (and evidence.ply
-/// on demand) into the output folder, all together at the end. Throws Error, UsageError or
-/// Cancelled; earlier results then stay as they were (but see ResultFiles::commit) and no
-/// half-written file is left. Refinement keeps the levels that are done in `.photohull-checkpoint`
-/// there until the job has ended well.
-Report reconstruct(const ReconstructOptions& options, Progress& progress);
+ private:
+  ReconstructOptions options_;
+};
 
 }  // namespace photohull::pipeline

@@ -7,9 +7,11 @@
 #include "carving/photo.h"
 #include "carving/search_disc.h"
 #include "core/error.h"
+#include "io/mesh/mesh_writers.h"
 #include "pipeline/image_scale.h"
 #include "pipeline/memory.h"
-#include "pipeline/reconstruct.h"
+#include "pipeline/methods/method.h"
+#include "pipeline/reconstruct_options.h"
 #include "pipeline/tuning.h"
 
 namespace photohull::pipeline {
@@ -20,8 +22,7 @@ constexpr double kMostNoise = 255;           // 8-bit codes
 
 /// Throws UsageError for options of the plane sweep where there is none.
 void check_sweep_options(const ReconstructOptions& o) {
-  const Method method = o.effective_method();
-  if (method == Method::kVoxelColoring || method == Method::kSpaceCarving) return;
+  if (method_of(o).sweeps) return;
   const char* given = o.sampler         ? "sampler"
                       : o.supersample   ? "supersample"
                       : o.consistency   ? "consistency"
@@ -29,7 +30,7 @@ void check_sweep_options(const ReconstructOptions& o) {
                       : o.r_consistency ? "r_consistency"
                                         : nullptr;
   if (given)
-    throw UsageError(concat(flag_of(given), ": ", flag_of("method"), " ", to_string(method),
+    throw UsageError(concat(flag_of(given), ": ", flag_of("method"), " ", method_of(o).name,
                             " has no plane sweep; give ", flag_of("method"),
                             " space-carving or voxel-coloring"));
 }
@@ -47,7 +48,7 @@ void check_combinations(const ReconstructOptions& o) {
     throw UsageError(concat(fixed, ": ", box,
                             " auto follows the photographs; give the box's corners, or leave ", box,
                             " out where the scene has one"));
-  if (o.surroundings == Surroundings::kOn && o.effective_method() != Method::kRefine)
+  if (o.surroundings == Surroundings::kOn && !method_of(o).carve_around)
     throw UsageError(concat(flag_of("surroundings"), " on: ", flag_of("method"), " ",
                             to_string(o.effective_method()), " has none; they are made by ",
                             flag_of("method"), " refine"));
@@ -85,7 +86,7 @@ Words mask_hole_words(bool& keep) {
           }};
 }
 
-void describe_voxels(Described& to, ReconstructOptions& o) {
+void describe_voxels(Described& to, ReconstructOptions& o, io::LoadSceneOptions& load) {
   to.choice("quality", &o.quality, std::array{Quality::kDraft, Quality::kNormal, Quality::kHigh},
             "voxel size from the images' pixels, and how much work is done")
       .always = true;
@@ -98,8 +99,8 @@ void describe_voxels(Described& to, ReconstructOptions& o) {
             "voxels along the box's longest side");
   to.number("voxel_size", &o.voxel_size, above(0), "world units",
             "voxel size in world units; excludes the resolution");
-  io::describe_views(to, o.load);
-  describe(to, o.box, o.load.box);
+  io::describe_views(to, load);
+  describe(to, o.box, load.box);
   to.choice("lattice", &o.lattice, std::array{Lattice::kFit, Lattice::kFixed},
             "fit (voxels centred on the box) or fixed: they begin in the box's lower corner, and "
             "box and voxel size alone say where they are, for results that are to be compared or "
@@ -214,16 +215,22 @@ void describe_run(Described& to, ReconstructOptions& o) {
           "write evidence.ply too, the uniform mesh with what confidence is computed from, and "
           "missing.png: where the model leaves the masks empty, or without masks explained.png: "
           "what of a photograph it explains");
+  std::string formats;
+  for (const MeshWriter& writer : mesh_writers())
+    formats += concat(formats.empty() ? "" : ", ", writer.name, " (", writer.what, ")");
+  to.text("export", &o.exports,
+          "a format that the mesh is written in, too (repeatable): " + formats);
 }
 
 /// Those that take effect, in words.
 template <typename Take>
-void for_reported(ReconstructOptions options, const Take& take) {
+void for_reported(ReconstructOptions options, io::LoadSceneOptions load, const Take& take) {
   options.method = options.effective_method();
   ReconstructOptions defaults;
+  io::LoadSceneOptions usual_load;
   Described given, usual;
-  describe(given, options);
-  describe(usual, defaults);
+  describe(given, options, load);
+  describe(usual, defaults, usual_load);
   for (const Option& option : given.options()) {
     const std::string text = text_of(option);
     if (option.always || text != text_of(*usual.find(option.name))) take(option, text);
@@ -240,20 +247,6 @@ const char* to_string(Quality quality) {
       return "normal";
     case Quality::kHigh:
       return "high";
-  }
-  return "?";
-}
-
-const char* to_string(Method method) {
-  switch (method) {
-    case Method::kHull:
-      return "hull";
-    case Method::kVoxelColoring:
-      return "voxel-coloring";
-    case Method::kSpaceCarving:
-      return "space-carving";
-    case Method::kRefine:
-      return "refine";
   }
   return "?";
 }
@@ -298,12 +291,10 @@ double footprint_factor(Quality quality, bool silhouettes) {
 
 void ReconstructOptions::validate() const {
   ReconstructOptions copy = *this;
+  io::LoadSceneOptions usual;
   Described described;
-  describe(described, copy);
+  describe(described, copy, usual);
   for (const Option& option : described.options()) check_option(option);
-  load.validate();
-  if (output.empty())
-    throw UsageError(concat(flag_of("out"), " is empty: give a folder for the results"));
   const bool index = !device.empty() && device.find_first_not_of("0123456789") == std::string::npos;
   if (device != "auto" && device != "software" && !index)
     throw UsageError(concat(flag_of("device"), " ", device,
@@ -311,14 +302,15 @@ void ReconstructOptions::validate() const {
   if (!(std::isfinite(mesh_error.value) && mesh_error.value >= 0))
     throw UsageError(
         concat(flag_of("mesh_error"), " ", mesh_error.value, ": must be finite, 0 or more"));
+  for (const std::string& format : exports) find_mesh_writer(flag_of("export"), format);
   check_combinations(*this);
   tuned(*this);
 }
 
-void describe(Described& to, ReconstructOptions& o) {
-  describe_voxels(to, o);
+void describe(Described& to, ReconstructOptions& o, io::LoadSceneOptions& load) {
+  describe_voxels(to, o, load);
   describe_outcome(to, o);
-  io::describe_reading(to, o.load);
+  io::describe_reading(to, load);
   to.affects(Stage::kHull);
   describe_masks(to, o);
   to.affects(Stage::kSurface);
@@ -332,17 +324,17 @@ Method ReconstructOptions::effective_method() const {
   return quality == Quality::kDraft ? Method::kHull : Method::kRefine;
 }
 
-NamedValues named_options(const ReconstructOptions& options) {
+NamedValues named_options(const ReconstructOptions& options, const io::LoadSceneOptions& load) {
   NamedValues list;
-  for_reported(options, [&](const Option& option, const std::string& text) {
+  for_reported(options, load, [&](const Option& option, const std::string& text) {
     list.emplace_back(option.name, text);
   });
   return list;
 }
 
-std::string option_line(const ReconstructOptions& options) {
+std::string option_line(const ReconstructOptions& options, const io::LoadSceneOptions& load) {
   std::string line;
-  for_reported(options, [&](const Option& option, const std::string& text) {
+  for_reported(options, load, [&](const Option& option, const std::string& text) {
     if (option.from < Stage::kFiles) line += (line.empty() ? "" : " ") + option.name + "=" + text;
   });
   return line;

@@ -20,10 +20,10 @@ const char* to_string(RefineCameras refine) {
   return "unknown";
 }
 
-void apply(const CameraRefinement& refinement, Scene& scene) {
-  PHOTOHULL_CHECK_OP(refinement.cameras.size(), ==, scene.views.size());
-  for (std::size_t i = 0; i < scene.views.size(); ++i) {
-    Camera& camera = scene.views[i].camera;
+void apply(const CameraRefinement& refinement, std::span<SourceView> views) {
+  PHOTOHULL_CHECK_OP(refinement.cameras.size(), ==, views.size());
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    Camera& camera = views[i].camera;
     camera.cam_from_world = refinement.cameras[i].cam_from_world;
     Intrinsics& k = camera.intrinsics;
     k.fx *= refinement.focal_factor, k.fy *= refinement.focal_factor;

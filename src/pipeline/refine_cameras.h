@@ -13,8 +13,9 @@ enum class RefineCameras { kOff, kAuto, kPoses, kPosesAndIntrinsics };
 
 const char* to_string(RefineCameras refine);
 
-/// Carries what a refinement of the undistorted views' cameras changed over to the scene's own.
-void apply(const CameraRefinement& refinement, Scene& scene);
+/// Carries what a refinement of the undistorted views' cameras changed over to the photographs' own,
+/// one for each.
+void apply(const CameraRefinement& refinement, std::span<SourceView> views);
 
 /// Does the gain pay? The held-out residual must have fallen by a fifth, and to begin with be more
 /// than what matching leaves; or to the half, by intrinsics that all views share.

@@ -1,8 +1,6 @@
 #include "pipeline/report.h"
 
-#include <sys/resource.h>
 #include <cmath>
-
 #include <nlohmann/json.hpp>
 
 namespace photohull::pipeline {
@@ -11,85 +9,93 @@ using nlohmann::ordered_json;
 
 namespace {
 
-ordered_json to_json_array(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
-ordered_json to_json_array(const glm::ivec3& v) { return {v.x, v.y, v.z}; }
+ordered_json array_of(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+ordered_json array_of(const glm::ivec3& v) { return {v.x, v.y, v.z}; }
 
-}  // namespace
-
-std::string Report::to_json() const {
-  ordered_json j;
-  j["photohull"] = version;
-  j["scene"] = {{"path", scene}, {"format", format}, {"views", views}};
-  j["photographs"] = {{"listed", photographs_listed},
-                      {"scaled", photographs_scaled},
-                      {"passed_over", photographs_passed_over},
+void add_scene(const Report& r, ordered_json& j) {
+  j["photohull"] = r.version;
+  j["scene"] = {
+      {"path", r.scene.path}, {"format", r.scene.format}, {"views", r.photographs.views}};
+  j["photographs"] = {{"listed", r.scene.listed},
+                      {"scaled", r.scene.scaled},
+                      {"passed_over", r.scene.passed_over},
                       {"left_out", ordered_json::array()}};
-  for (const LeftOutView& v : photographs_left_out)
+  for (const LeftOutView& v : r.photographs.left_out)
     j["photographs"]["left_out"].push_back(
         {{"name", v.name}, {"reason", to_string(v.reason)}, {"detail", v.detail}});
   j["inputs"] = ordered_json::array();
-  for (const InputFile& f : inputs)
+  for (const InputFile& f : r.scene.inputs)
     j["inputs"].push_back({{"kind", f.kind},
                            {"path", f.path.string()},
                            {"bytes", f.bytes},
                            {"xxh3_128", f.xxh3_128}});
-  j["device"] = device;
-  for (const auto& [name, value] : options) j["options"][name] = value;
-  j["box"] = {
-      {"min", to_json_array(box.min)}, {"max", to_json_array(box.max)}, {"source", box_source}};
-  j["image_scale"] = {{"smallest", smallest_scale}, {"largest", largest_scale}};
-  j["masks"] = {{"source", mask_source},
-                {"confidence", mask_confidence},
-                {"mended", masks_mended},
-                {"offset", mask_offset}};
-  if (std::isfinite(mask_disagreement)) j["masks"]["disagreement"] = mask_disagreement;
-  j["masks"]["full_evidence"] = full_evidence;
-  j["masks"]["views"] = ordered_json::array();
-  for (const MaskReport& m : masks)
-    j["masks"]["views"].push_back(
+  j["device"] = r.device;
+  for (const auto& [name, value] : r.options) j["options"][name] = value;
+  j["box"] = {{"min", array_of(r.box.min)}, {"max", array_of(r.box.max)}, {"source", r.box_source}};
+  j["image_scale"] = {{"smallest", r.photographs.smallest_scale},
+                      {"largest", r.photographs.largest_scale}};
+}
+
+void add_masks(const Report& r, ordered_json& j) {
+  ordered_json& masks = j["masks"];
+  masks = {{"source", r.photographs.mask_source},
+           {"confidence", r.photographs.mask_confidence},
+           {"mended", r.photographs.masks_mended},
+           {"offset", r.silhouettes.mask_offset}};
+  if (std::isfinite(r.cameras.mask_disagreement))
+    masks["disagreement"] = r.cameras.mask_disagreement;
+  masks["full_evidence"] = r.full_evidence;
+  masks["views"] = ordered_json::array();
+  for (const MaskFinding& m : r.photographs.masks)
+    masks["views"].push_back(
         {{"name", m.view}, {"source", m.source}, {"confidence", m.confidence}});
+  masks["left_out"] = r.silhouettes.masks_left_out;
+  for (const OutlineRoom& room : r.silhouettes.outline_room)
+    masks["outline_room_pixels"][room.view] = room.pixels;
+}
+
+void add_thin_parts(const Report& r, ordered_json& j) {
+  const ThinFindings& thin = r.silhouettes.thin;
   j["thin_parts"] = {
       {"line_pixels", thin.line_pixels},         {"looked_at", thin.looked_at},
       {"unexplained", thin.unexplained},         {"placed", thin.placed},
-      {"restored_pixels", thin.restored_pixels}, {"stem_vertices", thin.stem_vertices}};
-  if (!missing_view.empty()) j["thin_parts"]["missing_png_shows"] = missing_view;
+      {"restored_pixels", thin.restored_pixels}, {"stem_vertices", r.mesh.stem_vertices}};
+  if (!r.verdict.missing_view.empty())
+    j["thin_parts"]["missing_png_shows"] = r.verdict.missing_view;
   if (!thin.worst_view.empty()) j["thin_parts"]["worst_view"] = thin.worst_view;
-  j["noise_sigma"] = noise_sigma;
-  j["grid"] = {{"origin", to_json_array(grid.origin)},
-               {"voxel_size", grid.voxel_size},
-               {"voxels", to_json_array(grid.voxels())},
-               {"bricks_stored", bricks_stored}};
-  if (!camera_refinement.empty()) j["camera_refinement"] = ordered_json::parse(camera_refinement);
-  if (!photometric.empty()) j["photometric"] = ordered_json::parse(photometric);
-  j["left_out"] = left_out;
-  for (const auto& [view, value] : sharpness)
+}
+
+void add_views(const Report& r, ordered_json& j) {
+  j["noise_sigma"] = r.photographs.noise_sigma;
+  j["grid"] = {{"origin", array_of(r.grid.origin)},
+               {"voxel_size", r.grid.voxel_size},
+               {"voxels", array_of(r.grid.voxels())},
+               {"bricks_stored", r.bricks_stored}};
+  if (!r.cameras.refinement.empty())
+    j["camera_refinement"] = ordered_json::parse(r.cameras.refinement);
+  if (!r.photometric.json.empty()) j["photometric"] = ordered_json::parse(r.photometric.json);
+  j["left_out"] = r.silhouettes.left_out;
+  for (const auto& [view, value] : r.silhouettes.sharpness)
     j["sharpness"].push_back({{"name", view}, {"sharpness", value}});
-  j["masks"]["left_out"] = masks_left_out;
-  for (const OutlineRoom& r : outline_room) j["masks"]["outline_room_pixels"][r.view] = r.pixels;
-  if (!verdict_json.empty()) j["verdict"] = ordered_json::parse(verdict_json);
-  if (!explained_view.empty()) j["verdict"]["explained_png_shows"] = explained_view;
-  j["stages"] = ordered_json::array();
-  for (const StageReport& s : stages)
-    j["stages"].push_back({{"name", s.name},
-                           {"wall_seconds", s.wall_seconds},
-                           {"cpu_seconds", s.cpu_seconds},
-                           {"samples", s.samples},
-                           {"peak_memory_bytes", s.peak_memory_bytes}});
-  j["hull"] = {{"nodes_tested", nodes_tested}, {"bricks_evaluated", bricks_evaluated}};
-  j["photo"] = {{"sweeps", sweeps},
-                {"voxels_judged", voxels_judged},
-                {"voxels_carved", voxels_carved},
-                {"voxels_undecided", voxels_undecided}};
-  if (sampling) {
-    j["photo"]["sampler"] = sampling->sampler;
-    j["photo"]["supersample"] = sampling->supersample;
-    j["photo"]["consistency"] = sampling->consistency;
-    j["photo"]["visibility"] = sampling->visibility;
-    j["photo"]["r_consistency"] = sampling->r_consistency;
-  }
-  j["resumed_levels"] = resumed_levels;
+}
+
+void add_sweeps(const SweepFindings& sweep, ordered_json& j) {
+  j["photo"] = {{"sweeps", sweep.sweeps},
+                {"voxels_judged", sweep.voxels_judged},
+                {"voxels_carved", sweep.voxels_carved},
+                {"voxels_undecided", sweep.voxels_undecided}};
+  if (!sweep.sampling) return;
+  j["photo"]["sampler"] = sweep.sampling->sampler;
+  j["photo"]["supersample"] = sweep.sampling->supersample;
+  j["photo"]["consistency"] = sweep.sampling->consistency;
+  j["photo"]["visibility"] = sweep.sampling->visibility;
+  j["photo"]["r_consistency"] = sweep.sampling->r_consistency;
+}
+
+void add_refinement(const RefineFindings& refine, ordered_json& j) {
+  j["resumed_levels"] = refine.resumed_levels;
   j["refine"] = ordered_json::array();
-  for (const RefineLevelReport& level : refine_levels)
+  for (const RefineLevelFindings& level : refine.levels)
     j["refine"].push_back({{"voxel_size", level.voxel_size},
                            {"wall_seconds", level.wall_seconds},
                            {"surfels", level.surfels},
@@ -105,34 +111,69 @@ std::string Report::to_json() const {
                              {"flat", level.settled_flat}}},
                            {"mean_move_voxels", level.mean_move}});
   j["refine_fits"] = ordered_json::array();
-  for (const RefineFitReport& fit : refine_fits)
+  for (const RefineFitFindings& fit : refine.fits)
     j["refine_fits"].push_back({{"wall_seconds", fit.wall_seconds},
                                 {"held_out_score", fit.held_out},
                                 {"held_out_score_fitted", fit.held_out_fitted},
                                 {"mean_move_voxels", fit.mean_move},
                                 {"kept", fit.kept}});
-  j["voxels_kept"] = voxels_kept;
-  j["mesh"] = {{"vertices", vertices},
-               {"triangles", triangles},
-               {"uniform_triangles", uniform_triangles},
-               {"sharpened_vertices", sharpened_vertices},
-               {"unseen_share", unseen_share},
-               {"islands_removed", islands},
-               {"islands_area_share", islands_area_share}};
+}
+
+void add_mesh(const Report& r, ordered_json& j) {
+  j["voxels_kept"] = r.voxels_kept;
+  j["mesh"] = {{"vertices", r.mesh.vertices},
+               {"triangles", r.mesh.triangles},
+               {"uniform_triangles", r.mesh.uniform_triangles},
+               {"sharpened_vertices", r.mesh.sharpened_vertices},
+               {"unseen_share", r.mesh.unseen_share},
+               {"islands_removed", r.mesh.islands},
+               {"islands_area_share", r.mesh.islands_area_share}};
+  if (const auto& error = r.mesh.error)
+    j["mesh"]["error_voxels"] = {{"limit", error->limit},
+                                 {"mean", error->mean},
+                                 {"p95", error->p95},
+                                 {"p999", error->p999},
+                                 {"max", error->max}};
   j["surroundings"] = ordered_json::array();
-  for (const ShellReport& shell : surroundings)
+  for (const ShellFindings& shell : r.surroundings)
     j["surroundings"].push_back(
-        {{"box", {{"min", to_json_array(shell.box.min)}, {"max", to_json_array(shell.box.max)}}},
+        {{"box", {{"min", array_of(shell.box.min)}, {"max", array_of(shell.box.max)}}},
          {"voxel_size", shell.voxel_size},
-         {"voxels", to_json_array(shell.voxels)},
+         {"voxels", array_of(shell.voxels)},
          {"triangles", shell.triangles},
          {"area_share", shell.area_share}});
-  if (mesh_error)
-    j["mesh"]["error_voxels"] = {{"limit", mesh_error->limit},
-                                 {"mean", mesh_error->mean},
-                                 {"p95", mesh_error->p95},
-                                 {"p999", mesh_error->p999},
-                                 {"max", mesh_error->max}};
+}
+
+void add_verdict(const VerdictFindings& verdict, ordered_json& j) {
+  if (!verdict.json.empty()) j["verdict"] = ordered_json::parse(verdict.json);
+  if (!verdict.explained_view.empty())
+    j["verdict"]["explained_png_shows"] = verdict.explained_view;
+}
+
+void add_stages(const std::vector<StageTime>& stages, ordered_json& j) {
+  j["stages"] = ordered_json::array();
+  for (const StageTime& s : stages)
+    j["stages"].push_back({{"name", s.name},
+                           {"wall_seconds", s.wall_seconds},
+                           {"cpu_seconds", s.cpu_seconds},
+                           {"samples", s.samples},
+                           {"peak_memory_bytes", s.peak_memory_bytes}});
+}
+
+}  // namespace
+
+std::string Report::to_json() const {
+  ordered_json j;
+  add_scene(*this, j);
+  add_masks(*this, j);
+  add_thin_parts(*this, j);
+  add_views(*this, j);
+  add_verdict(verdict, j);
+  add_stages(stages, j);
+  j["hull"] = {{"nodes_tested", hull.nodes_tested}, {"bricks_evaluated", hull.bricks_evaluated}};
+  add_sweeps(surface.sweep, j);
+  add_refinement(surface.refine, j);
+  add_mesh(*this, j);
   j["wall_seconds"] = wall_seconds;
   j["cpu_seconds"] = cpu_seconds;
   j["peak_memory_bytes"] = peak_memory_bytes;
@@ -140,19 +181,6 @@ std::string Report::to_json() const {
   j["files"] = files;
   // File names need not be UTF-8, JSON must.
   return j.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
-}
-
-double process_cpu_seconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
-
-std::int64_t process_peak_memory() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return std::int64_t(usage.ru_maxrss) * 1024;
 }
 
 }  // namespace photohull::pipeline

@@ -11,6 +11,7 @@
 #include "carving/fit_grid.h"
 #include "masks/silhouette.h"
 #include "mesh/join_meshes.h"
+#include "pipeline/subject.h"
 #include "raycast/ray_scene.h"
 
 namespace photohull::pipeline {
@@ -43,12 +44,13 @@ std::vector<assess::SilhouetteFit> compare_silhouettes(const CheckedResult& resu
   std::vector<SilhouetteDistance> given(cameras.size());
   std::vector<assess::CheckedSilhouette> checked(cameras.size());
   tbb::parallel_for(std::size_t(0), cameras.size(), [&](std::size_t i) {
-    if (result.silhouettes[i].pixels.empty()) return;
+    const ViewSilhouette& silhouette = result.views[i].silhouette;
+    if (silhouette.distance.pixels.empty()) return;
     const Mask& mask = result.views[i].mask;
-    checked[i] = {&result.silhouettes[i], &result.silhouettes[i], &result.lines[i],
+    checked[i] = {&silhouette.distance, &silhouette.distance, &silhouette.lines,
                   mask.empty() ? nullptr : &mask};
-    if (result.widened[i].empty()) return;
-    given[i] = silhouette_distance(result.views[i].mask);
+    if (silhouette.widened.empty()) return;
+    given[i] = silhouette_distance(mask);
     checked[i].given = &given[i];
   });
   const double tolerance =
@@ -78,12 +80,6 @@ assess::Explained explain(const CheckedResult& result, const RayScene& rays,
 }
 
 }  // namespace
-
-std::vector<const SilhouetteDistance*> pointers(std::span<const SilhouetteDistance> silhouettes) {
-  std::vector<const SilhouetteDistance*> out;
-  for (const SilhouetteDistance& d : silhouettes) out.push_back(d.pixels.empty() ? nullptr : &d);
-  return out;
-}
 
 assess::Signals gather_signals(const CheckedResult& result,
                                std::vector<assess::SilhouetteFit>* fits) {
@@ -137,7 +133,7 @@ assess::Signals gather_signals(const CheckedResult& result,
   options.far = s.far;
   options.coarsest = kCoarsest * s.far;
   options.noise = noise;
-  s.match = assess::match_probes(probes, result.views, pointers(result.silhouettes), options);
+  s.match = assess::match_probes(probes, result.views, distances_of(result.views), options);
   return s;
 }
 

@@ -10,11 +10,10 @@
 #include "core/image.h"
 #include "core/mesh.h"
 #include "core/scene.h"
-#include "core/silhouette.h"
 
 namespace photohull::pipeline {
 
-/// A job's coloured mesh and what it was made of; `silhouettes` are empty for views without mask.
+/// A job's coloured mesh and what it was made of.
 struct CheckedResult {
   const TriMesh* mesh = nullptr;
   const Box* box = nullptr;
@@ -23,11 +22,8 @@ struct CheckedResult {
   double voxel_size = 0;            ///< world units
   bool hull = false;                ///< made by silhouettes alone
   bool bounded = false;             ///< do silhouettes bound it, so that it is judged by them?
-  double share_beyond = 1;          ///< HullStage::share_beyond
+  double share_beyond = 1;          ///< Hull::share_beyond
   std::span<const View> views;
-  std::span<const SilhouetteDistance> silhouettes;
-  std::span<const Mask> widened;  ///< that `silhouettes` are of, where they are not the views' own
-  std::span<const std::vector<LinePoint>> lines;  ///< of the views' masks
   double mask_confidence = 0;
   double noise_sigma = 0;     ///< of the images, on square roots of full scale
   double stems = 0;           ///< share of the mesh's vertices that lines placed
@@ -45,8 +41,5 @@ assess::Signals gather_signals(const CheckedResult& result,
 /// JSON: level, reasons and signals.
 std::string to_json(const assess::Verdict& verdict, const assess::Signals& signals,
                     std::span<const View> views);
-
-/// nullptr for views without mask.
-std::vector<const SilhouetteDistance*> pointers(std::span<const SilhouetteDistance> silhouettes);
 
 }  // namespace photohull::pipeline

@@ -2,30 +2,49 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
+#include <string>
+#include <vector>
 
 #include "core/progress.h"
-#include "pipeline/report.h"
 
 namespace photohull::pipeline {
 
+struct StageTime {
+  std::string name;
+  double wall_seconds = 0;
+  double cpu_seconds = 0;              ///< user + system, all threads
+  std::int64_t samples = 0;            ///< texture samples, where the stage takes any
+  std::int64_t peak_memory_bytes = 0;  ///< of the process up to the stage's end
+};
+
+/// User + system seconds of the process so far, all threads.
+double process_cpu_seconds();
+/// Largest resident set of the process so far.
+std::int64_t process_peak_memory();
+
 class StageClock {
  public:
-  StageClock(Report& report, Progress& progress) : report_(report), progress_(progress) {}
+  explicit StageClock(Progress& progress) : progress_(progress) {}
 
   /// Runs `work` as the stage `name`, whose expected share of the job is `weight`.
   template <typename F>
   auto run(const std::string& name, double weight, F&& work) {
     progress_.check_cancelled();
     progress_.stage(name, weight);
-    const Span span(report_, name);
+    const Span span(stages_, name);
     return work();
   }
+
+  const std::vector<StageTime>& stages() const { return stages_; }
+  /// Of the stage that ended last.
+  void count_samples(std::int64_t samples) { stages_.back().samples = samples; }
 
  private:
   /// Notes the time from its construction to its end, whatever the work's result type is.
   struct Span {
-    Span(Report& r, const std::string& name)
-        : report(r),
+    Span(std::vector<StageTime>& all, const std::string& name)
+        : stages(all),
           stage{name},
           cpu(process_cpu_seconds()),
           wall(std::chrono::steady_clock::now()) {}
@@ -34,15 +53,15 @@ class StageClock {
       stage.wall_seconds = elapsed.count();
       stage.cpu_seconds = process_cpu_seconds() - cpu;
       stage.peak_memory_bytes = process_peak_memory();
-      report.stages.push_back(stage);
+      stages.push_back(stage);
     }
-    Report& report;
-    StageReport stage;
+    std::vector<StageTime>& stages;
+    StageTime stage;
     double cpu;
     std::chrono::steady_clock::time_point wall;
   };
-  Report& report_;
   Progress& progress_;
+  std::vector<StageTime> stages_;
 };
 
 }  // namespace photohull::pipeline

@@ -1,6 +1,7 @@
 #include "pipeline/stage_weights.h"
 
-#include "pipeline/reconstruct.h"
+#include "pipeline/methods/method.h"
+#include "pipeline/reconstruct_options.h"
 
 namespace photohull::pipeline {
 
@@ -10,13 +11,10 @@ double Weights::cameras(const ReconstructOptions& options) {
 }
 
 double total_weight(const ReconstructOptions& options) {
-  const Method method = options.effective_method();
   return Weights::kScene + Weights::kViews + Weights::cameras(options) +
          (options.photometric != Photometric::kOff ? Weights::kPhotometric : 0) + Weights::kDevice +
-         Weights::kHull + Weights::kImages +
-         (method == Method::kHull     ? 0
-          : method == Method::kRefine ? Weights::kRefine
-                                      : Weights::kPhoto) +
+         Weights::kSilhouettes + Weights::kHull + Weights::kImages +
+         method_of(options).weight +
          (options.mesh_error.value > 0 ? Weights::kSimplify : 0) + Weights::kClean +
          Weights::kMesh + Weights::kColour + Weights::kVerdict + Weights::kPreview +
          Weights::kFiles;

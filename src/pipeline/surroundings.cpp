@@ -5,6 +5,7 @@
 #include "mesh/join_meshes.h"
 #include "mesh/remove_islands.h"
 #include "mesh/remove_unseen.h"
+#include "projtex/gpu_views.h"
 #include "render/bake_colour.h"
 #include "volume/components.h"
 #include "volume/extract_mesh.h"
@@ -35,10 +36,10 @@ bool holds(const Box& a, const Box& b) { return a.contains(b.min) && a.contains(
 /// Colours and confidence; returns how many views see each vertex. Confidence is the chance to lie
 /// within a voxel, and was fitted where voxels are about a pixel large: directions that lie closer
 /// together tell as much of larger ones.
-std::vector<float> colour(const SurroundingsJob& job, const GridSpec& grid, TriMesh& mesh) {
+std::vector<float> colour(const SurfaceJob& job, const GridSpec& grid, TriMesh& mesh) {
   std::vector<render::PooledEvidence> evidence;
-  bake_colour(job.context, grid, job.images, job.inputs.cameras, job.report.noise_sigma,
-              render::Shaping::kPhotographs, mesh, job.progress, nullptr, &evidence);
+  bake_colour(job.context, grid, job.images, projtex::cameras_of(job.subject.views),
+              job.subject.noise_sigma, render::Shaping::kPhotographs, mesh, job.progress, nullptr, &evidence);
   std::vector<float> views;
   for (std::size_t i = 0; i < evidence.size(); ++i) {
     evidence[i].scatter *= float(kCoarseness * kCoarseness);
@@ -49,10 +50,10 @@ std::vector<float> colour(const SurroundingsJob& job, const GridSpec& grid, TriM
 }
 
 /// The surface in one shell, without what `known` has.
-TriMesh surface_in(const SurroundingsJob& job, const Shell& shell, const TriMesh& known,
-                   bool open) {
-  SparseVolume volume =
-      job.refine.run_around(job.hull, job.images, shell.grid, shell.box, kNearestAngle);
+TriMesh surface_in(const SurfaceJob& job, const Shell& shell, const TriMesh& known, bool open,
+                   std::int64_t& samples) {
+  SparseVolume volume = method_of(job.options).carve_around(
+      job, {shell.grid, shell.box, kNearestAngle}, samples);
   remove_small_components(volume, kDebrisFraction);
   TriMesh mesh = extract_mesh(volume);
   volume = {};
@@ -88,20 +89,20 @@ std::vector<Shell> plan_shells(const Box& box, double voxel_size, const std::opt
   return shells;
 }
 
-Around make_surroundings(const SurroundingsJob& job, const TriMesh& mesh, bool open) {
+Around make_surroundings(const SurfaceJob& job, const TriMesh& mesh, bool open) {
   TriMesh known = mesh;
   Around around;
   for (const Shell& shell :
-       plan_shells(*job.inputs.scene.box, job.inputs.grid.voxel_size, job.inputs.seen)) {
-    const TriMesh part = surface_in(job, shell, known, open);
+       plan_shells(job.subject.box, job.subject.grid.voxel_size, job.subject.seen)) {
+    const TriMesh part = surface_in(job, shell, known, open, around.samples);
     append_mesh(part, known);
     append_mesh(part, around.mesh);
     around.box = shell.box;
-    job.report.surroundings.push_back({shell.box, shell.grid.voxel_size, shell.grid.voxels(),
-                                       std::int64_t(part.triangles.size()), area(part)});
+    around.findings.push_back({shell.box, shell.grid.voxel_size, shell.grid.voxels(),
+                               std::int64_t(part.triangles.size()), area(part)});
   }
   const double all = area(known);
-  for (ShellReport& shell : job.report.surroundings)
+  for (ShellFindings& shell : around.findings)
     shell.area_share = all > 0 ? shell.area_share / all : 0;
   return around;
 }

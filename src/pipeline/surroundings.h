@@ -7,11 +7,8 @@
 #include "core/box.h"
 #include "core/grid.h"
 #include "core/mesh.h"
-#include "gpu/context.h"
-#include "pipeline/hull_stage.h"
-#include "pipeline/inputs.h"
-#include "pipeline/refine_stage.h"
-#include "projtex/image_set.h"
+#include "pipeline/findings.h"
+#include "pipeline/methods/method.h"
 
 namespace photohull::pipeline {
 
@@ -30,22 +27,12 @@ std::vector<Shell> plan_shells(const Box& box, double voxel_size, const std::opt
 struct Around {
   TriMesh mesh;  ///< without what the surface in the box has already
   Box box;       ///< that it lies in
-};
-
-/// Everything that makes the surroundings, all of which outlives it.
-struct SurroundingsJob {
-  const ReconstructOptions& options;
-  Inputs& inputs;
-  gpu::Context& context;
-  HullStage& hull;
-  RefineStage& refine;
-  const projtex::ImageSet& images;
-  Report& report;
-  Progress& progress;
+  std::vector<ShellFindings> findings;  ///< the innermost first
+  std::int64_t samples = 0;             ///< of textures
 };
 
 /// The surface around the box, coloured, without what `mesh`, the surface in the box, has already.
-/// `open`: without what is unseen and doubtful. Tells the report.
-Around make_surroundings(const SurroundingsJob& job, const TriMesh& mesh, bool open);
+/// `open`: without what is unseen and doubtful. The method carves around the box.
+Around make_surroundings(const SurfaceJob& job, const TriMesh& mesh, bool open);
 
 }  // namespace photohull::pipeline

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "pipeline/methods/method.h"
 
 namespace photohull::pipeline {
 namespace {
@@ -56,15 +57,11 @@ void assign(const std::string& assignment, const Option& option) {
 }  // namespace
 
 void describe(Described& to, Method method, Parameters& parameters) {
-  if (method == Method::kHull) return;
+  const MethodEntry& entry = method_of(method);
+  if (!entry.describe) return;
   to.group("missing", parameters.missing);
   to.group("stems", parameters.stems);
-  if (method == Method::kRefine) {
-    describe(to, parameters.refine);
-    to.group("sharpen", parameters.sharpen);
-  } else {
-    describe(to, parameters.photo);
-  }
+  entry.describe(to, parameters);
 }
 
 void tune(const std::vector<std::string>& assignments, Method method, Parameters& parameters) {

@@ -8,7 +8,7 @@
 #include "carving/missing_parts.h"
 #include "carving/photo.h"
 #include "mesh/sharpen_edges.h"
-#include "pipeline/reconstruct.h"
+#include "pipeline/reconstruct_options.h"
 #include "refine/refine.h"
 
 namespace photohull::pipeline {

@@ -179,10 +179,10 @@ double PhotometricFrame::radius2(const Intrinsics& view, const glm::dvec2& p) co
   return glm::dot(file - middle, file - middle) / std::max(glm::dot(middle, middle), 1.0);
 }
 
-std::vector<PhotometricFrame> frames_of(const Scene& scene) {
+std::vector<PhotometricFrame> frames_of(std::span<const View> views) {
   std::vector<PhotometricFrame> frames;
-  for (const SourceView& view : scene.views)
-    frames.push_back({view.camera.intrinsics, view.distortion});
+  for (const View& view : views)
+    frames.push_back({view.source.camera.intrinsics, view.source.distortion});
   return frames;
 }
 

@@ -21,7 +21,7 @@ struct PhotometricFrame {
   double radius2(const Intrinsics& view, const glm::dvec2& pixel) const;
 };
 
-std::vector<PhotometricFrame> frames_of(const Scene& scene);
+std::vector<PhotometricFrame> frames_of(std::span<const View> views);
 
 /// Numbers lenses from 0: frames of the same size whose focal lengths differ by a hundredth at most
 /// share one.

@@ -122,7 +122,9 @@ PreparedViews prepare_views(Scene& scene, const ViewLoader& loader, const Prepar
 
   progress.check_cancelled();
   for_each_view(count, kDecodeShare, 1.0, progress, [&](std::size_t i) {
-    undistort(scene.views[i].distortion, options.max_frame_growth, result.views[i]);
+    View& view = result.views[i];
+    view.source = scene.views[i];
+    undistort(view.source.distortion, options.max_frame_growth, view);
   });
   return result;
 }

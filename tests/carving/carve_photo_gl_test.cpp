@@ -195,9 +195,9 @@ TEST_F(CarvePhoto, BlankPhotographsCarveNothing) {
 }
 
 TEST_F(CarvePhoto, StopsWhenAsked) {
-  request_cancellation();
+  process_cancellation().cancel();
   EXPECT_THROW(carve(), Cancelled);
-  reset_cancellation();
+  process_cancellation().reset();
 }
 
 TEST(PhotoOptions, NamesTheFieldThatIsOutOfRange) {

@@ -152,9 +152,9 @@ TEST_F(CarveSilhouette, ReportsItsWorkAndStopsWhenAsked) {
   EXPECT_GE(report.bricks_evaluated, std::int64_t(volume.bricks.size()));
   EXPECT_GT(report.nodes_tested, 0);
   EXPECT_LE(report.samples, report.bricks_evaluated * kBrickVoxels * 6);
-  request_cancellation();
+  process_cancellation().cancel();
   EXPECT_THROW(carve(scene), Cancelled);
-  reset_cancellation();
+  process_cancellation().reset();
 }
 
 TEST_F(CarveSilhouette, TwoRunsGiveTheSameBytes) {

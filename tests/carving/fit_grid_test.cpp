@@ -61,7 +61,7 @@ TEST(FitGrid, RefusesAbsurdResolutionsWithTheMemoryTheyWouldTake) {
     fit_grid(cube, voxel_size_for(cube, 1000000));
     FAIL();
   } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ExitCode::kFailure);
+    EXPECT_EQ(e.kind(), ErrorKind::kFailed);
     EXPECT_THAT(e.what(), ::testing::HasSubstr("MiB"));
     EXPECT_THAT(e.what(), ::testing::HasSubstr("--resolution"));
   }

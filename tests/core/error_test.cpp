@@ -8,10 +8,11 @@
 namespace photohull {
 namespace {
 
-TEST(Error, CarriesTheProcessExitCode) {
-  EXPECT_EQ(int(Error("x").code()), 1);
-  EXPECT_EQ(int(UsageError("x").code()), 2);
-  EXPECT_EQ(int(Cancelled().code()), 130);
+TEST(Error, TellsItsKind) {
+  EXPECT_EQ(Error("x").kind(), ErrorKind::kFailed);
+  EXPECT_EQ(UsageError("x").kind(), ErrorKind::kUsage);
+  EXPECT_EQ(MemoryError("x").kind(), ErrorKind::kMemory);
+  EXPECT_EQ(Cancelled().kind(), ErrorKind::kCancelled);
   EXPECT_STREQ(UsageError("--device: no").what(), "--device: no");
 }
 
@@ -31,13 +32,25 @@ TEST(Check, EvaluatesItsOperandsOnce) {
   EXPECT_EQ(calls, 2);
 }
 
+TEST(Progress, StopsByTheTokenThatItWasGiven) {
+  const CancellationToken token;
+  const Progress job(token), other, within(job.token());
+  EXPECT_FALSE(job.cancelled());
+  token.cancel();
+  EXPECT_THROW(job.check_cancelled(), Cancelled);
+  EXPECT_THROW(within.check_cancelled(), Cancelled);
+  EXPECT_NO_THROW(other.check_cancelled());
+  token.reset();
+  EXPECT_NO_THROW(job.check_cancelled());
+}
+
 TEST(Progress, ThrowsOnceCancellationWasAskedFor) {
   Progress progress;
-  reset_cancellation();
+  process_cancellation().reset();
   EXPECT_NO_THROW(progress.check_cancelled());
-  request_cancellation();
+  process_cancellation().cancel();
   EXPECT_THROW(progress.check_cancelled(), Cancelled);
-  reset_cancellation();
+  process_cancellation().reset();
   EXPECT_NO_THROW(progress.check_cancelled());
 }
 

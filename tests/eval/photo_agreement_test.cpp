@@ -156,9 +156,9 @@ TEST(PhotoAgreement, IsTheSameWithOneThreadAndCanBeCancelled) {
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     EXPECT_EQ(to_json(judge_by_photographs(mesh, ring(), kHeldOut, kLenders)), many);
   }
-  request_cancellation();
+  process_cancellation().cancel();
   EXPECT_THROW(judge_by_photographs(mesh, ring(), kHeldOut, kLenders), Cancelled);
-  reset_cancellation();
+  process_cancellation().reset();
 }
 
 TEST(PhotoAgreement, JsonHoldsTheFiguresWithinAnother) {

@@ -5,7 +5,6 @@
 #include <cstdio>
 
 #include "eval/evaluate.h"
-#include "io/mesh/write_mesh.h"
 #include "pipeline/reconstruct.h"
 #include "support/scratch_folder.h"
 #include "synth/synthesize.h"
@@ -32,20 +31,20 @@ Result run(const std::string& degradations, const std::string& background, int p
   spec.image.width = spec.image.height = pixels;
   synth::synthesize(spec, folder / "scene", silent);
   pipeline::ReconstructOptions options;
-  options.scene = folder / "scene";
-  options.output = folder / "out";
   options.method = pipeline::Method::kHull;
   options.device = "software";
-  Result result{pipeline::reconstruct(options, silent)};
+  const pipeline::Reconstruction made = pipeline::Reconstructor(options).run(
+      pipeline::load_photographs(folder / "scene"), silent);
+  Result result{made.report};
   eval::EvaluateOptions judge;
   judge.samples = 20000;
   judge.columns = 64;
   const eval::Evaluation e =
-      eval::evaluate(read_ply(folder / "out/mesh.ply"), eval::read_truth(folder / "scene"), judge);
+      eval::evaluate(made.mesh, eval::read_truth(folder / "scene"), judge);
   for (const eval::Score& score : e.seen.scores)
     if (score.threshold == 0.01) result.f = 100 * score.f;
   std::printf("F %.2f at 1 %%, %lld px restored\n", result.f,
-              (long long)(result.report.thin.restored_pixels));
+              (long long)(result.report.silhouettes.thin.restored_pixels));
   return result;
 }
 
@@ -54,29 +53,29 @@ constexpr const char* kEroded = R"({"mask_style": "eroded"})";
 
 TEST(EatenMasks, StemsComeBackBeforePlainGround) {
   const Result r = run(kEroded, kPlain);
-  EXPECT_GT(r.report.mask_offset, 0.5);
-  EXPECT_GT(r.report.thin.restored_pixels, 4000);
+  EXPECT_GT(r.report.silhouettes.mask_offset, 0.5);
+  EXPECT_GT(r.report.silhouettes.thin.restored_pixels, 4000);
   EXPECT_GT(r.f, 95);
 }
 
 TEST(EatenMasks, StemsComeBackBeforeClutterThatMoves) {
   const Result r = run(kEroded, R"({"type": "clutter", "moving": true})");
-  EXPECT_GT(r.report.thin.restored_pixels, 2000);
+  EXPECT_GT(r.report.silhouettes.thin.restored_pixels, 2000);
   EXPECT_GT(r.f, 85);
 }
 
 TEST(EatenMasks, NothingIsPutBackIntoMasksThatAreRight) {
   const Result r = run("{}", kPlain);
-  EXPECT_EQ(r.report.mask_offset, 0);
-  EXPECT_EQ(r.report.thin.restored_pixels, 0);
+  EXPECT_EQ(r.report.silhouettes.mask_offset, 0);
+  EXPECT_EQ(r.report.silhouettes.thin.restored_pixels, 0);
 }
 
 /// Stems of 0.1 to 0.3 pixels, whose tips each view loses elsewhere.
 TEST(EatenMasks, StemsFarBelowAPixelAreNotEatenAndMoveNoCameras) {
   const Result r = run("{}", kPlain, 180);
-  EXPECT_EQ(r.report.mask_offset, 0);
-  EXPECT_GT(r.report.mask_disagreement, 0.25);  // so that refining the cameras is tried
-  EXPECT_THAT(r.report.camera_refinement, testing::HasSubstr("\"used\": false"));
+  EXPECT_EQ(r.report.silhouettes.mask_offset, 0);
+  EXPECT_GT(r.report.cameras.mask_disagreement, 0.25);  // so that refining the cameras is tried
+  EXPECT_THAT(r.report.cameras.refinement, testing::HasSubstr("\"used\": false"));
   EXPECT_GT(r.f, 90);
 }
 

@@ -36,18 +36,17 @@ SyntheticScene::SyntheticScene(const synth::Spec& spec)
 eval::Evaluation SyntheticScene::reconstruct(pipeline::Method method, int resolution,
                                              std::optional<projtex::Sampler> sampler) const {
   pipeline::ReconstructOptions options;
-  options.scene = folder_ / "scene";
-  options.output = folder_ / "result";
   options.resolution = resolution;
   options.method = method;
   options.sampler = sampler;
   options.device = "software";
   Progress silent;
-  pipeline::reconstruct(options, silent);
+  const pipeline::Reconstruction result = pipeline::Reconstructor(options).run(
+      pipeline::load_photographs(folder_ / "scene"), silent);
   eval::EvaluateOptions judge;
   judge.samples = 50000;
   judge.columns = 64;
-  return eval::evaluate(read_ply(folder_ / "result/mesh.ply"), truth_, judge);
+  return eval::evaluate(result.mesh, truth_, judge);
 }
 
 double f_score(const eval::Evaluation& evaluation, double threshold_percent) {

@@ -47,7 +47,7 @@ TEST(ChooseDevice, NoUsableDeviceIsAFailureNotAUsageError) {
     choose_device({device(0, false, "no permission")}, "auto");
     FAIL();
   } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ExitCode::kFailure);
+    EXPECT_EQ(e.kind(), ErrorKind::kFailed);
   }
   EXPECT_THROW(choose_device({}, "auto"), Error);
 }

@@ -291,25 +291,25 @@ TEST_F(LoadScene, BadBoxFilesAreNamed) {
 }
 
 TEST_F(LoadScene, OptionsAreUsageErrors) {
-  const auto exit_code = [&](const LoadSceneOptions& options) {
+  const auto failure = [&](const LoadSceneOptions& options) -> std::optional<ErrorKind> {
     try {
       load_scene(folder_, options);
     } catch (const Error& error) {
-      return error.code();
+      return error.kind();
     }
-    return ExitCode::kSuccess;
+    return std::nullopt;
   };
   LoadSceneOptions options;
   options.pixel_center = 0.25;
-  EXPECT_EQ(exit_code(options), ExitCode::kUsage);
+  EXPECT_EQ(failure(options), ErrorKind::kUsage);
   options.pixel_center.reset();
   options.box = Box{{0, 0, 0}, {1, 1, 0}};
-  EXPECT_EQ(exit_code(options), ExitCode::kUsage);
+  EXPECT_EQ(failure(options), ErrorKind::kUsage);
   options.box.reset();
   options.views = "7";
-  EXPECT_EQ(exit_code(options), ExitCode::kUsage);
+  EXPECT_EQ(failure(options), ErrorKind::kUsage);
   options.views.clear();
-  EXPECT_EQ(exit_code(options), ExitCode::kSuccess);
+  EXPECT_EQ(failure(options), std::nullopt);
 }
 
 // Sparse: the file occupies no disk, and must not be read.

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "io/image_file.h"
 #include "pipeline/plan.h"
+#include "pipeline/reconstruct.h"
 #include "support/scratch_folder.h"
 
 namespace photohull::pipeline {
@@ -161,9 +162,8 @@ class PlanJob : public testing::Test {
   PlanJob() : scene_(scene_of(std::vector<SourceView>(12, view(1600, 1200, 1300)))) {
     io::write_png(folder_ / "a.png", 1600, 1200, 1, std::vector<std::uint8_t>(1600 * 1200, 9));
     for (SourceView& v : scene_.views) v.image = folder_ / "a.png";
-    options_.output = "out";
   }
-  Plan plan(std::int64_t limit) { return plan_job(options_, scene_, kBox, true, limit); }
+  Plan plan(std::int64_t limit) { return plan_job({options_}, scene_, kBox, true, limit); }
 
   static constexpr std::int64_t kNoLimit = std::int64_t(1) << 60;
   ScratchFolder folder_;
@@ -203,7 +203,7 @@ TEST_F(PlanJob, MemoryAsksForSmallerOnesUnlessForced) {
 TEST_F(PlanJob, VoxelsCountBeforeMasksAreSeen) {
   // Default voxels, and masks that may be made from the background or not.
   const auto reading = [&](std::int64_t limit, const Box& box = kBox, bool known = false) {
-    return plan_reading(options_, scene_, box, known, limit);
+    return plan_reading({options_}, scene_, box, known, limit);
   };
   const Plan whole = plan(kNoLimit);
   EXPECT_EQ(reading(kNoLimit).scales[0], 1);
@@ -242,14 +242,13 @@ TEST(MaxMemory, RefusesBeforeDecoding) {
   }
   par.close();
   ReconstructOptions options;
-  options.scene = folder / "x_par.txt";
-  options.output = folder / "out";
-  options.load.box = kBox;
+  io::LoadSceneOptions load;
+  load.box = kBox;
   options.resolution = 64;
   options.max_memory = std::int64_t(100) << 20;
   Progress silent;
   try {
-    reconstruct(options, silent);
+    Reconstructor(options).run(load_photographs(folder / "x_par.txt", load), silent);
     ADD_FAILURE() << "it was taken";
   } catch (const Error& e) {
     EXPECT_NE(std::string(e.what()).find("may take 100 MiB (--max-memory)"), std::string::npos)

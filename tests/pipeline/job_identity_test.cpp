@@ -12,31 +12,31 @@
 namespace photohull::pipeline {
 namespace {
 
-std::string identity_of(const ReconstructOptions& options) {
-  Scene scene;
-  scene.box = Box{glm::dvec3(-1), glm::dvec3(1)};
-  return job_identity(options, scene, {}, "device");
+std::string identity_of(const ReconstructOptions& options,
+                        const io::LoadSceneOptions& load = {}) {
+  return job_identity(options, {.load = load}, {}, "device");
 }
 
-TEST(JobIdentity, DiffersByScenesAndLattices) {
-  using Change = std::function<void(Scene&, GridSpec&)>;
+TEST(JobIdentity, DiffersByPhotographsViewsAndLattices) {
+  using Change = std::function<void(Photographs&, Subject&)>;
   const Change changes[] = {
-      [](Scene&, GridSpec&) {},
-      [](Scene& s, GridSpec&) { s.box->max.x += 1e-12; },
-      [](Scene& s, GridSpec&) { s.views[1].camera.intrinsics.cx += 1e-9; },
-      [](Scene& s, GridSpec&) { s.views.pop_back(); },
-      [](Scene&, GridSpec& g) { g.voxel_size = 0.5; },
+      [](Photographs&, Subject&) {},
+      [](Photographs& p, Subject&) { p.digest = "of other pixels"; },
+      [](Photographs&, Subject& s) { s.box.max.x += 1e-12; },
+      [](Photographs&, Subject& s) { s.views[1].source.camera.intrinsics.cx += 1e-9; },
+      [](Photographs&, Subject& s) { s.views.pop_back(); },
+      [](Photographs&, Subject& s) { s.grid.voxel_size = 0.5; },
   };
   std::set<std::string> identities;
   for (const Change& change : changes) {
-    Scene scene;
-    scene.box = Box{glm::dvec3(-1), glm::dvec3(1)};
-    scene.views.resize(3);
-    GridSpec grid;
-    change(scene, grid);
-    const std::string identity = job_identity({}, scene, grid, "device");
-    EXPECT_EQ(identity, job_identity({}, scene, grid, "device"));
-    EXPECT_NE(identity, job_identity({}, scene, grid, "another device"));
+    Photographs photographs;
+    Subject subject;
+    subject.box = Box{glm::dvec3(-1), glm::dvec3(1)};
+    subject.views.resize(3);
+    change(photographs, subject);
+    const std::string identity = job_identity({}, photographs, subject, "device");
+    EXPECT_EQ(identity, job_identity({}, photographs, subject, "device"));
+    EXPECT_NE(identity, job_identity({}, photographs, subject, "another device"));
     EXPECT_TRUE(identities.insert(identity).second) << identities.size();
   }
 }
@@ -44,21 +44,24 @@ TEST(JobIdentity, DiffersByScenesAndLattices) {
 TEST(JobIdentity, DiffersByEveryOptionThatRefinementRestsOnAndByNoOther) {
   const std::string usual = identity_of({});
   ReconstructOptions none;
+  io::LoadSceneOptions no_load;
   Described all;
-  describe(all, none);
+  describe(all, none, no_load);
   for (const Option& option : all.options()) {
     ReconstructOptions options;
+    io::LoadSceneOptions load;
     Described described;
-    describe(described, options);
+    describe(described, options, load);
     const Option& changed = *described.find(option.name);
     change(changed);
     ASSERT_NE(text_of(changed), text_of(option)) << option.name;
-    EXPECT_EQ(identity_of(options) != usual, option.from <= Stage::kSurface) << option.name;
+    EXPECT_EQ(identity_of(options, load) != usual, option.from <= Stage::kSurface)
+        << option.name;
   }
   for (const char* name : {"threads", "evidence", "fresh", "mesh_error", "unseen"})
     EXPECT_GT(all.find(name)->from, Stage::kSurface) << name;
   ReconstructOptions elsewhere;
-  elsewhere.output = "elsewhere";
+  elsewhere.checkpoint = "elsewhere";
   EXPECT_EQ(identity_of(elsewhere), usual);
 }
 

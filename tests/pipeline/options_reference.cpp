@@ -58,7 +58,8 @@ std::string options_reference() {
          "earlier stage was changed.\n\n";
   ReconstructOptions options;
   Described described;
-  describe(described, options);
+  io::LoadSceneOptions load;
+  describe(described, options, load);
   write_table(described, true, out);
   out << "\n## Parameters\n\n"
          "For experiments: `--tune NAME=VALUE` changes one, with 0 and 1 for off and on. A method "

@@ -3,14 +3,14 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "pipeline/reconstruct.h"
+#include "pipeline/reconstruct_options.h"
 
 namespace photohull::pipeline {
 namespace {
 
 class OptionText : public testing::Test {
  protected:
-  OptionText() { describe(described_, options_); }
+  OptionText() { describe(described_, options_, load_); }
 
   void read(const std::string& name, const std::string& text) {
     read_option(*described_.find(name), text);
@@ -27,6 +27,7 @@ class OptionText : public testing::Test {
   }
 
   ReconstructOptions options_;
+  io::LoadSceneOptions load_;
   Described described_;
 };
 
@@ -85,7 +86,6 @@ TEST_F(OptionText, NumbersOutOfRangeAreNamed) {
 }
 
 TEST_F(OptionText, ValuesThatAProgramSetsAreCheckedInTheSameWords) {
-  options_.output = "out";
   options_.validate();
   options_.threads = -1;
   EXPECT_THAT([&] { options_.validate(); },

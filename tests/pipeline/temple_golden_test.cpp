@@ -11,9 +11,9 @@ TEST(TempleGolden, HullKeepsItsVolume) {
   const Reconstruction hull = reconstruct_temple(96, Method::kHull);
   // Outlines disagree by a quarter of a pixel here, so that no view carves alone.
   EXPECT_NEAR(double(hull.report.voxels_kept), 68342, 0.005 * 68342);
-  EXPECT_NEAR(double(hull.report.triangles), 45812, 0.02 * 45812);
-  EXPECT_EQ(hull.report.mask_source, "background model");
-  EXPECT_NEAR(hull.report.mask_confidence, 0.52, 0.05);  // the least of the views'
+  EXPECT_NEAR(double(hull.report.mesh.triangles), 45812, 0.02 * 45812);
+  EXPECT_EQ(hull.report.photographs.mask_source, "background model");
+  EXPECT_NEAR(hull.report.photographs.mask_confidence, 0.52, 0.05);  // the least of the views'
 }
 
 TEST(TempleGolden, SpaceCarvingTakesAFewPercentOfTheHullAndAddsNothing) {
@@ -21,7 +21,7 @@ TEST(TempleGolden, SpaceCarvingTakesAFewPercentOfTheHullAndAddsNothing) {
   const Reconstruction carved = reconstruct_temple(96, Method::kSpaceCarving);
   EXPECT_NEAR(double(carved.report.voxels_kept), 62440, 0.01 * 62440);
   // Specks that carving cuts off are dropped without being counted as carved.
-  const auto accounted = double(carved.report.voxels_kept + carved.report.voxels_carved);
+  const auto accounted = double(carved.report.voxels_kept + carved.report.surface.sweep.voxels_carved);
   EXPECT_LE(accounted, double(hull.report.voxels_kept));
   EXPECT_GE(accounted, 0.999 * double(hull.report.voxels_kept));
   ASSERT_EQ(carved.volume.grid.voxel_size, hull.volume.grid.voxel_size);
@@ -40,8 +40,8 @@ TEST(TempleGolden, SpaceCarvingTakesAFewPercentOfTheHullAndAddsNothing) {
 
 TEST(TempleGolden, VoxelColoringIsOneSweep) {
   const Reconstruction result = reconstruct_temple(64, Method::kVoxelColoring);
-  EXPECT_EQ(result.report.sweeps, 1);
-  EXPECT_GT(result.report.voxels_judged, 1000);
+  EXPECT_EQ(result.report.surface.sweep.sweeps, 1);
+  EXPECT_GT(result.report.surface.sweep.voxels_judged, 1000);
 }
 
 }  // namespace

@@ -19,15 +19,14 @@ TEST(WrongMask, IsLeftOutAloneWhereFeaturesConfirmTheCamera) {
   spec.image = {240, 180, 2};
   synth::synthesize(spec, folder / "scene", silent);
   ReconstructOptions options;
-  options.scene = folder / "scene";
-  options.output = folder / "out";
   options.resolution = 32;
   options.method = Method::kHull;
   options.device = "software";
   options.refine_cameras = RefineCameras::kPoses;
-  const Report report = reconstruct(options, silent);
-  EXPECT_THAT(report.masks_left_out, testing::UnorderedElementsAre("0000.png", "0007.png"));
-  EXPECT_TRUE(report.left_out.empty());
+  const Report report =
+      Reconstructor(options).run(load_photographs(folder / "scene"), silent).report;
+  EXPECT_THAT(report.silhouettes.masks_left_out, testing::UnorderedElementsAre("0000.png", "0007.png"));
+  EXPECT_TRUE(report.silhouettes.left_out.empty());
 }
 
 /// A block with 2 of 24 principal points 1.2 pixels off.
@@ -44,13 +43,11 @@ class ViewsThatAreOff : public testing::Test {
     spec.image = {240, 180, 3};
     synth::synthesize(spec, folder_ / "scene", silent);
     ReconstructOptions options;
-    options.scene = folder_ / "scene";
-    options.output = folder_ / "out";
     options.resolution = 48;
     options.method = Method::kHull;
     options.device = "software";
     options.refine_cameras = refine;
-    return reconstruct(options, silent);
+    return Reconstructor(options).run(load_photographs(folder_ / "scene"), silent).report;
   }
 
   ScratchFolder folder_;
@@ -60,14 +57,14 @@ TEST_F(ViewsThatAreOff, GetCamerasThatAgree) {
   const Report report = run(std::nullopt);
   EXPECT_THAT(report.warnings,
               testing::Contains(testing::HasSubstr("the cameras of these were refined")));
-  EXPECT_TRUE(report.outline_room.empty());
-  EXPECT_TRUE(report.left_out.empty());
+  EXPECT_TRUE(report.silhouettes.outline_room.empty());
+  EXPECT_TRUE(report.silhouettes.left_out.empty());
 }
 
 TEST_F(ViewsThatAreOff, CarveWithAsMuchRoomWhereCamerasStay) {
   const Report report = run(RefineCameras::kOff);
-  ASSERT_EQ(report.outline_room.size(), 2u);
-  for (const OutlineRoom& room : report.outline_room) EXPECT_NEAR(room.pixels, 1.2, 0.5);
+  ASSERT_EQ(report.silhouettes.outline_room.size(), 2u);
+  for (const OutlineRoom& room : report.silhouettes.outline_room) EXPECT_NEAR(room.pixels, 1.2, 0.5);
   EXPECT_THAT(report.warnings, testing::Contains(testing::HasSubstr("carve with as much room")));
 }
 

@@ -18,9 +18,9 @@ namespace fs = std::filesystem;
 class StoppingProgress : public Progress {
  public:
   explicit StoppingProgress(double stop_at) : stop_at_(stop_at) {}
-  ~StoppingProgress() override { reset_cancellation(); }
+  ~StoppingProgress() override { process_cancellation().reset(); }
   void update(double fraction) override {
-    if (fraction >= stop_at_) request_cancellation();
+    if (fraction >= stop_at_) process_cancellation().cancel();
   }
   void warn(const std::string& message) override { warnings.push_back(message); }
   void note(const std::string& message) override { notes.push_back(message); }

@@ -128,9 +128,9 @@ TEST_F(RefineSurface, TheLastPassSeatsItOnTheOutlinesWhateverTheOthersGained) {
 }
 
 TEST_F(RefineSurface, CanBeCancelled) {
-  request_cancellation();
+  process_cancellation().cancel();
   EXPECT_THROW(run(4), Cancelled);
-  reset_cancellation();
+  process_cancellation().reset();
 }
 
 TEST_F(RefineSurface, BadOptionsAreNamed) {

@@ -55,13 +55,10 @@ synth::Spec random_spec(std::uint64_t number) {
   return synth::parse_spec(random_spec_text(number), concat("scene ", number), "");
 }
 
-pipeline::ReconstructOptions random_job(std::uint64_t number, const std::filesystem::path& scene,
-                                        const std::filesystem::path& output) {
+pipeline::ReconstructOptions random_job(std::uint64_t number) {
   using pipeline::Method;
   Draw draw(~number);
   pipeline::ReconstructOptions job;
-  job.scene = scene;
-  job.output = output;
   job.resolution = draw.whole(12, 32);
   const Method methods[] = {Method::kHull, Method::kVoxelColoring, Method::kSpaceCarving,
                             Method::kRefine, Method::kRefine};

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/reconstruct.h"
+#include "pipeline/reconstruct_options.h"
 #include "synth/spec.h"
 
 namespace photohull::test {
@@ -18,8 +18,7 @@ synth::Spec random_spec(std::uint64_t number);
 std::string random_spec_text(std::uint64_t number);
 
 /// Any method at 12 to 32 voxels with some of the options.
-pipeline::ReconstructOptions random_job(std::uint64_t number, const std::filesystem::path& scene,
-                                        const std::filesystem::path& output);
+pipeline::ReconstructOptions random_job(std::uint64_t number);
 
 /// Options of `photohull reconstruct` with values in their ranges; together they may be refused.
 std::vector<std::string> random_arguments(std::uint64_t number);

@@ -319,11 +319,11 @@ TEST(Synthesize, StoppedItSaysSoAndCanBeRunAgain) {
   const ScratchFolder scratch;
   struct StopAtPictures : Progress {
     void stage(const std::string& name, double) override {
-      if (name == "photographs") request_cancellation();
+      if (name == "photographs") process_cancellation().cancel();
     }
   } stopping;
   EXPECT_THROW(synthesize(small(kBlock), scratch / "scene", stopping), Cancelled);
-  reset_cancellation();
+  process_cancellation().reset();
   EXPECT_TRUE(fs::exists(scratch / "scene" / "INCOMPLETE"));
   EXPECT_FALSE(fs::exists(scratch / "scene" / "spec.json"));
   make(small(kBlock), scratch / "scene");

@@ -287,7 +287,7 @@ TEST(Photometric, RecoversTheGainsOfARenderedScene) {
   mesh.normals.clear();
   for (const glm::vec3& p : mesh.positions)
     mesh.normals.push_back(glm::normalize(p + glm::vec3(mesh.origin)));
-  const auto frames = frames_of(scene);
+  const auto frames = frames_of(prepared.views);
   const auto lenses = shared_lenses(frames);
   const auto points = sample_photometric(mesh, 0.02, prepared.views, frames,
                                          estimate_image_noise(prepared.views[0].image), silent);

@@ -369,9 +369,9 @@ TEST_F(PrepareViews, RejectsEmptyScenesAndBadOptions) {
 
 TEST_F(PrepareViews, StopsWhenCancelled) {
   add_view("a.png", clay_disc());
-  request_cancellation();
+  process_cancellation().cancel();
   EXPECT_THROW(prepare(), Cancelled);
-  reset_cancellation();
+  process_cancellation().reset();
   EXPECT_EQ(loads_, 0);
 }
 

@@ -240,12 +240,12 @@ TEST(ChartJob, CancellationKeepsFinishedRuns) {
                  "variants": [{"name": "slow", "arguments": ["--sleep"]}]})");
   struct CancelLater : Progress {
     void stage(const std::string& name, double) override {
-      if (name.find("slow") != std::string::npos) request_cancellation();
+      if (name.find("slow") != std::string::npos) process_cancellation().cancel();
     }
   } progress;
-  reset_cancellation();
+  process_cancellation().reset();
   EXPECT_THROW(ChartJob(world.options()).run(progress), Cancelled);
-  reset_cancellation();
+  process_cancellation().reset();
   EXPECT_EQ(run_files(world).size(), 1u);
   EXPECT_EQ(read_results(world.out() / "results.json").size(), 1u);
   EXPECT_TRUE(fs::is_empty(world.out() / "work"));

@@ -69,14 +69,14 @@ TEST(RunChild, KillsTheWholeGroupAtTheLimit) {
 }
 
 TEST(RunChild, CancellationKillsIt) {
-  reset_cancellation();
+  process_cancellation().reset();
   std::thread user([] {
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
-    request_cancellation();
+    process_cancellation().cancel();
   });
   EXPECT_THROW(shell("sleep 1000"), Cancelled);
   user.join();
-  reset_cancellation();
+  process_cancellation().reset();
 }
 
 TEST(RunChild, KeepsTheEndOfManyErrors) {

@@ -59,12 +59,12 @@ TEST(StressJob, GoesOnWhereItWasStopped) {
   world.plan(kPlan);
   struct CancelLater : Progress {
     void stage(const std::string& name, double) override {
-      if (name.starts_with("run 5 ")) request_cancellation();
+      if (name.starts_with("run 5 ")) process_cancellation().cancel();
     }
   } progress;
-  reset_cancellation();
+  process_cancellation().reset();
   EXPECT_THROW(StressJob(options(world)).run(progress), Cancelled);
-  reset_cancellation();
+  process_cancellation().reset();
   EXPECT_TRUE(fs::is_empty(world.out() / "work"));
   EXPECT_FALSE(read_stress_results(world.out() / "results.json").empty());
   world.forget_calls();

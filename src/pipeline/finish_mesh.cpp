@@ -1,0 +1,107 @@
+#include "pipeline/finish_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "carving/fit_stems.h"
+#include "core/error.h"
+#include "mesh/remove_islands.h"
+#include "mesh/remove_unseen.h"
+#include "mesh/simplify_mesh.h"
+#include "pipeline/checks.h"
+#include "projtex/gpu_views.h"
+#include "refine/dust.h"
+#include "volume/components.h"
+#include "volume/extract_mesh.h"
+
+namespace photohull::pipeline {
+namespace {
+
+constexpr double kDebrisFraction = 5e-4;  // of the largest part's voxels
+constexpr double kMoreLikelyRight = 0.5;  // confidence is the chance to be right
+
+std::int64_t fit_stems(const SurfaceJob& job, TriMesh& mesh) {
+  std::vector<carving::StemView> views;
+  for (const View& view : job.subject.views)
+    if (!view.mask.empty()) views.push_back({view.camera, &view.mask, &view.silhouette.lines});
+  return std::int64_t(carving::fit_stems(views, job.subject.grid.voxel_size, mesh,
+                                         tuned(job.options).stems));
+}
+
+}  // namespace
+
+void remove_dust(const SurfaceJob& job, SparseVolume& volume) {
+  remove_small_components(volume, kDebrisFraction, [&](auto pieces) {
+    return refine::are_asked_for(job.context, volume, pieces,
+                                 projtex::cameras_of(job.subject.views),
+                                 silhouettes_of(job.subject.views), {});
+  });
+}
+
+TriMesh extract_surface(const SurfaceJob& job, const SparseVolume& volume,
+                        MeshFindings& findings) {
+  TriMesh mesh = extract_mesh(volume);
+  if (const auto sharpen = method_of(job.options).sharpen)
+    findings.sharpened_vertices = sharpen(job, mesh);
+  findings.stem_vertices = fit_stems(job, mesh);
+  job.context.release_deleted();  // stages to come need large pieces, and this one left small ones
+  return mesh;
+}
+
+std::vector<render::PooledEvidence> colour_surface(const SurfaceJob& job, TriMesh& mesh,
+                                                   MeshFindings& findings) {
+  if (mesh.triangles.empty())
+    throw Error(concat("the volume holds no surface: every part is thinner than a voxel; raise ",
+                       flag_of("resolution")));
+  std::vector<render::PooledEvidence> evidence;
+  bake_colour(job.context, job.subject.grid, job.images, projtex::cameras_of(job.subject.views),
+              job.subject.noise_sigma,
+              method_of(job.options).by_silhouettes ? render::Shaping::kSilhouettes
+                                                    : render::Shaping::kPhotographs,
+              mesh, job.progress, nullptr, &evidence);
+  const auto unseen = std::count(mesh.confidence.begin(), mesh.confidence.end(), 0.0f);
+  findings.unseen_share = double(unseen) / double(mesh.confidence.size());
+  if (findings.unseen_share > 0.5)
+    job.progress.warn(concat(std::lround(100 * findings.unseen_share),
+                             " % of the surface is seen by no camera: it is the hull's guess"));
+  return evidence;
+}
+
+bool leaves_open(const ReconstructOptions& options, bool bounded) {
+  if (options.unseen != Unseen::kAuto) return options.unseen == Unseen::kOpen;
+  return !bounded && method_of(options).needs_no_silhouettes;
+}
+
+TriMesh open_unseen(const SurfaceJob& job, const TriMesh& mesh, std::vector<float> views_that_see,
+                    MeshFindings& findings) {
+  const Subject& subject = job.subject;
+  const bool by_photographs = !job.bounded;
+  TriMesh open = remove_unseen(mesh, by_photographs ? kMoreLikelyRight : 0, &views_that_see);
+  if (by_photographs) {
+    const RemovedIslands gone =
+        remove_islands(open, views_that_see, {.voxel_size = subject.grid.voxel_size});
+    findings.islands = std::int64_t(gone.pieces);
+    findings.islands_area_share = gone.area_share;
+  }
+  if (open.triangles.empty())
+    throw Error(concat(
+        "no surface was found that a camera sees and that is more likely right than wrong; check "
+        "the cameras (photohull info), or look at all of it with ",
+        flag_of("unseen"), " closed",
+        told_of_cameras_within(subject.box, subject.box_source, sources_of(subject.views))));
+  return open;
+}
+
+TriMesh simplify(const SurfaceJob& job, const TriMesh& mesh, MeshFindings& findings) {
+  const double voxel = job.subject.grid.voxel_size;
+  const MeshError& asked = job.options.mesh_error;
+  const double error = asked.value * (asked.world_units ? 1 : voxel);
+  TriMesh simple = simplify_mesh(mesh, error);
+  job.progress.check_cancelled();
+  const MeshDistance d = measure_distance(mesh, simple, mean_edge(mesh));
+  findings.error = MeshErrorFindings{error / voxel, d.mean / voxel, d.p95 / voxel, d.p999 / voxel,
+                                     d.max / voxel};
+  return simple;
+}
+
+}  // namespace photohull::pipeline

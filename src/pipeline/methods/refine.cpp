@@ -1,0 +1,154 @@
+// The surface moved to where its patches agree between views (--method refine).
+#include "refine/refine.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "carving/fit_grid.h"
+#include "core/error.h"
+#include "mesh/sharpen_edges.h"
+#include "pipeline/checkpoint_folder.h"
+#include "pipeline/checks.h"
+#include "pipeline/job_identity.h"
+#include "pipeline/methods/method.h"
+#include "pipeline/stage_weights.h"
+#include "projtex/gpu_views.h"
+
+namespace photohull::pipeline {
+namespace {
+
+// High quality: iterations of matching at the finest voxels, passes of fitting patches to the
+// photographs after them, and Gauss-Newton steps of each.
+constexpr int kHighIterations = 2, kHighPasses = 3, kHighSteps = 3;
+// Masks that were made from the background are wrong in places, and mostly at their rims: a part
+// comes back only when one view in so many asks for it, so many pixels within its mask.
+constexpr int kDoubtingViews = 3;
+constexpr double kDoubtfulRim = 2;
+constexpr double kLeastEvidence = 0.1;  // share of the surface below which a result is doubtful
+constexpr double kDetail = 1.5;  // pixels: what refinement resolves, by its patches
+
+Parameters parameters_of(const SurfaceJob& job) {
+  Parameters parameters;
+  refine::RefineOptions& refine = parameters.refine;
+  refine.noise_sigma = job.subject.noise_sigma;
+  if (job.options.quality == Quality::kHigh) {
+    refine.fine_iterations = kHighIterations;
+    refine.photometric = kHighPasses;
+    refine.fit.steps = kHighSteps;
+  }
+  if (job.subject.mask_confidence < 1) {
+    refine.restore.least_views = std::max(refine.restore.least_views,
+                                          int(job.subject.views.size()) / kDoubtingViews);
+    refine.restore.least_inside = kDoubtfulRim;
+  }
+  tune(job.options.tune, Method::kRefine, parameters);
+  refine.bounded = job.bounded;
+  return parameters;
+}
+
+SurfaceFindings findings_of(const refine::RefineReport& counts) {
+  SurfaceFindings out;
+  out.refine.resumed_levels = counts.resumed;
+  for (const refine::FitReport& fit : counts.fits)
+    out.refine.fits.push_back(
+        {fit.seconds, fit.held_before, fit.held_after, fit.mean_move, fit.kept});
+  for (const refine::LevelReport& level : counts.levels) {
+    out.refine.levels.push_back({level.voxel_size, level.seconds, level.surfels, level.samples,
+                                 level.bricks, level.restored, level.freed, level.split,
+                                 level.settled_pixels, level.settled_plain, level.settled_flat,
+                                 level.mean_move, level.evidence});
+    out.samples += level.samples;
+  }
+  return out;
+}
+
+/// Throws Error where nothing was found, and warns where little was.
+void check_found(const SurfaceJob& job, const SparseVolume& volume,
+                 const refine::RefineReport& counts) {
+  const Subject& subject = job.subject;
+  if (volume.inside_voxels() == 0 && !any_mask(subject.views))
+    throw Error(concat(
+        "no surface was found: without masks the photographs must show texture that several of "
+        "them agree on; give masks (",
+        flag_of("masks"), "), more views, or check the cameras (photohull info)",
+        told_of_cameras_within(subject.box, subject.box_source, sources_of(subject.views))));
+  if (volume.inside_voxels() == 0)
+    throw Error(concat("refinement left nothing: the photographs disagree everywhere; check the "
+                       "cameras (photohull info) or use ",
+                       flag_of("method"), " hull"));
+  const double evidence = counts.levels.back().evidence;
+  if (evidence < kLeastEvidence)
+    job.progress.warn(
+        concat("the photographs tell where the surface is on ", std::lround(100 * evidence),
+               " % of it only (too little texture, or too few cameras that see the same): the "
+               "rest is the hull's guess"));
+}
+
+/// Levels that an interrupted run of the same job has done are taken from its checkpoint.
+std::optional<refine::CheckpointFile> checkpoint_of(const SurfaceJob& job) {
+  if (job.options.checkpoint.empty()) return std::nullopt;
+  const std::filesystem::path file = checkpoint_file(job.options.checkpoint);
+  if (job.options.fresh) remove_checkpoint(job.options.checkpoint);
+  return refine::CheckpointFile{
+      file, job_identity(job.options, job.photographs, job.subject,
+                         job.context.device().renderer)};
+}
+
+Surface carve(const SurfaceJob& job, SparseVolume) {
+  const std::optional<refine::CheckpointFile> checkpoint = checkpoint_of(job);
+  refine::RefineReport counts;
+  Surface out;
+  out.volume = refine::refine_surface(
+      job.context, job.subject.grid, [&](const GridSpec& grid) { return job.hull.carve(grid); },
+      silhouettes_of(job.subject.views), job.images, projtex::cameras_of(job.subject.views),
+      parameters_of(job).refine, job.progress, &counts, checkpoint ? &*checkpoint : nullptr);
+  out.findings = findings_of(counts);
+  check_found(job, out.volume, counts);
+  return out;
+}
+
+SparseVolume carve_around(const SurfaceJob& job, const AroundBox& around, std::int64_t& samples) {
+  refine::RefineOptions options = parameters_of(job).refine;
+  options.bounded = false;
+  options.match.nearest_angle = options.vote.nearest_partner = around.nearest_angle;
+  refine::RefineReport counts;
+  SparseVolume volume = refine::refine_surface(
+      job.context, around.grid,
+      [&](const GridSpec& coarse) { return job.hull.carve_box(coarse, around.box); },
+      silhouettes_of(job.subject.views), job.images, projtex::cameras_of(job.subject.views),
+      options, job.progress, &counts);
+  samples += findings_of(counts).samples;
+  return volume;
+}
+
+std::int64_t sharpen(const SurfaceJob& job, TriMesh& mesh) {
+  const Subject& subject = job.subject;
+  const double voxel = subject.grid.voxel_size;
+  const double detail =
+      kDetail * carving::pixel_footprint(subject.box, projtex::cameras_of(subject.views));
+  return std::int64_t(
+      sharpen_edges(parameters_of(job).sharpen, voxel, std::max(detail, voxel), mesh));
+}
+
+void describe_refine(Described& to, Parameters& parameters) {
+  describe(to, parameters.refine);
+  to.group("sharpen", parameters.sharpen);
+}
+
+}  // namespace
+
+const MethodEntry kRefineMethod = {.method = Method::kRefine,
+                                   .name = "refine",
+                                   .sweeps = false,
+                                   .by_silhouettes = false,
+                                   .needs_no_silhouettes = true,
+                                   .from_hull = false,
+                                   .stage = "refine",
+                                   .weight = Weights::kRefine,
+                                   .cost = {30e-6, 35e-6, 330, 1.4e-6},
+                                   .describe = describe_refine,
+                                   .carve = carve,
+                                   .sharpen = sharpen,
+                                   .carve_around = carve_around};
+
+}  // namespace photohull::pipeline

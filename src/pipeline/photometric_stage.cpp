@@ -1,0 +1,62 @@
+#include "pipeline/photometric_stage.h"
+
+#include <algorithm>
+
+#include "carving/fit_grid.h"
+#include "pipeline/photometric.h"
+#include "volume/extract_mesh.h"
+
+namespace photohull::pipeline {
+namespace {
+
+// Voxels along the box: of the hull that gains are measured on, and of that on which is seen
+// whether they differ.
+constexpr int kPhotometricVoxels = 160, kCheckVoxels = 64;
+
+struct CoarseHull {
+  TriMesh mesh;
+  double voxel_size = 0;
+};
+
+CoarseHull coarse_hull(int voxels, Hull& hull, const Subject& subject) {
+  const double coarse = carving::voxel_size_for(subject.box, voxels);
+  const GridSpec grid =
+      carving::fit_grid(subject.box, std::max(coarse, subject.grid.voxel_size));
+  return {extract_mesh(hull.carve(grid)), grid.voxel_size};
+}
+
+/// A quick look before gains are solved for.
+std::optional<AlikeViews> are_alike(const PhotometricJob& job, const TriMesh& mesh,
+                                    double voxel_size, const std::vector<View>& views) {
+  if (job.options.photometric != Photometric::kAuto) return std::nullopt;
+  const auto found = find_alike(mesh, voxel_size, job.noise_sigma, views, job.progress);
+  if (!found) return std::nullopt;
+  return AlikeViews{{found->json, found->line}, false};
+}
+
+AlikeViews correct(const PhotometricJob& job, const TriMesh& mesh, double voxel_size,
+                   std::vector<View>& views) {
+  const PhotometricOutcome found = correct_photometric(job.options.photometric, mesh, voxel_size,
+                                                       job.noise_sigma, views, job.progress);
+  if (!found.warning.empty()) job.progress.warn(found.warning);
+  return {{found.json, found.line}, found.used};
+}
+
+}  // namespace
+
+AlikeViews make_alike_on_hull(const PhotometricJob& job, Hull& hull, Subject& subject) {
+  if (job.options.photometric == Photometric::kAuto) {
+    const CoarseHull quick = coarse_hull(kCheckVoxels, hull, subject);
+    if (auto alike = are_alike(job, quick.mesh, quick.voxel_size, subject.views)) return *alike;
+  }
+  const CoarseHull fine = coarse_hull(kPhotometricVoxels, hull, subject);
+  return correct(job, fine.mesh, fine.voxel_size, subject.views);
+}
+
+AlikeViews make_alike_on(const PhotometricJob& job, const TriMesh& mesh, double voxel_size,
+                         std::vector<View>& views) {
+  if (auto alike = are_alike(job, mesh, voxel_size, views)) return *alike;
+  return correct(job, mesh, voxel_size, views);
+}
+
+}  // namespace photohull::pipeline

@@ -1,0 +1,80 @@
+#include "pipeline/place_lattice.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "carving/object_box.h"
+#include "core/error.h"
+#include "pipeline/checks.h"
+#include "pipeline/methods/method.h"
+#include "pipeline/plan.h"
+#include "pipeline/read_scene.h"
+#include "pipeline/subject.h"
+#include "projtex/gpu_views.h"
+#include "views/crop.h"
+
+namespace photohull::pipeline {
+namespace {
+
+constexpr double kOversized = 1.8;  // times the object's box: the box is made smaller
+constexpr int kCropMargin = 24;     // pixels around the box's projection: patches, mip levels
+
+double longest_side(const Box& box) {
+  const glm::dvec3 size = box.size();
+  return std::max({size.x, size.y, size.z});
+}
+
+}  // namespace
+
+std::optional<Box> smaller_box(const ReconstructOptions& options, const Box& box,
+                               const std::vector<View>& views) {
+  if (options.box_stands() || !carving::box_is_oversized(box, views)) return std::nullopt;
+  const Box object = carving::object_box(box, views);
+  if (longest_side(box) / longest_side(object) < kOversized) return std::nullopt;
+  return object;
+}
+
+SourcedBox tighten_box(const ReconstructOptions& options, const SourcedBox& given,
+                       const std::vector<View>& views, Progress& progress) {
+  const std::optional<Box> object = smaller_box(options, given.box, views);
+  if (!object) return given;
+  const double factor = longest_side(given.box) / longest_side(*object);
+  progress.warn(concat("the box from ", given.source, " is ", std::round(10 * factor) / 10,
+                       " times larger than what the silhouettes leave: the object's own box is "
+                       "taken, and ",
+                       flag_of("resolution"), " counts along that"));
+  return {*object, given.source + ", made smaller by the silhouettes"};
+}
+
+GridSpec place_lattice(const ReconstructOptions& options, const SourcedBox& box,
+                       const std::vector<View>& views) {
+  const bool masks = any_mask(views);
+  if (masks || !method_of(options).needs_no_silhouettes)
+    check_cameras_outside(box.box, box.source, sources_of(views));
+  const std::vector<Camera> cameras = projtex::cameras_of(views);
+  const GridSpec grid = lattice_of(options, box.box, cameras, masks);
+  const CostQuestion question{{},
+                              cameras,
+                              grid,
+                              options.effective_method(),
+                              masks ? Silhouettes::kGiven : Silhouettes::kNone};
+  check_memory(estimate_cost(question).bytes, memory_limit(options));
+  return grid;
+}
+
+bool has_surroundings(const ReconstructOptions& options, bool box_found,
+                      const std::vector<View>& views) {
+  if (!method_of(options).carve_around) return false;
+  if (options.surroundings != Surroundings::kAuto)
+    return options.surroundings == Surroundings::kOn;
+  const auto masked = std::count_if(views.begin(), views.end(),
+                                    [](const View& view) { return !view.mask.empty(); });
+  return box_found && 2 * std::size_t(masked) < views.size();
+}
+
+std::vector<View> crop_views(std::vector<View> views, const Box& box) {
+  for (View& view : views) crop_to_box(box, kCropMargin, view);
+  return views;
+}
+
+}  // namespace photohull::pipeline

@@ -1,0 +1,25 @@
+// The stage that decodes photographs: views, undistorted, with masks that have been looked at.
+#pragma once
+
+#include <vector>
+
+#include "core/image.h"
+#include "core/progress.h"
+#include "pipeline/findings.h"
+#include "pipeline/photographs.h"
+#include "pipeline/read_scene.h"
+#include "pipeline/reconstruct_options.h"
+
+namespace photohull::pipeline {
+
+struct PreparedScene {
+  Scene scene;              ///< at the scale that its photographs were read at
+  std::vector<View> views;  ///< one for each of the scene's
+  ViewFindings findings;
+};
+
+/// Reads the photographs as large as the voxels need them. Throws Error, UsageError, Cancelled.
+PreparedScene prepare_scene(const Photographs& photographs, ReadScene read,
+                            const ReconstructOptions& options, Progress& progress);
+
+}  // namespace photohull::pipeline

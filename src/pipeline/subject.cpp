@@ -1,0 +1,39 @@
+#include "pipeline/subject.h"
+
+#include <algorithm>
+
+namespace photohull::pipeline {
+
+bool any_mask(std::span<const View> views) {
+  return std::any_of(views.begin(), views.end(), [](const View& v) { return !v.mask.empty(); });
+}
+
+std::vector<carving::Silhouette> silhouettes_of(std::span<const View> views) {
+  std::vector<carving::Silhouette> out;
+  for (const View& view : views) {
+    const ViewSilhouette& s = view.silhouette;
+    if (view.mask.empty())
+      out.push_back({&view.mask});
+    else
+      out.push_back({s.widened.empty() ? &view.mask : &s.widened, &s.distance, &s.lines,
+                     s.likelihood});
+  }
+  return out;
+}
+
+std::vector<const SilhouetteDistance*> distances_of(std::span<const View> views) {
+  std::vector<const SilhouetteDistance*> out;
+  for (const View& view : views) {
+    const SilhouetteDistance& distance = view.silhouette.distance;
+    out.push_back(distance.pixels.empty() ? nullptr : &distance);
+  }
+  return out;
+}
+
+std::vector<SourceView> sources_of(std::span<const View> views) {
+  std::vector<SourceView> out;
+  for (const View& view : views) out.push_back(view.source);
+  return out;
+}
+
+}  // namespace photohull::pipeline

@@ -1,0 +1,41 @@
+// What is carved: views with their silhouettes, the box and the lattice. The stages from the hull on
+// work with it, and none of them changes it.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "carving/hull.h"
+#include "core/box.h"
+#include "core/grid.h"
+#include "core/image.h"
+#include "core/scene.h"
+
+namespace photohull::pipeline {
+
+struct Subject {
+  Box box;
+  std::string box_source;
+  bool box_found = false;   ///< not given
+  std::optional<Box> seen;  ///< around what the photographs show, where the box was found
+  GridSpec grid;
+  std::vector<View> views;     ///< undistorted, and around the box alone but for surroundings
+  double noise_sigma = 0;      ///< of the photographs, square-root-encoded units of full scale
+  double mask_confidence = 0;  ///< [0, 1]: the least of the views' that have masks
+  double full_evidence = 0;    ///< pixels (carving::HullOptions)
+};
+
+bool any_mask(std::span<const View> views);
+
+/// Parts of the views, which must outlive them: what the hull and the refinement go by.
+std::vector<carving::Silhouette> silhouettes_of(std::span<const View> views);
+
+/// nullptr for views without mask.
+std::vector<const SilhouetteDistance*> distances_of(std::span<const View> views);
+
+/// What the scene lists of each.
+std::vector<SourceView> sources_of(std::span<const View> views);
+
+}  // namespace photohull::pipeline

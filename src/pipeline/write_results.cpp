@@ -1,0 +1,121 @@
+#include "pipeline/write_results.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "core/error.h"
+#include "io/image_file.h"
+#include "io/mesh/mesh_writers.h"
+#include "io/mesh/write_mesh.h"
+#include "pipeline/checkpoint_folder.h"
+#include "pipeline/recording_progress.h"
+#include "pipeline/result_files.h"
+#include "pipeline/stage_weights.h"
+#include "volume/write_vdb.h"
+
+namespace photohull::pipeline {
+namespace {
+
+/// The mesh's files: PLY, and the formats asked for.
+std::vector<std::pair<std::string, const MeshWriter*>> mesh_files(
+    const std::vector<std::string>& formats) {
+  std::vector<std::pair<std::string, const MeshWriter*>> files;
+  for (const MeshWriter& writer : mesh_writers())
+    if (files.empty() || std::ranges::find(formats, writer.name) != formats.end())
+      files.emplace_back(std::string("mesh.") + writer.name, &writer);
+  return files;
+}
+
+/// What a job with or without evidence may write.
+std::vector<std::string> file_names(const std::vector<std::string>& formats, bool evidence) {
+  std::vector<std::string> names = {"volume.vdb", "preview.png"};
+  for (const auto& [name, writer] : mesh_files(formats)) names.push_back(name);
+  if (evidence) names.insert(names.end(), {"evidence.ply", "missing.png", "explained.png"});
+  names.push_back("report.json");
+  return names;
+}
+
+template <typename Picture>
+void write_picture(AtomicFile& file, const Picture& picture) {
+  io::write_png(file, picture.width, picture.height, 3, picture.rgb);
+}
+
+void write_volume(const Reconstruction& result, ResultFiles& files, Progress& progress) {
+  const double voxel = result.report.grid.voxel_size;
+  if (const double unit = vdb_unit(voxel); unit != 1)
+    progress.warn(concat("volume.vdb counts in ", unit,
+                         " scene units (its metadata scene_unit): OpenVDB has no voxels as small "
+                         "as ",
+                         voxel));
+  write_vdb(files.open("volume.vdb"), result.volume, result.attributes,
+            {{"photohull_options", result.report.option_line}});
+}
+
+void write_evidence(const Evidence& evidence, ResultFiles& files, Report& report) {
+  write_ply(files.open("evidence.ply"), evidence.mesh, evidence.scalars);
+  report.files.push_back("evidence.ply");
+  const auto add = [&](const char* name, const MissingPicture& picture) {
+    if (picture.rgb.empty()) return;  // scenes have one of the two, by whether they have masks
+    write_picture(files.open(name), picture);
+    report.files.push_back(name);
+  };
+  add("missing.png", evidence.missing);
+  add("explained.png", evidence.explained);
+}
+
+Report write_all(const Reconstruction& result, const std::vector<std::string>& formats,
+                 ResultFiles& files, Progress& given) {
+  const auto start = std::chrono::steady_clock::now();
+  Report report = result.report;
+  RecordingProgress progress(given);
+  StageClock clock(progress);
+  clock.run("files", Weights::kFiles, [&] {
+    write_volume(result, files, progress);
+    progress.check_cancelled();
+    report.files = {"volume.vdb"};
+    for (const auto& [name, writer] : mesh_files(formats)) {
+      writer->write(files.open(name), result.mesh);
+      report.files.push_back(name);
+    }
+    write_picture(files.open("preview.png"), result.preview);
+    report.files.push_back("preview.png");
+    if (result.evidence) write_evidence(*result.evidence, files, report);
+  });
+  report.files.push_back("report.json");
+  report.stages.push_back(clock.stages().back());
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  report.wall_seconds += elapsed.count();
+  report.cpu_seconds = process_cpu_seconds();
+  report.peak_memory_bytes = process_peak_memory();
+  for (const std::string& text : progress.warnings()) report.warnings.push_back(text);
+  const std::string text = report.to_json();
+  files.open("report.json").write(text.data(), text.size());
+  progress.check_cancelled();
+  files.commit();
+  return report;
+}
+
+}  // namespace
+
+Report write(const Reconstruction& result, const std::filesystem::path& folder,
+             Progress& progress, const std::vector<std::string>& formats) {
+  for (const std::string& format : formats) find_mesh_writer("formats", format);
+  ResultFiles files(folder, file_names(formats, result.evidence.has_value()));
+  return write_all(result, formats, files, progress);
+}
+
+Report reconstruct_to_folder(const ReconstructOptions& options, const Photographs& photographs,
+                             const std::filesystem::path& folder, Progress& progress) {
+  ReconstructOptions with_checkpoint = options;
+  with_checkpoint.checkpoint = folder;
+  const Reconstructor reconstructor(with_checkpoint);
+  // What can fail at once does so before the photographs are decoded.
+  ResultFiles files(folder, file_names(options.exports, options.evidence));
+  const Report report = write_all(reconstructor.run(photographs, progress), options.exports,
+                                  files, progress);
+  remove_checkpoint(folder);
+  return report;
+}
+
+}  // namespace photohull::pipeline
