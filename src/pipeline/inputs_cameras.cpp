@@ -135,7 +135,7 @@ bool Inputs::fill_no_less(std::span<const Camera> refined) const {
       all.push_back({&masks[i], &distances[i], &found[i], made_masks_.contains(views[i].name)});
   const auto unexplained = [&](std::span<const Camera> with) {
     int count = 0;
-    for (const carving::ExplainedView& v :
+    for (const carving::ForegroundCounts& v :
          carving::find_missing_parts(box, with, all, {}, &progress_).views)
       count += v.unexplained;
     return count;

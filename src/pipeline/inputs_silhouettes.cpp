@@ -214,7 +214,7 @@ void Inputs::explain_foreground() {
   ThinReport& counts = report_.thin;
   double worst = 0;
   for (std::size_t i = 0; i < views.size(); ++i) {
-    const carving::ExplainedView& v = found.views[i];
+    const carving::ForegroundCounts& v = found.views[i];
     counts.looked_at += v.looked_at, counts.unexplained += v.unexplained, counts.placed += v.placed;
     const double share = double(v.unexplained - v.placed) / std::max(v.looked_at, 1);
     if (share > worst) worst = share, counts.worst_view = views[i].name;

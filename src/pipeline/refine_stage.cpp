@@ -49,9 +49,11 @@ SparseVolume RefineStage::run(HullStage& hull, const projtex::ImageSet& images, 
       checkpoint_path(), job_identity(options_, in_.scene, in_.grid, report_.device)};
   if (options_.fresh) remove_checkpoint();
   refine::RefineReport counts;
-  SparseVolume volume = refine::refine_surface(
-      context_, in_.grid, [&](const GridSpec& grid) { return hull.carve(grid); },
-      in_.silhouettes_of_views(), images, in_.cameras, refine_, progress_, &counts, &checkpoint);
+  SparseVolume volume =
+      refine::refine_surface(context_,
+                             {in_.grid, [&](const GridSpec& grid) { return hull.carve(grid); },
+                              in_.silhouettes_of_views(), images, in_.cameras},
+                             refine_, progress_, &counts, &checkpoint);
   note(counts);
   if (volume.inside_voxels() == 0 && !in_.any_mask())
     throw Error(concat(
@@ -77,8 +79,10 @@ SparseVolume RefineStage::run_around(HullStage& hull, const projtex::ImageSet& i
   options.match.nearest_angle = options.vote.nearest_partner = nearest_angle;
   refine::RefineReport counts;
   SparseVolume volume = refine::refine_surface(
-      context_, grid, [&](const GridSpec& coarse) { return hull.carve_box(coarse, box); },
-      in_.silhouettes_of_views(), images, in_.cameras, options, progress_, &counts);
+      context_,
+      {grid, [&](const GridSpec& coarse) { return hull.carve_box(coarse, box); },
+       in_.silhouettes_of_views(), images, in_.cameras},
+      options, progress_, &counts);
   for (const refine::LevelReport& level : counts.levels) samples_ += level.samples;
   return volume;
 }

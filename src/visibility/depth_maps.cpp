@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "gpu/program.h"
+
 namespace photohull::visibility {
 namespace {
 
@@ -37,7 +39,6 @@ DepthMaps::DepthMaps(std::span<const projtex::GridCamera> cameras, const GridSpe
     for (auto& info : infos_) info.size.z = info.size.w;
   }
   info_buffer_ = gpu::Buffer::of(infos_);
-  splat_ = gpu::Program::compute("visibility_splat_voxels.comp.glsl", defines());
   clear();
 }
 
@@ -50,17 +51,18 @@ void DepthMaps::clear() {
 }
 
 void DepthMaps::bind() const {
-  info_buffer_.bind_storage(8);
+  info_buffer_.bind_storage(shaders::kDepthMapInfosBinding);
   if (layers_.id())
-    layers_.bind_read_write(2);
+    layers_.bind_read_write(shaders::kDepthMapLayersUnit);
   else
-    depths_.bind_storage(9);
+    depths_.bind_storage(shaders::kDepthMapsBinding);
 }
 
 void DepthMaps::splat(gpu::Context& context, const gpu::Buffer& voxels, std::size_t count) {
   bind();
-  voxels.bind_storage(6);
-  splat_->dispatch(context, "visibility_splat_voxels", gpu::group_count(count, 64), infos_.size());
+  voxels.bind_storage(shaders::kOccludersBinding);
+  gpu::Program::compute(context, "visibility_splat_voxels.comp.glsl", defines())
+      ->dispatch(context, "visibility_splat_voxels", gpu::group_count(count, 64), infos_.size());
 }
 
 std::vector<float> DepthMaps::download(std::size_t map) const {

@@ -53,13 +53,13 @@ class SweepKernels {
   std::uint32_t judged_count() const;
 
  private:
-  void bind(const gpu::Buffer& block6);
+  void bind();
 
   gpu::Context& context_;
   reference::SweepFrame frame_;
   glm::ivec3 bricks_;
   int view_count_, shifts_;
-  gpu::Program select_, score_, update_, mark_;
+  std::shared_ptr<const gpu::Program> select_, score_, update_, mark_;
   visibility::DepthMaps maps_;
   gpu::Buffer views_, table_, occupancy_, columns_, active_, passed_, uniforms_;
   gpu::Buffer items_, selected_, occluders_, packed_, scores_, decisions_;
