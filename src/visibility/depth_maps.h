@@ -13,6 +13,16 @@
 
 namespace photohull::visibility {
 
+/// One map, on the host.
+struct HostDepthMap {
+  glm::ivec2 size{0};          ///< texels
+  float texels_per_pixel = 1;  ///< at most 1
+  std::vector<float> depths;   ///< voxels, row-major; +infinity where nothing was drawn
+
+  /// At a place on the image (pixels), or at the texel next to it.
+  float at(const glm::dvec2& pixel) const;
+};
+
 /// One depth map per camera, with texels about as large as a voxel looks from there.
 class DepthMaps {
  public:
@@ -30,6 +40,11 @@ class DepthMaps {
   /// first word is the count) into all maps. Cameras must be bound to
   /// kViewsBinding.
   void splat(gpu::Context& context, const gpu::Buffer& voxels, std::size_t count);
+
+  /// Draws voxels into all maps; `cameras` are those that the maps were made for.
+  void draw(gpu::Context& context, std::span<const projtex::GridCamera> cameras,
+            std::span<const glm::ivec3> voxels);
+  HostDepthMap map(std::size_t index) const;
 
   const std::vector<shaders::DepthMapInfo>& infos() const { return infos_; }
   /// Depths in voxels of one map, row-major; +infinity where nothing was drawn.
