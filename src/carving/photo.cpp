@@ -11,6 +11,7 @@
 
 #include "carving/bit_volume.h"
 #include "carving/decisions.h"
+#include "carving/kernels/read_decisions.h"
 #include "carving/layer_item.h"
 #include "carving/search_disc.h"
 #include "carving/sweep_bands.h"
@@ -106,7 +107,7 @@ class Sweeper {
     const std::vector<Band> bands = make_bands(grid[u], grid[v]);
     maps_.clear();
     passed_.fill(0);
-    std::vector<shaders::Decision> decisions;
+    std::vector<Decision> decisions;
     for (int slab = 0; slab < grid[direction.axis]; ++slab) {
       progress.check_cancelled();
       parameters_.bricks = glm::ivec4(grid, 0);
@@ -116,14 +117,8 @@ class Sweeper {
         for (BandWork& part : work) judge_layer(layer, part);
         for (BandWork& part : work) hide_behind(part);
       }
-      for (const BandWork& part : work) {
-        const auto header = part.decided.buffer.download<std::uint32_t>(2);
-        counts_.judged += header[1];
-        const std::size_t first = decisions.size();
-        decisions.resize(first + header[0]);
-        part.decided.buffer.read(16, header[0] * sizeof(shaders::Decision),
-                                 decisions.data() + first);
-      }
+      for (const BandWork& part : work)
+        counts_.judged += read_decisions(part.decided.buffer, decisions);
     }
     return apply(decisions);
   }
@@ -139,12 +134,12 @@ class Sweeper {
     return out;
   }
 
-  std::int64_t apply(const std::vector<shaders::Decision>& decisions) {
+  std::int64_t apply(const std::vector<Decision>& decisions) {
     const std::vector<ivec3> carved =
         apply_decisions(bits_, direction_.axis, direction_.sign, decisions);
-    for (const shaders::Decision& d : decisions) {
-      counts_.undecided += d.scores.z == shaders::kUnseen;
-      counts_.reverted += d.scores.z == shaders::kUndecided;
+    for (const Decision& d : decisions) {
+      counts_.undecided += d.outcome == Outcome::kUnseen;
+      counts_.reverted += d.outcome == Outcome::kUndecided;
     }
     counts_.carved += std::int64_t(carved.size());
     occupancy_ = Buffer::of(bits_.words);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "carving/kernels/read_decisions.h"
+
 namespace photohull::carving::test_kernels {
 namespace {
 
@@ -148,9 +150,9 @@ std::vector<std::uint8_t> SweepKernels::on_path() const {
   return out;
 }
 
-std::vector<shaders::Decision> SweepKernels::decisions() const {
-  std::vector<shaders::Decision> out(decisions_.download<std::uint32_t>(1)[0]);
-  decisions_.read(16, out.size() * sizeof(shaders::Decision), out.data());
+std::vector<Decision> SweepKernels::decisions() const {
+  std::vector<Decision> out;
+  read_decisions(decisions_, out);
   return out;
 }
 

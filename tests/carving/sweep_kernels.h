@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "carving/bit_volume.h"
+#include "carving/decisions.h"
 #include "carving/photo_reference.h"
 #include "gpu/buffer.h"
 #include "gpu/context.h"
@@ -48,7 +49,7 @@ class SweepKernels {
   const gpu::Buffer& views() const { return views_; }
   /// Is a path open, for every column of the grid?
   std::vector<std::uint8_t> on_path() const;
-  std::vector<shaders::Decision> decisions() const;
+  std::vector<Decision> decisions() const;
   std::vector<glm::ivec3> occluders() const;
   std::uint32_t judged_count() const;
 
