@@ -2,10 +2,12 @@
 #extension GL_GOOGLE_include_directive : require
 // A bare texture-fetch loop: the device's raw sampling rate, for comparison with the sweep.
 #include "include/dispatch.glsl"
+#include "shared/sampling.h"
+#include "shared/view.h"
 
 layout(local_size_x = 64) in;
-layout(binding = 0) uniform sampler2DArray images;
-layout(std430, binding = 0) writeonly buffer Sums { vec4 sums[]; };
+layout(binding = kImagesUnit) uniform sampler2DArray images;
+layout(std430, binding = kFetchSumsBinding) writeonly buffer Sums { vec4 sums[]; };
 uniform int taps;
 uniform int layers;
 uniform float lod;

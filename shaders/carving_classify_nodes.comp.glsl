@@ -9,13 +9,13 @@
 #include "shared/hull.h"
 
 layout(local_size_x = 64) in;
-layout(std140, binding = 0) uniform Parameters { HullParameters parameters; };
-layout(std430, binding = 1) readonly buffer Nodes { ivec4 nodes[]; };  // xyz in own edges; w: level
-layout(std430, binding = 2) writeonly buffer Classes { uint classes[]; };
+layout(std140, binding = kHullParametersBinding) uniform Parameters { HullParameters parameters; };
+layout(std430, binding = kHullNodesBinding) readonly buffer Nodes { ivec4 nodes[]; };  // xyz in own edges; w: level
+layout(std430, binding = kHullClassesBinding) writeonly buffer Classes { uint classes[]; };
 // Per node: the views in which the silhouette may matter to its voxels.
-layout(std430, binding = 3) writeonly buffer Relevant { uint relevant[]; };
-layout(binding = 0) uniform sampler2DArray mask_pyramid;
-layout(binding = 1) uniform sampler2DArray silhouettes;  // signed pixels, positive outside
+layout(std430, binding = kHullRelevantBinding) writeonly buffer Relevant { uint relevant[]; };
+layout(binding = kMaskPyramidUnit) uniform sampler2DArray mask_pyramid;
+layout(binding = kNodeSilhouettesUnit) uniform sampler2DArray silhouettes;  // signed pixels, positive outside
 
 const float kBrickEdge = 8.0;
 

@@ -11,12 +11,12 @@
 #include "shared/hull.h"
 
 layout(local_size_x = 64) in;
-layout(std140, binding = 0) uniform Parameters { HullParameters parameters; };
-layout(std430, binding = 1) readonly buffer Bricks { ivec4 bricks[]; };  // w: not surely seen
-layout(std430, binding = 2) writeonly buffer Distances { float distances[]; };
+layout(std140, binding = kHullParametersBinding) uniform Parameters { HullParameters parameters; };
+layout(std430, binding = kHullBricksBinding) readonly buffer Bricks { ivec4 bricks[]; };  // w: not surely seen
+layout(std430, binding = kHullDistancesBinding) writeonly buffer Distances { float distances[]; };
 // Where each brick's list of views begins in this buffer (one more for the end), then the lists.
-layout(std430, binding = 3) readonly buffer Relevant { uint first_and_views[]; };
-layout(binding = 0) uniform sampler2DArray silhouettes;  // signed pixels, positive outside
+layout(std430, binding = kHullViewListsBinding) readonly buffer Relevant { uint first_and_views[]; };
+layout(binding = kBrickSilhouettesUnit) uniform sampler2DArray silhouettes;  // signed pixels, positive outside
 
 const float kNothing = -1e30;
 // Voxels by which a view's distance can differ between a block's centre and its voxels: half the

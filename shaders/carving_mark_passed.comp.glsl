@@ -6,9 +6,9 @@
 #include "include/layer.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 2) readonly buffer Table { uint table[]; };
-layout(std430, binding = 6) readonly buffer Occluders { uint occluder_count; uint pad3, pad4, pad5; ivec4 occluders[]; };
-layout(std430, binding = 13) buffer Passed { uint passed[]; };
+layout(std430, binding = kSweepTableBinding) readonly buffer Table { uint table[]; };
+layout(std430, binding = kOccludersBinding) readonly buffer Occluders { uint occluder_count; uint pad3, pad4, pad5; ivec4 occluders[]; };
+layout(std430, binding = kSweepPassedBinding) buffer Passed { uint passed[]; };
 
 void main() {
   if (invocation().x >= occluder_count) return;

@@ -30,7 +30,7 @@
 
 layout(local_size_x = 64) in;
 // Per selected column: x: score in [-1, 1]; y: views used; z: confidence; w: views that see it, by their shares
-layout(std430, binding = 7) writeonly buffer Scores { vec4 scores[]; };
+layout(std430, binding = kSweepScoresBinding) writeonly buffer Scores { vec4 scores[]; };
 
 void main() {
   uint index = invocation().x + uint(parameters.chunk.z);

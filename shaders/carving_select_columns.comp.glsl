@@ -8,10 +8,10 @@
 #include "include/occupancy.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(std430, binding = 4) readonly buffer Columns { Column columns[]; };
+layout(std430, binding = kSweepColumnsBinding) readonly buffer Columns { Column columns[]; };
 // Work for the next steps: x: item; yz: bits of its 64 columns.
-layout(std430, binding = 5) buffer Selected { uint selected_count; uint pad0, pad1, pad2; uvec4 selected[]; };
-layout(std430, binding = 6) buffer Occluders { uint occluder_count; uint pad3, pad4, pad5; ivec4 occluders[]; };
+layout(std430, binding = kSweepSelectedBinding) buffer Selected { uint selected_count; uint pad0, pad1, pad2; uvec4 selected[]; };
+layout(std430, binding = kOccludersBinding) buffer Occluders { uint occluder_count; uint pad3, pad4, pad5; ivec4 occluders[]; };
 
 shared uint column_bits[2];
 

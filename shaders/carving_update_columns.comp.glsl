@@ -12,11 +12,11 @@
 #include "include/selection.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 4) buffer Columns { Column columns[]; };
-layout(std430, binding = 6) buffer Occluders { uint occluder_count; uint pad3, pad4, pad5; ivec4 occluders[]; };
-layout(std430, binding = 7) readonly buffer Scores { vec4 scores[]; };
-layout(std430, binding = 10) buffer Active { uint active_bricks[]; };
-layout(std430, binding = 11) buffer Decisions { uint decision_count; uint judged; uint pad6, pad7; Decision decisions[]; };
+layout(std430, binding = kSweepColumnsBinding) buffer Columns { Column columns[]; };
+layout(std430, binding = kOccludersBinding) buffer Occluders { uint occluder_count; uint pad3, pad4, pad5; ivec4 occluders[]; };
+layout(std430, binding = kSweepScoresBinding) readonly buffer Scores { vec4 scores[]; };
+layout(std430, binding = kSweepActiveBinding) buffer Active { uint active_bricks[]; };
+layout(std430, binding = kSweepDecisionsBinding) buffer Decisions { uint decision_count; uint judged; uint pad6, pad7; Decision decisions[]; };
 
 const int kPeakLayers = 2;  // a peak is one when no better score follows within this many layers
 

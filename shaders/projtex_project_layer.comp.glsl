@@ -17,9 +17,9 @@
 #endif
 
 layout(local_size_x = 8, local_size_y = kMaxLayerViews) in;
-layout(std430, binding = 5) readonly buffer Selected { uint selected_count; uint pad0, pad1, pad2; uvec4 selected[]; };
-layout(std430, binding = 6) writeonly buffer Samples { vec4 samples[]; };
-layout(binding = 0) uniform sampler2DArray images;
+layout(std430, binding = kSweepSelectedBinding) readonly buffer Selected { uint selected_count; uint pad0, pad1, pad2; uvec4 selected[]; };
+layout(std430, binding = kSweepSamplesBinding) writeonly buffer Samples { vec4 samples[]; };
+layout(binding = kImagesUnit) uniform sampler2DArray images;
 
 void main() {
   uint entry = work_group().x, slot = gl_LocalInvocationID.y;

@@ -7,8 +7,8 @@
 #include "include/sample_image.glsl"
 
 layout(local_size_x = kSquareGroup) in;
-layout(std430, binding = 1) readonly buffer Squares { PlaneSquare squares[]; };
-layout(std430, binding = 2) writeonly buffer Samples { vec4 samples[]; };  // as resolve() has them
+layout(std430, binding = kSquaresBinding) readonly buffer Squares { PlaneSquare squares[]; };
+layout(std430, binding = kSquareSamplesBinding) writeonly buffer Samples { vec4 samples[]; };  // as resolve() has them
 uniform int count;
 
 void main() {

@@ -8,14 +8,13 @@
 #include "include/dispatch.glsl"
 #include "include/projection.glsl"
 #include "include/depth_map.glsl"
-#include "shared/bake.h"
 #include "shared/refine.h"
 
-layout(local_size_x = 64) in;  // kBakeGroup
-layout(std140, binding = 0) uniform Parameters { MatchParameters parameters; };
-layout(std430, binding = 1) readonly buffer Surfels { BakeVertex surfels[]; };
-layout(std430, binding = 2) writeonly buffer Choices { MatchChoice choices[]; };
-layout(std430, binding = 3) readonly buffer ViewLists { uint view_lists[]; };  // render::list_views
+layout(local_size_x = 64) in;  // kListedPoints
+layout(std140, binding = kChooseParametersBinding) uniform Parameters { ChooseParameters parameters; };
+layout(std430, binding = kChooseSurfelsBinding) readonly buffer Surfels { SurfacePoint surfels[]; };
+layout(std430, binding = kChooseChoicesBinding) writeonly buffer Choices { MatchChoice choices[]; };
+layout(std430, binding = kChooseViewListsBinding) readonly buffer ViewLists { uint view_lists[]; };  // render::list_views
 
 // The worthiest views in falling order of worth; 0 where there are fewer.
 float best_worth[kMatchCandidates];

@@ -8,15 +8,14 @@
 #include "include/dispatch.glsl"
 #include "include/projection.glsl"
 #include "include/patch.glsl"
-#include "shared/bake.h"
 #include "shared/refine.h"
 
-layout(local_size_x = 64) in;
-layout(std140, binding = 0) uniform Parameters { FitParameters parameters; };
-layout(std430, binding = 1) readonly buffer Surfels { BakeVertex surfels[]; };
-layout(std430, binding = 2) readonly buffer Choices { MatchChoice choices[]; };
-layout(std430, binding = 3) writeonly buffer Results { FitResult results[]; };
-layout(std430, binding = 4) readonly buffer Shapes { FitShape shapes[]; };
+layout(local_size_x = 64) in;  // kPatchGroup
+layout(std140, binding = kFitParametersBinding) uniform Parameters { FitParameters parameters; };
+layout(std430, binding = kFitSurfelsBinding) readonly buffer Surfels { SurfacePoint surfels[]; };
+layout(std430, binding = kFitChoicesBinding) readonly buffer Choices { MatchChoice choices[]; };
+layout(std430, binding = kFitResultsBinding) writeonly buffer Results { FitResult results[]; };
+layout(std430, binding = kFitShapesBinding) readonly buffer Shapes { FitShape shapes[]; };
 
 const float kValues = 3.0 * float(kTaps);
 // Variance of a derivative (per texel) over that of a value (the mean of two fetches) where both are

@@ -8,12 +8,12 @@
 #include "shared/label.h"
 
 layout(local_size_x = 64) in;
-layout(std140, binding = 0) uniform Parameters { LabelParameters parameters; };
+layout(std140, binding = kLabelParametersBinding) uniform Parameters { LabelParameters parameters; };
 // By brick: those beside it along +x, +y, +z, -x, -y, -z; negative where there is none.
-layout(std430, binding = 0) readonly buffer Neighbours { int neighbours[]; };
-layout(std430, binding = 1) readonly buffer Evidence { float evidence[]; };
-layout(std430, binding = 2) buffer Labels { vec2 labels[]; };  // x: label, y: extrapolated
-layout(std430, binding = 3) buffer Flow { vec4 flow[]; };      // xyz: to the next voxel of each axis
+layout(std430, binding = kLabelNeighboursBinding) readonly buffer Neighbours { int neighbours[]; };
+layout(std430, binding = kLabelEvidenceBinding) readonly buffer Evidence { float evidence[]; };
+layout(std430, binding = kLabelsBinding) buffer Labels { vec2 labels[]; };  // x: label, y: extrapolated
+layout(std430, binding = kLabelFlowBinding) buffer Flow { vec4 flow[]; };      // xyz: to the next voxel of each axis
 
 const ivec3 kStride = ivec3(64, 8, 1);
 

@@ -11,17 +11,16 @@
 #include "include/dispatch.glsl"
 #include "include/projection.glsl"
 #include "include/patch.glsl"
-#include "shared/bake.h"
 #include "shared/refine.h"
 
-layout(local_size_x = 64) in;
-layout(std140, binding = 0) uniform Parameters { MatchParameters parameters; };
-layout(std430, binding = 1) readonly buffer Surfels { BakeVertex surfels[]; };
-layout(std430, binding = 2) readonly buffer Choices { MatchChoice choices[]; };
-layout(std430, binding = 3) writeonly buffer Scores { float scores[]; };
-layout(std430, binding = 5) writeonly buffer Textures { float textures[]; };  // of the surfels, [0, 1]
+layout(local_size_x = 64) in;  // kPatchGroup
+layout(std140, binding = kMatchParametersBinding) uniform Parameters { MatchParameters parameters; };
+layout(std430, binding = kMatchSurfelsBinding) readonly buffer Surfels { MatchSurfel surfels[]; };
+layout(std430, binding = kMatchChoicesBinding) readonly buffer Choices { MatchChoice choices[]; };
+layout(std430, binding = kMatchScoresBinding) writeonly buffer Scores { float scores[]; };
+layout(std430, binding = kMatchTexturesBinding) writeonly buffer Textures { float textures[]; };  // of the surfels, [0, 1]
 #ifdef PATCH_BENT
-layout(std430, binding = 4) readonly buffer Bends { vec4 bends[]; };  // curvature along uu, uv, vv
+layout(std430, binding = kMatchBendsBinding) readonly buffer Bends { vec4 bends[]; };  // curvature along uu, uv, vv
 #endif
 
 void main() {
@@ -52,7 +51,7 @@ void main() {
   vec3 patch_of_reference[kTaps];
   vec3 sum = vec3(0.0);
   float squares = 0.0;
-  Footprint f = footprint(chosen[0], centre, u, w, normal);
+  PatchFootprint f = footprint(chosen[0], centre, u, w, normal);
   for (int k = 0; k < kTaps; ++k) {
     vec3 x = tap(f, k, bend);
     patch_of_reference[k] = x;

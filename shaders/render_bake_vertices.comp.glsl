@@ -9,12 +9,12 @@
 #include "include/depth_map.glsl"
 #include "shared/bake.h"
 
-layout(local_size_x = 64) in;  // kBakeGroup
-layout(std140, binding = 0) uniform Parameters { BakeParameters parameters; };
-layout(std430, binding = 1) readonly buffer Vertices { BakeVertex vertices[]; };
-layout(std430, binding = 2) writeonly buffer Baked { BakeResult baked[]; };
-layout(std430, binding = 3) readonly buffer ViewLists { uint view_lists[]; };  // render::list_views
-layout(binding = 0) uniform sampler2DArray images;
+layout(local_size_x = 64) in;  // kListedPoints
+layout(std140, binding = kBakeParametersBinding) uniform Parameters { BakeParameters parameters; };
+layout(std430, binding = kBakeVerticesBinding) readonly buffer Vertices { SurfacePoint vertices[]; };
+layout(std430, binding = kBakeResultsBinding) writeonly buffer Baked { BakeResult baked[]; };
+layout(std430, binding = kBakeViewListsBinding) readonly buffer ViewLists { uint view_lists[]; };  // render::list_views
+layout(binding = kImagesUnit) uniform sampler2DArray images;
 
 // The best views in falling order of weight; 0 where there are fewer.
 float best_weight[kMaxBakeViews];

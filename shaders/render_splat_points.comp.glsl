@@ -8,19 +8,19 @@
 #include "include/dispatch.glsl"
 #include "include/projection.glsl"
 #include "include/depth_map.glsl"
-#include "shared/bake.h"
+#include "shared/surface_points.h"
 
-layout(local_size_x = 64) in;
-layout(std140, binding = 0) uniform Parameters { BakeParameters parameters; };
-layout(std430, binding = 1) readonly buffer Points { BakeVertex points[]; };
+layout(local_size_x = 64) in;  // kSplatGroup
+layout(std140, binding = kSplatParametersBinding) uniform Parameters { SplatParameters parameters; };
+layout(std430, binding = kSplatPointsBinding) readonly buffer Points { SurfacePoint points[]; };
 
 void main() {
   GpuView view = views[work_group().y];
   DepthMapInfo info = depth_map_infos[work_group().y];
-  uint first = work_group().x * 64u * uint(kSplatRun) + gl_LocalInvocationID.x;
+  uint first = work_group().x * uint(kSplatGroup * kSplatRun) + gl_LocalInvocationID.x;
   uint last = uint(parameters.counts.x) - 1u;
   for (int run = 0; run < kSplatRun; ++run) {
-    uint i = min(first + uint(run) * 64u, last);  // drawing the last one twice does no harm
+    uint i = min(first + uint(run * kSplatGroup), last);  // drawing the last one twice does no harm
     vec3 position = points[i].position.xyz;
     vec3 p = project(view, position);
     vec2 pixel = p.xy / p.z;

@@ -7,8 +7,8 @@
 #include "include/visibility_map.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = 0) uniform sampler2DArray source;
-layout(rg32f, binding = 0) writeonly uniform image2DArray moments;
+layout(binding = kBlurSourceUnit) uniform sampler2DArray source;
+layout(rg32f, binding = kBlurMomentsUnit) writeonly uniform image2DArray moments;
 layout(location = 0) uniform ivec2 direction;
 
 vec2 moments_at(ivec3 texel) {

@@ -14,11 +14,11 @@
 #include "include/visibility_spans.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer Large { uint large_count; uint large[]; };
-layout(std430, binding = 1) buffer Depths { uint depth_bits[]; };  // a texel
-layout(std430, binding = 5) buffer Words { uint words[]; };        // a texel: ids, counts or where to write
-layout(std430, binding = 6) buffer List { uint list[]; };
-layout(std430, binding = 7) buffer ListRest { uint list_rest[]; };
+layout(std430, binding = kLargeTrianglesBinding) readonly buffer Large { uint large_count; uint large[]; };
+layout(std430, binding = kCoverDepthsBinding) buffer Depths { uint depth_bits[]; };  // a texel
+layout(std430, binding = kCoverWordsBinding) buffer Words { uint words[]; };        // a texel: ids, counts or where to write
+layout(std430, binding = kMapListBinding) buffer List { uint list[]; };
+layout(std430, binding = kMapListRestBinding) buffer ListRest { uint list_rest[]; };
 layout(location = 0) uniform int part;
 
 const int kLargeRows = 64;

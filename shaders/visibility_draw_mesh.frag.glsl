@@ -6,14 +6,14 @@
 layout(location = 0) in float linear_depth;
 layout(location = 0) out float depth;
 #if defined(DRAW_BRICKS)
-layout(std430, binding = 2) readonly buffer FaceBricks { uint face_bricks[]; };  // of pairs of triangles
+layout(std430, binding = kFaceBricksBinding) readonly buffer FaceBricks { uint face_bricks[]; };  // of pairs of triangles
 #define DRAW_IDS
 #endif
 #if defined(DRAW_IDS)
 layout(location = 1) out uint id;
 #endif
 #if defined(DRAW_SECOND)
-layout(binding = 0) uniform sampler2DArray nearest_depth;
+layout(binding = kFirstDepthUnit) uniform sampler2DArray nearest_depth;
 layout(location = 0) uniform int part;
 const float kSameDepth = 2e-6;  // relative: surfaces no farther apart are one
 #endif

@@ -9,7 +9,7 @@
 #include "include/visibility_links.glsl"
 
 layout(local_size_x = 1) in;
-layout(std430, binding = 1) writeonly buffer Links { uvec4 links; };
+layout(std430, binding = kLinksBinding) writeonly buffer Links { uvec4 links; };
 layout(location = 0) uniform ivec3 texel;  // z: partition
 
 void main() { links = links_of(texel.z, texel.xy); }

@@ -7,10 +7,10 @@
 #include "include/visibility_map.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(std430, binding = 2) readonly buffer Table { uint table[]; };
-layout(std430, binding = 3) readonly buffer Occupancy { uint occupancy[]; };
-layout(r32f, binding = 0) writeonly uniform image2DArray depths;
-layout(r32ui, binding = 1) writeonly uniform uimage2DArray ids;
+layout(std430, binding = kMarchTableBinding) readonly buffer Table { uint table[]; };
+layout(std430, binding = kMarchOccupancyBinding) readonly buffer Occupancy { uint occupancy[]; };
+layout(r32f, binding = kMarchDepthsUnit) writeonly uniform image2DArray depths;
+layout(r32ui, binding = kMarchIdsUnit) writeonly uniform uimage2DArray ids;
 layout(location = 0) uniform ivec3 bricks;       // of the grid
 layout(location = 1) uniform vec3 viewpoint;     // voxels, corner of voxel (0, 0, 0) at 0
 layout(location = 2) uniform vec3 ray_x;         // direction = X ray_x + Y ray_y + ray_1, voxels a

@@ -8,7 +8,7 @@
 #include "include/visibility_spans.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) buffer Large { uint large_count; uint large[]; };
+layout(std430, binding = kLargeTrianglesBinding) buffer Large { uint large_count; uint large[]; };
 layout(location = 0) uniform int part;
 
 const int kLargeRows = 64;

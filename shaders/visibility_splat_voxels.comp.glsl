@@ -7,7 +7,7 @@
 #include "include/depth_map.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 6) readonly buffer Occluders { uint occluder_count; uint pad3, pad4, pad5; ivec4 occluders[]; };
+layout(std430, binding = kOccludersBinding) readonly buffer Occluders { uint occluder_count; uint pad3, pad4, pad5; ivec4 occluders[]; };
 
 const float kHalfVoxel = 0.5;
 

@@ -6,8 +6,8 @@
 #include "include/visibility_test.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer Receivers { Receiver receivers[]; };
-layout(std430, binding = 1) writeonly buffer Fractions { float fractions[]; };
+layout(std430, binding = kReceiversBinding) readonly buffer Receivers { Receiver receivers[]; };
+layout(std430, binding = kFractionsBinding) writeonly buffer Fractions { float fractions[]; };
 layout(location = 0) uniform int count;
 
 void main() {

@@ -1,6 +1,6 @@
 // The photographs as samplers read them: linear light times coverage, and coverage; nothing beyond
 // the border. Means of such texels never mix background into an object.
-layout(binding = 0) uniform sampler2DArray images;
+layout(binding = kImagesUnit) uniform sampler2DArray images;
 
 const int kLastLevel = 6;
 const float kLeastWidth = 1.0 / 16.0;  // pixels, of the transition between two of them

@@ -1,11 +1,11 @@
 // Plain depth maps: for each camera the least linear depth (voxels) of what stands, as the bits of a
 // positive float: in one buffer for all cameras, or where that is larger than a storage block, with
 // DEPTH_MAPS_LAYERED, in the layers of an image.
-#include "shared/sweep.h"
+#include "shared/depth_map.h"
 
-layout(std430, binding = 8) readonly buffer DepthMapInfos { DepthMapInfo depth_map_infos[]; };
+layout(std430, binding = kDepthMapInfosBinding) readonly buffer DepthMapInfos { DepthMapInfo depth_map_infos[]; };
 #if defined(DEPTH_MAPS_LAYERED)
-layout(binding = 2, r32ui) uniform uimage2DArray depth_map_layers;
+layout(binding = kDepthMapLayersUnit, r32ui) uniform uimage2DArray depth_map_layers;
 
 uint depth_bits(DepthMapInfo info, ivec2 texel) {
   return imageLoad(depth_map_layers, ivec3(texel, info.size.z)).x;
@@ -15,7 +15,7 @@ void lower_depth(DepthMapInfo info, ivec2 texel, uint bits) {
   imageAtomicMin(depth_map_layers, ivec3(texel, info.size.z), bits);
 }
 #else
-layout(std430, binding = 9) buffer DepthMaps { uint depth_maps[]; };
+layout(std430, binding = kDepthMapsBinding) buffer DepthMaps { uint depth_maps[]; };
 
 uint depth_bits(DepthMapInfo info, ivec2 texel) {
   return depth_maps[info.size.z + texel.y * info.size.x + texel.x];

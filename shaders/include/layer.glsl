@@ -1,8 +1,8 @@
 // Addresses on a layer of the sweep, and who stands there.
 #include "shared/sweep.h"
 
-layout(std140, binding = 0) uniform Parameters { SweepParameters parameters; };
-layout(std430, binding = 1) readonly buffer Items { LayerItem items[]; };
+layout(std140, binding = kSweepParametersBinding) uniform Parameters { SweepParameters parameters; };
+layout(std430, binding = kSweepItemsBinding) readonly buffer Items { LayerItem items[]; };
 
 // Voxel coordinates (they may be fractional) of a position on a layer.
 vec3 layer_point(vec2 uv, float layer) {

@@ -1,6 +1,6 @@
 // Which voxels still stand: one bit a voxel in bricks of 16 words, in the order of voxel_offset.
-layout(std430, binding = 2) readonly buffer Table { uint table[]; };
-layout(std430, binding = 3) buffer Occupancy { uint occupancy[]; };
+layout(std430, binding = kSweepTableBinding) readonly buffer Table { uint table[]; };
+layout(std430, binding = kSweepOccupancyBinding) buffer Occupancy { uint occupancy[]; };
 
 bool on_grid(ivec3 voxel) {
   return all(greaterThanEqual(voxel, ivec3(0))) &&

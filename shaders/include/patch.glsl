@@ -17,22 +17,22 @@ vec2 place_of_tap(int k) {
   return vec2(float(kStride * k % kEdge - PATCH_RADIUS), float(kStride * k / kEdge - PATCH_RADIUS));
 }
 
-layout(binding = 0) uniform sampler2DArray images;
+layout(binding = kImagesUnit) uniform sampler2DArray images;
 
-struct Footprint {
+struct PatchFootprint {
   vec2 origin, du, dv;  // texture coordinates of the middle and steps between taps
   vec2 dn;              // step along the normal, texture coordinates a voxel
   float layer, lod;
 };
 
 // The mip level is that of the tap's area.
-Footprint footprint(int v, vec3 centre, vec3 u, vec3 w, vec3 normal) {
+PatchFootprint footprint(int v, vec3 centre, vec3 u, vec3 w, vec3 normal) {
   GpuView view = views[v];
   vec3 p = project(view, centre);
   vec2 pixel = p.xy / p.z;
   vec3 s = (view.row_s.xyz - pixel.x * view.row_q.xyz) / p.z, t = (view.row_t.xyz - pixel.y * view.row_q.xyz) / p.z;
   vec2 du = vec2(dot(s, u), dot(t, u)), dv = vec2(dot(s, w), dot(t, w));
-  Footprint f;
+  PatchFootprint f;
   f.lod = floor(max(0.5 * log2(abs(du.x * dv.y - du.y * dv.x)), 0.0) + 0.5);
   f.du = du * view.size.zw;
   f.dv = dv * view.size.zw;
@@ -44,7 +44,7 @@ Footprint footprint(int v, vec3 centre, vec3 u, vec3 w, vec3 normal) {
 
 // Square roots of linear light, which makes the noise even, centred so that products keep precision.
 // `bend`: the height over the plane is bend . (a^2, a b, b^2) voxels, a and b in steps between taps.
-vec3 tap(Footprint f, int k, vec3 bend) {
+vec3 tap(PatchFootprint f, int k, vec3 bend) {
   vec2 place = place_of_tap(k);
   vec2 at = f.origin + place.x * f.du + place.y * f.dv;
 #ifdef PATCH_BENT

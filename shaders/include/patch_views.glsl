@@ -1,7 +1,7 @@
 // The patches around a voxel on the reference plane as the sweep's views show them: square roots of
 // linear light, which makes the noise even. Statistics of consistency read them here and give a
 // Consistency.
-layout(std430, binding = 6) readonly buffer Samples { vec4 samples[]; };
+layout(std430, binding = kSweepSamplesBinding) readonly buffer Samples { vec4 samples[]; };
 
 #include "include/search_disc.glsl"
 

@@ -1,7 +1,7 @@
 // Projective texture mapping of one point (Segal et al. 1992).
 #include "shared/view.h"
 
-layout(std430, binding = 0) readonly buffer Views { GpuView views[]; };
+layout(std430, binding = kViewsBinding) readonly buffer Views { GpuView views[]; };
 
 // Homogeneous texture coordinates (s, t, q) of a point in voxel coordinates.
 vec3 project(GpuView view, vec3 voxel) {

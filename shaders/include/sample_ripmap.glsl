@@ -2,7 +2,7 @@
 // moments; linear between texels and between levels. Level (i, j), the image averaged over 2^i x 2^j
 // pixels, lies in the atlas at the offset 2 size (1 - 2^-i), 2 size (1 - 2^-j).
 // Reference: projtex::reference::sample_footprint.
-layout(binding = 1) uniform sampler2DArray ripmaps;
+layout(binding = kImageRipmapsUnit) uniform sampler2DArray ripmaps;
 
 vec4 rip_texel(Footprint f, ivec2 at, ivec2 level) {
   ivec2 full = textureSize(images, 0).xy, size = full >> level;

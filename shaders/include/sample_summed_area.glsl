@@ -1,7 +1,7 @@
 // Summed-area table [Crow84]: the exact integral over an upright rectangle with the footprint's second
 // moments. Entries are sums of 16-bit values modulo 2^32, so that differences lose nothing, however
 // far they are from the corner. Reference: projtex::reference::sample_footprint.
-layout(binding = 1) uniform usampler2DArray sums;
+layout(binding = kImageSumsUnit) uniform usampler2DArray sums;
 uniform float sum_unit;  // linear light of one unit
 
 const float kWidestBox = 128.0;  // pixels: its sum fits 32 bits

@@ -1,6 +1,6 @@
 // The columns that a layer's steps work on, packed: software devices run whole vectors of threads.
-layout(std430, binding = 5) readonly buffer Selected { uint selected_count; uint selected_pad[3]; uvec4 selected[]; };
-layout(std430, binding = 12) readonly buffer SelectedColumns { uint selected_columns[]; };
+layout(std430, binding = kSweepSelectedBinding) readonly buffer Selected { uint selected_count; uint selected_pad[3]; uvec4 selected[]; };
+layout(std430, binding = kSweepSelectedColumnsBinding) readonly buffer SelectedColumns { uint selected_columns[]; };
 
 struct Selection {
   uint entry;   // which selected brick

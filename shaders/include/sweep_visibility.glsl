@@ -4,8 +4,8 @@
 #include "include/depth_map.glsl"
 
 #if defined(SWEEP_RAYS)
-layout(std430, binding = 2) readonly buffer Table { uint table[]; };
-layout(std430, binding = 13) readonly buffer Passed { uint passed[]; };  // one bit a voxel, as Occupancy
+layout(std430, binding = kSweepTableBinding) readonly buffer Table { uint table[]; };
+layout(std430, binding = kSweepPassedBinding) readonly buffer Passed { uint passed[]; };  // one bit a voxel, as Occupancy
 
 bool is_passed(ivec3 voxel) {
   ivec3 b = voxel >> 3, l = voxel & 7;

@@ -1,9 +1,9 @@
 // Coverage without loss: every triangle that can be seen in a texel is in its list, so that the test is
 // exact ray casting. Reference: visibility::reference::Map::exact.
-layout(std430, binding = 5) readonly buffer ListEnds { uint list_starts[]; };  // a texel, and the end
-layout(std430, binding = 6) readonly buffer List { uint list[]; };
+layout(std430, binding = kMapListEndsBinding) readonly buffer ListEnds { uint list_starts[]; };  // a texel, and the end
+layout(std430, binding = kMapListBinding) readonly buffer List { uint list[]; };
 #if defined(LISTS_IN_TWO_BLOCKS)
-layout(std430, binding = 7) readonly buffer ListRest { uint list_rest[]; };
+layout(std430, binding = kMapListRestBinding) readonly buffer ListRest { uint list_rest[]; };
 
 uint listed(uint i) { return i < map_info.lists.x ? list[i] : list_rest[i - map_info.lists.x]; }
 #else

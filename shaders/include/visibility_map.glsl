@@ -1,7 +1,7 @@
 // Where points lie on a visibility map (shared/visibility.h).
 #include "shared/visibility.h"
 
-layout(std140, binding = 1) uniform Info { MapInfo map_info; };
+layout(std140, binding = kMapInfoBinding) uniform Info { MapInfo map_info; };
 
 struct MapPoint {
   vec2 at;  // texels

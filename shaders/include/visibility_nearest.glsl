@@ -1,5 +1,5 @@
 // The nearest triangle of each texel, as sub-pixel maps keep it.
-layout(std430, binding = 5) readonly buffer Nearest { uint nearest_triangles[]; };
+layout(std430, binding = kMapListEndsBinding) readonly buffer Nearest { uint nearest_triangles[]; };
 
 int index_of(int part, ivec2 texel) { return (part * map_info.size.y + texel.y) * map_info.size.x + texel.x; }
 

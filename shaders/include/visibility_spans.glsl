@@ -1,6 +1,6 @@
 // Conservative rasterisation in a compute shader: which texels of a row a triangle touches, exactly.
-layout(std430, binding = 2) readonly buffer Positions { float positions[]; };
-layout(std430, binding = 3) readonly buffer Indices { uint indices[]; };
+layout(std430, binding = kMeshPositionsBinding) readonly buffer Positions { float positions[]; };
+layout(std430, binding = kMeshIndicesBinding) readonly buffer Indices { uint indices[]; };
 
 struct MapPolygon {
   vec2 at[4];

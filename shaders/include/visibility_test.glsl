@@ -4,10 +4,10 @@
 #include "include/visibility_receiver_plane.glsl"
 #include "include/visibility_triangle.glsl"
 
-layout(binding = 0) uniform sampler2DArray first_depth;
-layout(binding = 1) uniform sampler2DArray second_depth;
-layout(binding = 2) uniform usampler2DArray nearest_ids;
-layout(binding = 3) uniform sampler2DArray depth_moments;
+layout(binding = kFirstDepthUnit) uniform sampler2DArray first_depth;
+layout(binding = kSecondDepthUnit) uniform sampler2DArray second_depth;
+layout(binding = kNearestIdsUnit) uniform usampler2DArray nearest_ids;
+layout(binding = kDepthMomentsUnit) uniform sampler2DArray depth_moments;
 
 #if defined(DETAIL_SUB_PIXEL) || defined(DETAIL_COVERAGE)
 #include "include/visibility_nearest.glsl"

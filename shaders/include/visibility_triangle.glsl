@@ -1,5 +1,5 @@
 // Triangles on a visibility map: containment and depth at any position, so finer than texels.
-layout(std430, binding = 4) buffer MapTriangles { MapTriangle map_triangles[]; };  // of each part in turn
+layout(std430, binding = kMapTrianglesBinding) buffer MapTriangles { MapTriangle map_triangles[]; };  // of each part in turn
 
 MapTriangle triangle_of(int part, uint triangle) {
   return map_triangles[part * map_info.size.w + int(triangle)];

@@ -2,6 +2,8 @@
 #ifndef PHOTOHULL_SHADERS_BAKE_H
 #define PHOTOHULL_SHADERS_BAKE_H
 
+#include "shared/surface_points.h"
+
 #ifdef __cplusplus
 #include <glm/glm.hpp>
 namespace photohull::shaders {
@@ -11,25 +13,22 @@ using glm::vec4;
 #define constexpr const
 #endif
 
-constexpr int kBakeGroup = 64;              // vertices of a work group
-constexpr int kSplatRun = 16;               // points that a thread draws into a depth map
+constexpr int kBakeParametersBinding = 0;
+constexpr int kBakeVerticesBinding = 1;   // SurfacePoint
+constexpr int kBakeResultsBinding = 2;
+constexpr int kBakeViewListsBinding = 3;  // of render::list_views
+
 constexpr int kMaxBakeViews = 6;            // views whose colours are mixed, the best ones
 constexpr float kBakeMinCosine = 0.2f;      // views flatter than this to the surface say nothing
 constexpr float kBakeShift = 1.5f;          // voxels along the normal, to where visibility is tested
 constexpr float kBakeDepthBias = 2.5f;      // voxels
 constexpr float kBakeTexel = 2.0f;          // voxels that a depth map's texel is wide
-constexpr float kSplatReach = 6.0f;         // texels: half the width of a near voxel in a depth map, at most
 constexpr float kBakeMinAlpha = 0.5f;       // below: the image knows nothing there
 constexpr int kBakeDetailLevels = 2;        // mip levels from a colour to its surroundings
 
 struct BakeParameters {
   ivec4 counts;  // x: vertices, y: views
   vec4 noise;    // x: standard deviation of the image noise, square-root encoding
-};
-
-struct BakeVertex {
-  vec4 position;  // xyz: voxel coordinates
-  vec4 normal;    // xyz: unit and outward, or zero where unknown
 };
 
 struct BakeResult {
@@ -39,7 +38,6 @@ struct BakeResult {
 
 #ifdef __cplusplus
 static_assert(sizeof(BakeParameters) == 32);
-static_assert(sizeof(BakeVertex) == 32);
 static_assert(sizeof(BakeResult) == 32);
 }  // namespace photohull::shaders
 #endif

@@ -12,6 +12,17 @@ using glm::vec4;
 #define constexpr const
 #endif
 
+constexpr int kHullParametersBinding = 0;
+constexpr int kHullNodesBinding = 1;      // of the classification
+constexpr int kHullClassesBinding = 2;
+constexpr int kHullRelevantBinding = 3;   // bits of the views that matter to each node
+constexpr int kMaskPyramidUnit = 0;
+constexpr int kNodeSilhouettesUnit = 1;
+constexpr int kHullBricksBinding = 1;     // of the distances
+constexpr int kHullDistancesBinding = 2;
+constexpr int kHullViewListsBinding = 3;  // of the views that matter to each brick
+constexpr int kBrickSilhouettesUnit = 0;
+
 constexpr uint kNodeOutside = 0u;
 constexpr uint kNodeInside = 1u;
 constexpr uint kNodeSurface = 2u;

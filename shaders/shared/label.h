@@ -11,6 +11,12 @@ using glm::vec4;
 #define constexpr const
 #endif
 
+constexpr int kLabelParametersBinding = 0;
+constexpr int kLabelNeighboursBinding = 0;
+constexpr int kLabelEvidenceBinding = 1;
+constexpr int kLabelsBinding = 2;
+constexpr int kLabelFlowBinding = 3;
+
 struct LabelParameters {
   ivec4 counts;  // x: voxels
   vec4 weights;  // x: rate of the steps

@@ -2,6 +2,8 @@
 #ifndef PHOTOHULL_SHADERS_REFINE_H
 #define PHOTOHULL_SHADERS_REFINE_H
 
+#include "shared/surface_points.h"
+
 #ifdef __cplusplus
 #include <glm/glm.hpp>
 namespace photohull::shaders {
@@ -11,6 +13,24 @@ using glm::vec4;
 #define constexpr const
 #endif
 
+constexpr int kChooseParametersBinding = 0;
+constexpr int kChooseSurfelsBinding = 1;    // SurfacePoint
+constexpr int kChooseChoicesBinding = 2;    // MatchChoice
+constexpr int kChooseViewListsBinding = 3;  // of render::list_views
+constexpr int kMatchParametersBinding = 0;
+constexpr int kMatchSurfelsBinding = 1;     // MatchSurfel
+constexpr int kMatchChoicesBinding = 2;     // MatchChoice
+constexpr int kMatchScoresBinding = 3;
+constexpr int kMatchBendsBinding = 4;       // curvature along uu, uv, vv of patch_axes
+constexpr int kMatchTexturesBinding = 5;
+constexpr int kFitParametersBinding = 0;
+constexpr int kFitSurfelsBinding = 1;       // SurfacePoint
+constexpr int kFitChoicesBinding = 2;       // MatchChoice
+constexpr int kFitResultsBinding = 3;
+constexpr int kFitShapesBinding = 4;
+
+constexpr int kPatchGroup = 64;       // threads of a work group that match or fit
+
 constexpr int kMatchViews = 6;        // the reference view and those compared with it
 constexpr int kMatchCandidates = 16;  // views, the worthiest ones, that the choice is made among
 constexpr int kMatchRadius = 2;  // taps: every other place of 5 x 5 in the tangent plane
@@ -18,16 +38,25 @@ constexpr int kMatchTaps = 13;
 constexpr int kHiddenViews = 4;  // views that face a surfel and whose sight something blocks
 constexpr float kNoScore = -2.0f;  // too few views to compare
 
-struct MatchParameters {
-  ivec4 counts;      // x: surfels, y: views, z: offsets
-  vec4 search;       // x: first offset along the normal, y: step between offsets; patch spacing is
-                     // at least z voxels and w pixels of the reference
-  vec4 consistency;  // x: variance of image noise (square-root encoding), y: share of pairs that count,
-                     // z: variance that raises that of patches in their correlation
+struct ChooseParameters {
+  ivec4 counts;      // x: surfels, y: views
   vec4 visibility;   // x: shift of the receiver along the normal, y: bias of the depth test,
                      // z: least cosine between a normal and a camera it is matched in, w: one that sees it
   vec4 angles;       // x, y: cosines of the least and the largest angle to the reference,
                      // z: cosine of the angle below which two views are near-duplicates
+};
+
+struct MatchParameters {
+  ivec4 counts;      // x: surfels, z: offsets
+  vec4 search;       // x: first offset along the normal, y: step between offsets; patch spacing is
+                     // at least z voxels and w pixels of the reference
+  vec4 consistency;  // x: variance of image noise (square-root encoding), y: share of pairs that count,
+                     // z: variance that raises that of patches in their correlation
+};
+
+struct MatchSurfel {
+  vec4 position;  // xyz: voxel coordinates; w: what its offsets are multiplied with
+  vec4 normal;    // xyz: unit and outward
 };
 
 struct MatchChoice {
@@ -60,7 +89,9 @@ struct FitResult {
 static_assert(sizeof(FitParameters) == 48);
 static_assert(sizeof(FitShape) == 16);
 static_assert(sizeof(FitResult) == 32);
-static_assert(sizeof(MatchParameters) == 80);
+static_assert(sizeof(ChooseParameters) == 48);
+static_assert(sizeof(MatchParameters) == 48);
+static_assert(sizeof(MatchSurfel) == 32);
 static_assert(sizeof(MatchChoice) == 48);
 }  // namespace photohull::shaders
 #endif

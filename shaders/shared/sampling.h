@@ -10,6 +10,12 @@ using glm::vec4;
 #define constexpr const
 #endif
 
+constexpr int kSquaresBinding = 1;        // PlaneSquare
+constexpr int kSquareSamplesBinding = 2;
+constexpr int kFetchSumsBinding = 0;      // of the bare loop of fetches
+constexpr int kImageSumsUnit = 1;         // what a sampler reads beside the photographs: sums over
+constexpr int kImageRipmapsUnit = 1;      // rectangles, or levels of their own along x and y
+
 constexpr int kSquareGroup = 64;        // squares of a work group
 constexpr float kLeastCoverage = 0.125f;  // share of a footprint that must be on the object's image
 

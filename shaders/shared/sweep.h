@@ -3,6 +3,8 @@
 #ifndef PHOTOHULL_SHADERS_SWEEP_H
 #define PHOTOHULL_SHADERS_SWEEP_H
 
+#include "shared/depth_map.h"
+
 #ifdef __cplusplus
 #include <glm/glm.hpp>
 namespace photohull::shaders {
@@ -13,6 +15,20 @@ using glm::vec4;
 #elif !defined(constexpr)
 #define constexpr const
 #endif
+
+// Of all steps of a layer; cameras are at kViewsBinding, depth maps where shared/depth_map.h says.
+constexpr int kSweepParametersBinding = 0;
+constexpr int kSweepItemsBinding = 1;           // LayerItem
+constexpr int kSweepTableBinding = 2;           // bricks of the bits
+constexpr int kSweepOccupancyBinding = 3;       // which voxels stand, one bit each
+constexpr int kSweepColumnsBinding = 4;         // Column
+constexpr int kSweepSelectedBinding = 5;        // bricks with columns to judge
+constexpr int kSweepSamplesBinding = 6;         // colours on the layer; not together with kOccludersBinding
+constexpr int kSweepScoresBinding = 7;
+constexpr int kSweepActiveBinding = 10;         // bricks that a sweep has to look at
+constexpr int kSweepDecisionsBinding = 11;      // Decision
+constexpr int kSweepSelectedColumnsBinding = 12;
+constexpr int kSweepPassedBinding = 13;         // voxels that hide what the sweep comes to, one bit each
 
 constexpr int kMaxLayerViews = 8;  // views projected onto one brick's part of a layer
 constexpr int kPatchRadius = 2;     // voxels: patches of 5 x 5 on the reference plane
@@ -52,17 +68,11 @@ struct Decision {
   vec4 scores;        // x: score at the bare voxel; y: best score; z: outcome (kKept, ...)
 };
 
-struct DepthMapInfo {
-  ivec4 size;   // x, y: texels; z: first texel in the buffer, or layer of the image; w: view
-  vec4 scale;   // x: texels per pixel
-};
-
 #ifdef __cplusplus
 static_assert(sizeof(SweepParameters) == 96);
 static_assert(sizeof(LayerItem) == 48);
 static_assert(sizeof(Column) == 32);
 static_assert(sizeof(Decision) == 32);
-static_assert(sizeof(DepthMapInfo) == 32);
 }  // namespace photohull::shaders
 #endif
 

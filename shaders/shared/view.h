@@ -7,7 +7,12 @@
 #include <glm/glm.hpp>
 namespace photohull::shaders {
 using glm::vec4;
+#elif !defined(constexpr)
+#define constexpr const
 #endif
+
+constexpr int kViewsBinding = 0;  // GpuView, one a camera
+constexpr int kImagesUnit = 0;    // array texture of the photographs
 
 struct GpuView {
   vec4 row_s;   // homogeneous texture coordinates: (s, t, q) = rows . (voxel coordinate, 1);

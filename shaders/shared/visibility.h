@@ -15,6 +15,34 @@ using glm::vec4;
 #define constexpr const
 #endif
 
+// What maps are asked by.
+constexpr int kMapInfoBinding = 1;
+constexpr int kMapTrianglesBinding = 4;  // MapTriangle, of each partition in turn
+constexpr int kMapListEndsBinding = 5;   // a texel: where its list of triangles begins, or its nearest one
+constexpr int kMapListBinding = 6;
+constexpr int kMapListRestBinding = 7;   // what goes beyond a storage block
+constexpr int kFirstDepthUnit = 0;
+constexpr int kSecondDepthUnit = 1;
+constexpr int kNearestIdsUnit = 2;
+constexpr int kDepthMomentsUnit = 3;
+constexpr int kReceiversBinding = 0;     // Receiver
+constexpr int kFractionsBinding = 1;
+constexpr int kLinksBinding = 1;         // of the kernel that lists the triangles of a texel
+
+// What maps are drawn by.
+constexpr int kFaceBricksBinding = 2;       // the brick of each pair of triangles
+constexpr int kMarchTableBinding = 2;       // bricks of a volume
+constexpr int kMarchOccupancyBinding = 3;   // its voxels, one bit each
+constexpr int kMarchDepthsUnit = 0;
+constexpr int kMarchIdsUnit = 1;
+constexpr int kBlurSourceUnit = 0;
+constexpr int kBlurMomentsUnit = 0;
+constexpr int kLargeTrianglesBinding = 0;   // those that a work group takes
+constexpr int kCoverDepthsBinding = 1;      // a texel
+constexpr int kMeshPositionsBinding = 2;
+constexpr int kMeshIndicesBinding = 3;
+constexpr int kCoverWordsBinding = 5;       // a texel: its triangle, their number, or where to write
+
 constexpr int kMaxMapParts = 4;     // partitions in depth
 constexpr int kMaxLinks = 4;        // triangles that coverage detection links to a texel
 constexpr uint kNoTriangle = 0xffffffffu;

@@ -86,11 +86,11 @@ std::vector<T> some(const std::vector<T>& list, std::size_t most) {
   return result;
 }
 
-class Refiner {
+class CameraRefiner {
  public:
   /// `given`: what the result is compared with, and held near to; `start`: where it begins.
-  Refiner(std::span<const View> views, Cameras given, Cameras start,
-          const RefineCamerasOptions& options, std::vector<Track> tracks, Progress& progress)
+  CameraRefiner(std::span<const View> views, Cameras given, Cameras start,
+                const RefineCamerasOptions& options, std::vector<Track> tracks, Progress& progress)
       : options_(options),
         progress_(progress),
         given_(std::move(given)),
@@ -380,13 +380,14 @@ CameraRefinement refine_cameras(std::span<const View> views, const RefineCameras
     patches = hull_patches(given, views, images, *options.box, progress);
   }
   CameraRefinement result =
-      Refiner(views, given, given, options, joined(features, patches), progress).run();
+      CameraRefiner(views, given, given, options, joined(features, patches), progress).run();
   if (with_patches && result.changed) {
     // Better cameras cut a better hull, whose patches are found in more places.
     const std::vector<Track> again =
         hull_patches(result.cameras, views, images, *options.box, progress);
     CameraRefinement second =
-        Refiner(views, given, result.cameras, options, joined(features, again), progress).run();
+        CameraRefiner(views, given, result.cameras, options, joined(features, again), progress)
+            .run();
     if (second.changed) {
       second.rounds += result.rounds;
       second.focal_factor *= result.focal_factor;

@@ -8,17 +8,14 @@ namespace photohull::carving {
 namespace {
 
 using glm::ivec3;
-using shaders::Decision;
-
 constexpr int kRadius = 2;      // columns around one that have a say: 24 neighbours
 constexpr int kSlope = 2;       // layers a surface may climb from column to column
 constexpr int kSupport = 8;     // neighbours that make an outcome trusted
 constexpr int kLonely = 3;      // a kept voxel with fewer can be overruled
 constexpr int kConsensus = 12;  // trusted neighbours that overrule
 
-int outcome(const Decision& d) { return int(d.scores.z); }
 bool has_surface(const Decision& d) {
-  return outcome(d) == shaders::kKept || outcome(d) == shaders::kBetter;
+  return d.outcome == Outcome::kKept || d.outcome == Outcome::kBetter;
 }
 
 /// Decisions by column, sorted along it.
@@ -28,7 +25,7 @@ class ColumnMap {
       : width_(width), height_(height), first_(std::size_t(width) * height + 1) {
     sorted_.assign(decisions.begin(), decisions.end());
     std::sort(sorted_.begin(), sorted_.end(), [&](const Decision& a, const Decision& b) {
-      return std::pair(index(a), a.place.z) < std::pair(index(b), b.place.z);
+      return std::pair(index(a), a.bare) < std::pair(index(b), b.bare);
     });
     for (const Decision& d : sorted_) ++first_[index(d) + 1];
     for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
@@ -40,7 +37,7 @@ class ColumnMap {
   void neighbours(const Decision& d, F&& f) const {
     for (int dv = -kRadius; dv <= kRadius; ++dv)
       for (int du = -kRadius; du <= kRadius; ++du) {
-        const int u = d.place.x + du, v = d.place.y + dv;
+        const int u = d.column.x + du, v = d.column.y + dv;
         if ((du == 0 && dv == 0) || u < 0 || v < 0 || u >= width_ || v >= height_) continue;
         const std::size_t column = std::size_t(v) * width_ + u;
         for (std::size_t i = first_[column]; i < first_[column + 1]; ++i)
@@ -49,7 +46,9 @@ class ColumnMap {
   }
 
  private:
-  std::size_t index(const Decision& d) const { return std::size_t(d.place.y) * width_ + d.place.x; }
+  std::size_t index(const Decision& d) const {
+    return std::size_t(d.column.y) * width_ + d.column.x;
+  }
   int width_, height_;
   std::vector<std::size_t> first_;
   std::vector<Decision> sorted_;
@@ -62,11 +61,11 @@ int median(std::vector<int>& values) {
 
 /// Surfaces around that continue this one, and its own: their layers.
 std::vector<int> supporting_layers(const ColumnMap& map, const Decision& d) {
-  std::vector<int> layers{d.place.w};
+  std::vector<int> layers{d.surface};
   map.neighbours(d, [&](std::size_t i, int distance) {
     const Decision& other = map.all()[i];
-    if (has_surface(other) && std::abs(other.place.w - d.place.w) <= kSlope * distance)
-      layers.push_back(other.place.w);
+    if (has_surface(other) && std::abs(other.surface - d.surface) <= kSlope * distance)
+      layers.push_back(other.surface);
   });
   return layers;
 }
@@ -78,11 +77,11 @@ int consensus_layer(const ColumnMap& map, const std::vector<std::uint8_t>& trust
   std::vector<int> layers;
   map.neighbours(d, [&](std::size_t i, int distance) {
     const Decision& other = map.all()[i];
-    if (trusted[i] && std::abs(other.place.z - d.place.z) <= kSlope * distance + 2)
-      layers.push_back(other.place.w);
+    if (trusted[i] && std::abs(other.bare - d.bare) <= kSlope * distance + 2)
+      layers.push_back(other.surface);
   });
-  if (int(layers.size()) < kConsensus) return d.place.z;
-  return std::max(median(layers), d.place.z);
+  if (int(layers.size()) < kConsensus) return d.bare;
+  return std::max(median(layers), d.bare);
 }
 
 }  // namespace
@@ -105,18 +104,18 @@ std::vector<ivec3> apply_decisions(BitVolume& bits, int axis, int sign,
   std::vector<ivec3> carved;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Decision& d = all[i];
-    int end = d.place.z;
+    int end = d.bare;
     // What is consistent where it is bare stays, unless it stands alone.
-    const bool open = outcome(d) == shaders::kUndecided || outcome(d) == shaders::kBetter ||
-                      (outcome(d) == shaders::kKept && support[i] < kLonely);
-    if (trusted[i] && outcome(d) == shaders::kBetter)
+    const bool open = d.outcome == Outcome::kUndecided || d.outcome == Outcome::kBetter ||
+                      (d.outcome == Outcome::kKept && support[i] < kLonely);
+    if (trusted[i] && d.outcome == Outcome::kBetter)
       end = surface[i];
     else if (open && !trusted[i])
       end = consensus_layer(map, trusted, d);
-    for (int layer = d.place.z; layer < end; ++layer) {
+    for (int layer = d.bare; layer < end; ++layer) {
       ivec3 voxel;
-      voxel[u] = d.place.x;
-      voxel[v] = d.place.y;
+      voxel[u] = d.column.x;
+      voxel[v] = d.column.y;
       voxel[axis] = sign > 0 ? layer : size[axis] - 1 - layer;
       if (!bits.standing(voxel)) continue;
       bits.clear(voxel);

@@ -94,8 +94,8 @@ class HullCarver {
         views_(int(cameras.size())),
         words_((views_ + 31) / 32),
         device_(upload(grid, cameras, silhouettes)),
-        classify_(gpu::Program::compute("carving_classify_nodes.comp.glsl")),
-        distance_(gpu::Program::compute("carving_hull_distance.comp.glsl")) {
+        classify_(gpu::Program::compute(context, "carving_classify_nodes.comp.glsl")),
+        distance_(gpu::Program::compute(context, "carving_hull_distance.comp.glsl")) {
     const auto to_voxels = [&](const glm::dvec3& p) {
       return glm::vec4(glm::vec3((p - grid.origin) / grid.voxel_size), 0);
     };
@@ -178,11 +178,11 @@ class HullCarver {
     parameters_.counts.x = int(count);
     Buffer parameters(sizeof parameters_, &parameters_);
     bind(parameters);
-    device_.distances.bind(0);
-    bricks.bind_storage(1);
-    distances.bind_storage(2);
-    relevant.bind_storage(3);
-    distance_.dispatch(context_, "carving_hull_distance", count);
+    device_.distances.bind(shaders::kBrickSilhouettesUnit);
+    bricks.bind_storage(shaders::kHullBricksBinding);
+    distances.bind_storage(shaders::kHullDistancesBinding);
+    relevant.bind_storage(shaders::kHullViewListsBinding);
+    distance_->dispatch(context_, "carving_hull_distance", count);
     return distances.download<float>(count * kBrickVoxels);
   }
 
@@ -193,12 +193,12 @@ class HullCarver {
     parameters_.counts.x = int(nodes.size());
     Buffer parameters(sizeof parameters_, &parameters_);
     bind(parameters);
-    device_.pyramid.bind(0);
-    device_.distances.bind(1);
-    node_buffer.bind_storage(1);
-    classes.bind_storage(2);
-    relevant.bind_storage(3);
-    classify_.dispatch(context_, "carving_classify_nodes", gpu::group_count(nodes.size(), 64));
+    device_.pyramid.bind(shaders::kMaskPyramidUnit);
+    device_.distances.bind(shaders::kNodeSilhouettesUnit);
+    node_buffer.bind_storage(shaders::kHullNodesBinding);
+    classes.bind_storage(shaders::kHullClassesBinding);
+    relevant.bind_storage(shaders::kHullRelevantBinding);
+    classify_->dispatch(context_, "carving_classify_nodes", gpu::group_count(nodes.size(), 64));
     const auto kinds = classes.download<std::uint32_t>(nodes.size());
     const auto bits = relevant.download<std::uint32_t>(nodes.size() * words_);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -213,15 +213,15 @@ class HullCarver {
   }
 
   void bind(const Buffer& parameters) const {
-    parameters.bind_uniform(0);
-    device_.views.bind_storage(0);
+    parameters.bind_uniform(shaders::kHullParametersBinding);
+    device_.views.bind_storage(shaders::kViewsBinding);
   }
 
   gpu::Context& context_;
   GridSpec grid_;
   int views_, words_;
   DeviceSilhouettes device_;
-  gpu::Program classify_, distance_;
+  std::shared_ptr<const gpu::Program> classify_, distance_;
   shaders::HullParameters parameters_;
 };
 

@@ -349,7 +349,7 @@ MissingParts find_missing_parts(const Box& box, std::span<const Camera> cameras,
     tbb::parallel_for(std::size_t(0), seeds[v].size(), [&](std::size_t i) {
       if (!seeds[v][i].explained) found[v][i] = searcher.place(v, seeds[v][i]);
     });
-    ExplainedView& counts = result.views[v];
+    ForegroundCounts& counts = result.views[v];
     counts.looked_at = int(seeds[v].size());
     for (std::size_t i = 0; i < seeds[v].size(); ++i) {
       counts.unexplained += !seeds[v][i].explained;

@@ -39,7 +39,7 @@ struct MissingPart {
 };
 
 /// What became of the foreground of one view.
-struct ExplainedView {
+struct ForegroundCounts {
   int looked_at = 0;    ///< places of the foreground whose rays were searched
   int unexplained = 0;  ///< of these, with no point that all silhouettes bear
   int placed = 0;       ///< of the unexplained, given a place that most views bear
@@ -47,7 +47,7 @@ struct ExplainedView {
 
 struct MissingParts {
   std::vector<MissingPart> parts;
-  std::vector<ExplainedView> views;  ///< one for each camera; zeros where there is no silhouette
+  std::vector<ForegroundCounts> views;  ///< one for each camera; zeros where there is no silhouette
 };
 
 /// Searches the rays of the silhouettes' lines, and of a lattice of places well within thicker

@@ -53,7 +53,7 @@ double picture_size(const Box& box, const Camera& camera) {
 }
 
 /// A view's silhouette.
-struct Silhouette {
+struct CameraSilhouette {
   const Camera* camera;
   SilhouetteDistance distance;
 };
@@ -61,7 +61,7 @@ struct Silhouette {
 enum class Sight { kNone, kBackground, kPossible };
 
 /// What a view says of the ball of `radius` (world) around a point.
-Sight sight(const Silhouette& s, const glm::dvec3& point, double radius) {
+Sight sight(const CameraSilhouette& s, const glm::dvec3& point, double radius) {
   const double depth = s.camera->to_camera(point).z;
   if (!(depth > radius)) return Sight::kNone;
   const auto pixel = s.camera->project(point);
@@ -81,7 +81,7 @@ struct Cell {
 };
 
 std::vector<Cell> possible_cells(const Box& box, double cell,
-                                 const std::vector<Silhouette>& silhouettes) {
+                                 const std::vector<CameraSilhouette>& silhouettes) {
   const glm::ivec3 n = glm::max(glm::ivec3(glm::ceil(box.size() / cell)), glm::ivec3(1));
   std::vector<Cell> cells;
   for (int x = 0; x < n.x; ++x)
@@ -89,7 +89,7 @@ std::vector<Cell> possible_cells(const Box& box, double cell,
       for (int z = 0; z < n.z; ++z) {
         Cell c{box.min + cell * (glm::dvec3(x, y, z) + 0.5), 0};
         const bool possible =
-            std::all_of(silhouettes.begin(), silhouettes.end(), [&](const Silhouette& s) {
+            std::all_of(silhouettes.begin(), silhouettes.end(), [&](const CameraSilhouette& s) {
               const Sight found = sight(s, c.centre, 0.5 * std::sqrt(3.0) * cell);
               c.seen += found == Sight::kPossible;
               return found != Sight::kBackground;
@@ -99,7 +99,7 @@ std::vector<Cell> possible_cells(const Box& box, double cell,
   return cells;
 }
 
-std::optional<Box> tighter(const Box& box, const std::vector<Silhouette>& silhouettes) {
+std::optional<Box> tighter(const Box& box, const std::vector<CameraSilhouette>& silhouettes) {
   const double cell = longest(box.size()) / kCells;
   const std::vector<Cell> cells = possible_cells(box, cell, silhouettes);
   std::size_t most = 0;
@@ -128,7 +128,7 @@ bool box_is_oversized(const Box& box, std::span<const View> views) {
 }
 
 Box object_box(const Box& box, std::span<const View> views) {
-  std::vector<Silhouette> silhouettes;
+  std::vector<CameraSilhouette> silhouettes;
   for (const View& view : views)
     if (!view.mask.empty())
       silhouettes.push_back({&view.camera, silhouette_distance(with_lines(view.mask))});

@@ -11,6 +11,7 @@
 
 #include "carving/bit_volume.h"
 #include "carving/decisions.h"
+#include "carving/kernels/read_decisions.h"
 #include "carving/layer_item.h"
 #include "carving/search_disc.h"
 #include "carving/sweep_bands.h"
@@ -38,8 +39,8 @@ constexpr float kLeastConfidence = 1e-6f;
 /// How photographs come onto the layers.
 struct Resampling {
   const char* name;  ///< of the launches
-  Program program;
-  std::function<void()> bind;
+  std::shared_ptr<const Program> program;
+  std::function<void(const Program&)> bind;
   glm::ivec2 size;  ///< pixels of the array texture
   bool coverage;    ///< alpha tells how much of a sample is the object's
 };
@@ -59,13 +60,13 @@ class Sweeper {
         bits_(to_bits(hull)),
         cameras_(to_grid(cameras, hull.grid)),
         maps_(cameras_, hull.grid),
-        select_(Program::compute("carving_select_columns.comp.glsl")),
-        score_(Program::compute("carving_score_columns.comp.glsl",
+        select_(Program::compute(context, "carving_select_columns.comp.glsl")),
+        score_(Program::compute(context, "carving_score_columns.comp.glsl",
                                 statistic_defines(options.statistic, resampling_.coverage) +
                                     search_defines(search_) + maps_.defines() +
                                     visibility::sweep_test_defines(options.visibility))),
-        update_(Program::compute("carving_update_columns.comp.glsl")),
-        mark_(Program::compute("carving_mark_passed.comp.glsl")) {
+        update_(Program::compute(context, "carving_update_columns.comp.glsl")),
+        mark_(Program::compute(context, "carving_mark_passed.comp.glsl")) {
     std::vector<shaders::GpuView> views;
     for (const auto& camera : cameras_)
       views.push_back(projtex::to_gpu_view(camera, resampling_.size));
@@ -106,7 +107,7 @@ class Sweeper {
     const std::vector<Band> bands = make_bands(grid[u], grid[v]);
     maps_.clear();
     passed_.fill(0);
-    std::vector<shaders::Decision> decisions;
+    std::vector<Decision> decisions;
     for (int slab = 0; slab < grid[direction.axis]; ++slab) {
       progress.check_cancelled();
       parameters_.bricks = glm::ivec4(grid, 0);
@@ -116,14 +117,8 @@ class Sweeper {
         for (BandWork& part : work) judge_layer(layer, part);
         for (BandWork& part : work) hide_behind(part);
       }
-      for (const BandWork& part : work) {
-        const auto header = part.decided.buffer.download<std::uint32_t>(2);
-        counts_.judged += header[1];
-        const std::size_t first = decisions.size();
-        decisions.resize(first + header[0]);
-        part.decided.buffer.read(16, header[0] * sizeof(shaders::Decision),
-                                 decisions.data() + first);
-      }
+      for (const BandWork& part : work)
+        counts_.judged += read_decisions(part.decided.buffer, decisions);
     }
     return apply(decisions);
   }
@@ -139,12 +134,12 @@ class Sweeper {
     return out;
   }
 
-  std::int64_t apply(const std::vector<shaders::Decision>& decisions) {
+  std::int64_t apply(const std::vector<Decision>& decisions) {
     const std::vector<ivec3> carved =
         apply_decisions(bits_, direction_.axis, direction_.sign, decisions);
-    for (const shaders::Decision& d : decisions) {
-      counts_.undecided += d.scores.z == shaders::kUnseen;
-      counts_.reverted += d.scores.z == shaders::kUndecided;
+    for (const Decision& d : decisions) {
+      counts_.undecided += d.outcome == Outcome::kUnseen;
+      counts_.reverted += d.outcome == Outcome::kUndecided;
     }
     counts_.carved += std::int64_t(carved.size());
     occupancy_ = Buffer::of(bits_.words);
@@ -182,26 +177,26 @@ class Sweeper {
     return work;
   }
 
+  /// All but what a step reads or writes at kOccludersBinding or kSweepSamplesBinding.
   void bind(std::size_t first_entry, std::size_t first_column, const BandWork& work,
-            const Buffer& block6, std::size_t columns = 0) {
+            std::size_t columns = 0) {
     parameters_.bricks.w = int(work.items.size());
     parameters_.layer.y = work.band.first_row * kBrickEdge;
     parameters_.chunk = {int(first_entry), options_.max_path, int(first_column), int(columns)};
     uniforms_.write(0, sizeof parameters_, &parameters_);
-    uniforms_.bind_uniform(0);
-    views_.bind_storage(0);
-    work.item_buffer.bind_storage(1);
-    table_.bind_storage(2);
-    occupancy_.bind_storage(3);
-    work.band.columns.bind_storage(4);
-    work.selected.buffer.bind_storage(5);
-    block6.bind_storage(6);
-    work.scores.bind_storage(7);
+    uniforms_.bind_uniform(shaders::kSweepParametersBinding);
+    views_.bind_storage(shaders::kViewsBinding);
+    work.item_buffer.bind_storage(shaders::kSweepItemsBinding);
+    table_.bind_storage(shaders::kSweepTableBinding);
+    occupancy_.bind_storage(shaders::kSweepOccupancyBinding);
+    work.band.columns.bind_storage(shaders::kSweepColumnsBinding);
+    work.selected.buffer.bind_storage(shaders::kSweepSelectedBinding);
+    work.scores.bind_storage(shaders::kSweepScoresBinding);
     maps_.bind();
-    active_.bind_storage(10);
-    work.decided.buffer.bind_storage(11);
-    packed_.bind_storage(12);
-    passed_.bind_storage(13);
+    active_.bind_storage(shaders::kSweepActiveBinding);
+    work.decided.buffer.bind_storage(shaders::kSweepDecisionsBinding);
+    packed_.bind_storage(shaders::kSweepSelectedColumnsBinding);
+    passed_.bind_storage(shaders::kSweepPassedBinding);
   }
 
   void judge_layer(int layer, BandWork& work) {
@@ -209,32 +204,36 @@ class Sweeper {
     work.selected.clear();
     work.occluders.clear();
     columns_of_layer_.clear();
-    bind(0, 0, work, work.occluders.buffer);
-    select_.dispatch(context_, "carving_select_columns", work.items.size());
+    bind(0, 0, work);
+    work.occluders.buffer.bind_storage(shaders::kOccludersBinding);
+    select_->dispatch(context_, "carving_select_columns", work.items.size());
     const std::size_t count = pack_columns(work.selected);
     std::size_t column = 0;
     for (std::size_t first = 0; first < count; first += chunk_) {
       const std::size_t end = std::min(first + chunk_, count), first_column = column;
       while (column < columns_of_layer_.size() && columns_of_layer_[column] >> 6 < end) ++column;
-      bind(first, first_column, work, samples_, column - first_column);
-      resampling_.bind();
-      resampling_.program.dispatch(context_, resampling_.name, end - first, search_.size());
-      score_.dispatch(context_, "carving_score_columns",
-                      gpu::group_count(column - first_column, 64));
+      bind(first, first_column, work, column - first_column);
+      samples_.bind_storage(shaders::kSweepSamplesBinding);
+      resampling_.bind(*resampling_.program);
+      resampling_.program->dispatch(context_, resampling_.name, end - first, search_.size());
+      score_->dispatch(context_, "carving_score_columns",
+                       gpu::group_count(column - first_column, 64));
       counts_.samples += std::int64_t(end - first) * shaders::kMaxLayerViews * shaders::kApronArea *
                          options_.supersample * options_.supersample * std::int64_t(search_.size());
     }
-    bind(0, 0, work, work.occluders.buffer, columns_of_layer_.size());
-    update_.dispatch(context_, "carving_update_columns",
-                     gpu::group_count(columns_of_layer_.size(), 64));
+    bind(0, 0, work, columns_of_layer_.size());
+    work.occluders.buffer.bind_storage(shaders::kOccludersBinding);
+    update_->dispatch(context_, "carving_update_columns",
+                      gpu::group_count(columns_of_layer_.size(), 64));
   }
 
   /// What stands on the layer hides what the sweep comes to.
   void hide_behind(const BandWork& work) {
-    bind(0, 0, work, work.occluders.buffer);
+    bind(0, 0, work);
+    work.occluders.buffer.bind_storage(shaders::kOccludersBinding);
     const std::size_t count = work.occluders.count();
     if (options_.visibility == visibility::SweepTest::kRays)
-      mark_.dispatch(context_, "carving_mark_passed", gpu::group_count(count, 64));
+      mark_->dispatch(context_, "carving_mark_passed", gpu::group_count(count, 64));
     else
       maps_.splat(context_, work.occluders.buffer, count);
   }
@@ -264,7 +263,7 @@ class Sweeper {
   BitVolume bits_;
   std::vector<projtex::GridCamera> cameras_;
   visibility::DepthMaps maps_;
-  Program select_, score_, update_, mark_;
+  std::shared_ptr<const Program> select_, score_, update_, mark_;
   Buffer views_, table_, occupancy_, active_, samples_, packed_;
   Buffer passed_;  ///< bits of the voxels that hide what the sweep comes to, for rays
   Buffer uniforms_{sizeof(shaders::SweepParameters)};
@@ -324,10 +323,10 @@ SparseVolume carve_photo(gpu::Context& context, const SparseVolume& hull,
   options.validate();
   PHOTOHULL_CHECK_OP(int(cameras.size()), ==, images.layers());
   Resampling resampling{"projtex_project_layer",
-                        Program::compute("projtex_project_layer.comp.glsl",
+                        Program::compute(context, "projtex_project_layer.comp.glsl",
                                          concat("#define SUPERSAMPLE ", options.supersample, "\n") +
                                              search_defines(search_disc(options.search_radius))),
-                        [&images] { images.texture().bind(0); },
+                        [&images](const Program&) { images.texture().bind(shaders::kImagesUnit); },
                         {images.texture().width(), images.texture().height()},
                         false};
   return carve(context, hull, std::move(resampling), cameras, options, progress, report);
@@ -338,10 +337,11 @@ SparseVolume carve_photo(gpu::Context& context, const SparseVolume& hull,
                          const PhotoOptions& options, Progress& progress, PhotoReport* report) {
   options.validate();
   PHOTOHULL_CHECK_OP(int(cameras.size()), ==, images.layers());
-  Resampling resampling{"projtex_sample_layer",
-                        images.program("projtex_sample_layer.comp.glsl", options.supersample,
-                                       search_defines(search_disc(options.search_radius))),
-                        [&images] { images.bind(); }, images.size(), true};
+  Resampling resampling{
+      "projtex_sample_layer",
+      images.program(context, "projtex_sample_layer.comp.glsl", options.supersample,
+                     search_defines(search_disc(options.search_radius))),
+      [&images](const Program& program) { images.bind(program); }, images.size(), true};
   return carve(context, hull, std::move(resampling), cameras, options, progress, report);
 }
 

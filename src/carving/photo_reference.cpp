@@ -182,24 +182,24 @@ int ColumnJudge::explanation(int bare) const {
   return end < layers() ? best : -1;
 }
 
-std::vector<shaders::Decision> ColumnJudge::decisions(const glm::ivec2& column) const {
-  std::vector<shaders::Decision> out;
+std::vector<Decision> ColumnJudge::decisions(const glm::ivec2& column) const {
+  std::vector<Decision> out;
   for (int layer = 0; layer < layers(); ++layer) {
     if (!standing_[layer] || (layer > 0 && standing_[layer - 1])) continue;
     const double score = scores_[layer].score;
-    shaders::Decision d{{column, layer, layer}, {score, score, 0, 0}};
+    Decision d{column, layer, layer, float(score), float(score)};
     if (!can_tell(layer)) {
-      d.scores.z = shaders::kUnseen;
+      d.outcome = Outcome::kUnseen;
     } else if (score >= rules_.keep_score) {
-      d.scores.z = shaders::kKept;
+      d.outcome = Outcome::kKept;
     } else {
       const int surface = explanation(layer);
       if (surface < 0) break;
       const double best = scores_[surface].score;
       const bool better = best >= rules_.keep_score && best >= score + rules_.better_by;
-      d.scores.y = float(best);
-      d.scores.z = better ? shaders::kBetter : shaders::kUndecided;
-      if (better) d.place.w = surface;
+      d.best_score = float(best);
+      d.outcome = better ? Outcome::kBetter : Outcome::kUndecided;
+      if (better) d.surface = surface;
     }
     out.push_back(d);
   }

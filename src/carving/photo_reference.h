@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "carving/bit_volume.h"
+#include "carving/decisions.h"
 #include "shared/sweep.h"
 
 namespace photohull::carving::reference {
@@ -87,7 +88,7 @@ class ColumnJudge {
       : rules_(rules), standing_(standing), scores_(scores) {}
 
   /// Outcomes of the bare voxels, front to back.
-  std::vector<shaders::Decision> decisions(const glm::ivec2& column) const;
+  std::vector<Decision> decisions(const glm::ivec2& column) const;
 
  private:
   int layers() const { return int(standing_.size()); }

@@ -76,7 +76,7 @@ void Context::check_errors(const char* where) const {
 void Context::release_deleted() {
   constexpr unsigned kUnits = 8;
   for (unsigned unit = 0; unit < kUnits; ++unit) glBindTextureUnit(unit, 0);
-  Program::compute("gpu_nothing.comp.glsl").dispatch(*this, "gpu_nothing", 1);
+  Program::compute(*this, "gpu_nothing.comp.glsl")->dispatch(*this, "gpu_nothing", 1);
   malloc_trim(0);
 }
 

@@ -43,7 +43,7 @@ class Context {
 
   /// Seconds and count per launch name since the start; kernels add to it through `Launch`.
   std::map<std::string, LaunchStatistics>& statistics() { return statistics_; }
-  /// Programs that live as long as the context; Program::shared_... fill it.
+  /// Programs that live as long as the context; Program::compute and raster fill it.
   std::map<std::string, std::shared_ptr<const Program>>& programs() { return programs_; }
 
  private:

@@ -61,30 +61,24 @@ unsigned link(std::initializer_list<unsigned> shaders, std::string_view name) {
 
 }  // namespace
 
-Program Program::compute(std::string_view path, std::string_view defines) {
-  return Program(link({compile_stage(GL_COMPUTE_SHADER, path, defines)}, path));
-}
-
-Program Program::raster(std::string_view vertex_path, std::string_view fragment_path,
-                        std::string_view defines) {
-  const unsigned vertex = compile_stage(GL_VERTEX_SHADER, vertex_path, defines);
-  return Program(
-      link({vertex, compile_stage(GL_FRAGMENT_SHADER, fragment_path, defines)}, fragment_path));
-}
-
-std::shared_ptr<const Program> Program::shared_compute(Context& context, std::string_view path,
-                                                       std::string_view defines) {
+std::shared_ptr<const Program> Program::compute(Context& context, std::string_view path,
+                                                std::string_view defines) {
   auto& kept = context.programs()[concat(path, "\n", defines)];
-  if (!kept) kept = std::make_shared<const Program>(compute(path, defines));
+  if (!kept)
+    kept = std::make_shared<const Program>(
+        Program(link({compile_stage(GL_COMPUTE_SHADER, path, defines)}, path)));
   return kept;
 }
 
-std::shared_ptr<const Program> Program::shared_raster(Context& context,
-                                                      std::string_view vertex_path,
-                                                      std::string_view fragment_path,
-                                                      std::string_view defines) {
+std::shared_ptr<const Program> Program::raster(Context& context, std::string_view vertex_path,
+                                               std::string_view fragment_path,
+                                               std::string_view defines) {
   auto& kept = context.programs()[concat(vertex_path, "\n", fragment_path, "\n", defines)];
-  if (!kept) kept = std::make_shared<const Program>(raster(vertex_path, fragment_path, defines));
+  if (!kept) {
+    const unsigned vertex = compile_stage(GL_VERTEX_SHADER, vertex_path, defines);
+    const unsigned fragment = compile_stage(GL_FRAGMENT_SHADER, fragment_path, defines);
+    kept = std::make_shared<const Program>(Program(link({vertex, fragment}, fragment_path)));
+  }
   return kept;
 }
 

@@ -14,19 +14,15 @@ class Context;
 /// A move-only linked program made of embedded shaders.
 class Program {
  public:
-  /// A compute program from one entry point; `defines` are lines of "#define A B\n".
-  /// Throws Error with the compiler's log, its file numbers replaced by names.
-  static Program compute(std::string_view path, std::string_view defines = {});
-  static Program raster(std::string_view vertex_path, std::string_view fragment_path,
-                        std::string_view defines = {});
-  /// The same, made at the first call and kept by the context: drivers compile again for every
-  /// program that is made anew.
-  static std::shared_ptr<const Program> shared_compute(Context& context, std::string_view path,
-                                                       std::string_view defines = {});
-  static std::shared_ptr<const Program> shared_raster(Context& context,
-                                                      std::string_view vertex_path,
-                                                      std::string_view fragment_path,
-                                                      std::string_view defines = {});
+  /// A compute program from one entry point; `defines` are lines of "#define A B\n". Made at the
+  /// first call and kept by the context: drivers compile again for every program that is made anew.
+  /// Who dispatches it sets all its uniforms, for others use it, too. Throws Error with the
+  /// compiler's log, its file numbers replaced by names.
+  static std::shared_ptr<const Program> compute(Context& context, std::string_view path,
+                                                std::string_view defines = {});
+  static std::shared_ptr<const Program> raster(Context& context, std::string_view vertex_path,
+                                               std::string_view fragment_path,
+                                               std::string_view defines = {});
   Program(Program&& other) noexcept { swap(other); }
   Program& operator=(Program&& other) noexcept {
     swap(other);

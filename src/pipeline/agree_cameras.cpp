@@ -111,7 +111,7 @@ bool fill_no_less(std::span<const Camera> refined, const Box& given, const std::
       all.push_back({&masks[i], &distances[i], &found[i], views[i].silhouette.likelihood});
   const auto unexplained = [&](std::span<const Camera> with) {
     int count = 0;
-    for (const carving::ExplainedView& v :
+    for (const carving::ForegroundCounts& v :
          carving::find_missing_parts(box, with, all, {}, &progress).views)
       count += v.unexplained;
     return count;

@@ -34,11 +34,11 @@ void warn_of_room(const std::vector<OutlineRoom>& room, Progress& progress) {
                        " px): they carve with as much room (check these cameras and masks)"));
 }
 
-void count_explained(std::span<const carving::ExplainedView> found, const std::vector<View>& views,
+void count_explained(std::span<const carving::ForegroundCounts> found, const std::vector<View>& views,
                      ThinFindings& counts) {
   double worst = 0;
   for (std::size_t i = 0; i < views.size(); ++i) {
-    const carving::ExplainedView& v = found[i];
+    const carving::ForegroundCounts& v = found[i];
     counts.looked_at += v.looked_at, counts.unexplained += v.unexplained, counts.placed += v.placed;
     const double share = double(v.unexplained - v.placed) / std::max(v.looked_at, 1);
     if (share > worst) worst = share, counts.worst_view = views[i].name;

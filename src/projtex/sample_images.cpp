@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "projtex/gpu_views.h"
+#include "shared/sampling.h"
 
 namespace photohull::projtex {
 namespace {
@@ -146,17 +147,17 @@ SampleImages::SampleImages(std::span<const View> views, Sampler sampler) : sampl
   }
 }
 
-gpu::Program SampleImages::program(const char* path, int supersample,
-                                   const std::string& defines) const {
-  gpu::Program program =
-      gpu::Program::compute(path, sampler_defines(sampler_, supersample) + defines);
-  if (sampler_ == Sampler::kSummedArea) program.set("sum_unit", sum_unit_);
-  return program;
+std::shared_ptr<const gpu::Program> SampleImages::program(gpu::Context& context, const char* path,
+                                                          int supersample,
+                                                          const std::string& defines) const {
+  return gpu::Program::compute(context, path, sampler_defines(sampler_, supersample) + defines);
 }
 
-void SampleImages::bind() const {
-  images_.bind(0);
-  if (extra_.id()) extra_.bind(1);
+void SampleImages::bind(const gpu::Program& program) const {
+  images_.bind(shaders::kImagesUnit);
+  static_assert(shaders::kImageSumsUnit == shaders::kImageRipmapsUnit);
+  if (extra_.id()) extra_.bind(shaders::kImageSumsUnit);
+  if (sampler_ == Sampler::kSummedArea) program.set("sum_unit", sum_unit_);
 }
 
 }  // namespace photohull::projtex

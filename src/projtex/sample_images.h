@@ -1,10 +1,12 @@
 // Photographs on the device, made for one of the samplers.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 
 #include "core/image.h"
+#include "gpu/context.h"
 #include "gpu/program.h"
 #include "gpu/texture.h"
 #include "projtex/sampler.h"
@@ -26,9 +28,12 @@ class SampleImages {
   glm::ivec2 size() const { return {images_.width(), images_.height()}; }
 
   /// A compute program with this sampler, n x n times a square, and further `defines`.
-  gpu::Program program(const char* path, int supersample, const std::string& defines = {}) const;
-  /// Binds the textures where sample_image.glsl expects them.
-  void bind() const;
+  std::shared_ptr<const gpu::Program> program(gpu::Context& context, const char* path,
+                                              int supersample,
+                                              const std::string& defines = {}) const;
+  /// Binds the textures where sample_image.glsl expects them, and sets what it asks of the images,
+  /// for the dispatches of such a program that follow.
+  void bind(const gpu::Program& program) const;
 
  private:
   Sampler sampler_;

@@ -137,14 +137,13 @@ class Finder {
 
 std::vector<Contact> find_contacts(const GridSpec& grid, const TriMesh& mesh,
                                    std::span<const glm::vec3> positions,
-                                   std::span<const glm::vec3> normals,
-                                   std::span<const Camera> cameras,
-                                   std::span<const carving::Silhouette> silhouettes, double reach) {
-  std::vector<std::vector<Contact>> found(cameras.size());
-  tbb::parallel_for(std::size_t(0), cameras.size(), [&](std::size_t v) {
-    if (!silhouettes[v].distance) return;
-    const projtex::GridCamera camera = projtex::to_grid(cameras[v], grid);
-    found[v] = Finder(camera, silhouettes[v], positions, normals, reach).run(mesh);
+                                   std::span<const glm::vec3> normals, const SilhouetteCones& cones,
+                                   double reach) {
+  std::vector<std::vector<Contact>> found(cones.cameras.size());
+  tbb::parallel_for(std::size_t(0), found.size(), [&](std::size_t v) {
+    if (!cones.silhouettes[v].distance) return;
+    const projtex::GridCamera camera = projtex::to_grid(cones.cameras[v], grid);
+    found[v] = Finder(camera, cones.silhouettes[v], positions, normals, reach).run(mesh);
   });
   std::vector<Contact> out;
   for (const auto& list : found) out.insert(out.end(), list.begin(), list.end());

@@ -5,10 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "carving/hull.h"
-#include "core/camera.h"
 #include "core/grid.h"
 #include "core/mesh.h"
+#include "refine/silhouette_cones.h"
 
 namespace photohull::refine {
 
@@ -23,12 +22,11 @@ struct Contact {
 };
 
 /// The contacts of a closed mesh, whose vertices' `positions` (voxels of `grid`) and outward unit
-/// `normals` are given aside, with the outlines of one silhouette per camera: all within `reach`
+/// `normals` are given aside, with the silhouettes' outlines: all within `reach`
 /// voxels. Sharp edges have contacts, too. Ordered by camera, then by triangle.
 std::vector<Contact> find_contacts(const GridSpec& grid, const TriMesh& mesh,
                                    std::span<const glm::vec3> positions,
-                                   std::span<const glm::vec3> normals,
-                                   std::span<const Camera> cameras,
-                                   std::span<const carving::Silhouette> silhouettes, double reach);
+                                   std::span<const glm::vec3> normals, const SilhouetteCones& cones,
+                                   double reach);
 
 }  // namespace photohull::refine

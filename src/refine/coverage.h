@@ -28,10 +28,10 @@ class Coverage {
   /// within the silhouette on.
   Votes votes(const glm::dvec3& point, double inside) const;
 
+ private:
   std::span<const carving::Silhouette> silhouettes_;
   std::vector<projtex::GridCamera> cameras_;
-  std::vector<shaders::DepthMapInfo> infos_;
-  std::vector<std::vector<float>> depths_;
+  std::vector<visibility::HostDepthMap> maps_;
 };
 
 }  // namespace photohull::refine

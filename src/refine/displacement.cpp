@@ -32,14 +32,14 @@ void aggregate(const VertexGraph& graph, int passes, Matches& matches) {
       int known = 0;
       for (const std::uint32_t j : graph.of(i)) {
         const auto other = matches.of(j);
-        if (other[0] == shaders::kNoScore) continue;
+        if (other[0] == kNoScore) continue;
         ++known;
         for (std::size_t o = 0; o < k; ++o) out[o] += other[o];
       }
-      const bool self = own[0] != shaders::kNoScore;
+      const bool self = own[0] != kNoScore;
       for (std::size_t o = 0; o < k; ++o) {
         if (!self && !known)
-          out[o] = shaders::kNoScore;
+          out[o] = kNoScore;
         else if (!known)
           out[o] = own[o];
         else
@@ -55,7 +55,7 @@ std::vector<Peak> find_peaks(const Matches& matches, const PeakOptions& options)
   std::vector<Peak> peaks(k ? matches.scores.size() / k : 0);
   for_vertices(peaks.size(), [&](std::size_t i) {
     const auto s = matches.of(i);
-    if (s[0] == shaders::kNoScore) return;
+    if (s[0] == kNoScore) return;
     std::size_t best = 0;
     for (std::size_t o = 1; o + 1 < k; ++o)
       if (s[o] >= s[o - 1] && s[o] > s[o + 1] && (best == 0 || s[o] > s[best])) best = o;

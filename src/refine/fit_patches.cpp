@@ -1,4 +1,4 @@
-// Offset and slopes of patches by Gauss-Newton on normalised colours [Goesele07; Furukawa10].
+// What fits of patches start from, and what is made of them [Goesele07; Furukawa10].
 #include "refine/fit_patches.h"
 
 #include <tbb/blocked_range.h>
@@ -7,21 +7,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/error.h"
-#include "gpu/buffer.h"
-#include "gpu/program.h"
-#include "projtex/gpu_views.h"
-#include "refine/pick.h"
-#include "render/surface_points.h"
-#include "shared/bake.h"
+#include "projtex/photographs.h"
 
 namespace photohull::refine {
 namespace {
 
-using gpu::Buffer;
-
-constexpr std::size_t kBatch = std::size_t(1) << 18;  // surfels on the device at once
-constexpr int kSmoothings = 2;                        // of the curvature over neighbours
+constexpr int kSmoothings = 2;  // of the curvature over neighbours
 
 template <typename F>
 void for_vertices(std::size_t count, F&& f) {
@@ -52,18 +43,6 @@ glm::dmat3 curvature_tensor(const VertexGraph& graph, std::span<const glm::vec3>
          k.y * (glm::outerProduct(u, v) + glm::outerProduct(v, u));
 }
 
-/// As render::to_voxels has them.
-std::vector<glm::vec3> positions_in_voxels(const GridSpec& grid, const TriMesh& mesh) {
-  constexpr std::size_t kPart = 4096;
-  std::vector<glm::vec3> out;
-  out.reserve(mesh.positions.size());
-  for (std::size_t first = 0; first < mesh.positions.size(); first += kPart)
-    for (const shaders::BakeVertex& surfel :
-         render::to_voxels(grid, mesh, first, std::min(kPart, mesh.positions.size() - first)))
-      out.emplace_back(surfel.position);
-  return out;
-}
-
 /// A symmetric matrix of floats: diagonal, and xy, xz, yz.
 struct Symmetric {
   glm::vec3 diagonal{0}, beside{0};
@@ -78,16 +57,6 @@ struct Symmetric {
     return {d.x, b.x, b.y, b.x, d.y, b.z, b.y, b.z, d.z};
   }
 };
-
-shaders::FitParameters parameters_of(double noise_sigma, const FitOptions& o) {
-  shaders::FitParameters p{};
-  p.counts = {0, 0, o.steps, 0};
-  p.search = {float(o.least_spacing), float(o.pixel_spacing), float(o.largest_offset),
-              float(o.largest_step)};
-  p.robust = {float(o.noise * noise_sigma * noise_sigma), float(o.least_score), float(o.sure_score),
-              float(o.slope)};
-  return p;
-}
 
 }  // namespace
 
@@ -138,105 +107,49 @@ std::vector<glm::vec3> curvatures(const VertexGraph& graph, std::span<const glm:
   return out;
 }
 
-std::vector<shaders::FitResult> fit_patches(gpu::Context& context, const GridSpec& grid,
-                                            const TriMesh& mesh, const VertexGraph& graph,
-                                            const projtex::ImageSet& images,
-                                            std::span<const Camera> cameras,
-                                            std::span<const shaders::MatchChoice> choices,
-                                            double noise_sigma, const FitOptions& options) {
-  PHOTOHULL_CHECK_OP(choices.size(), ==, mesh.positions.size());
-  const std::vector<glm::vec3> positions = positions_in_voxels(grid, mesh);
-  const std::vector<glm::vec3> bends =
-      curvatures(graph, positions, mesh.normals, options.most_bend);
-
-  const glm::ivec2 size(images.texture().width(), images.texture().height());
-  std::vector<shaders::GpuView> gpu_views;
-  for (const Camera& camera : cameras)
-    gpu_views.push_back(projtex::to_gpu_view(projtex::to_grid(camera, grid), size));
-  const Buffer views = Buffer::of(gpu_views);
-  const auto program = gpu::Program::compute("refine_fit_patches.comp.glsl");
-  shaders::FitParameters parameters = parameters_of(noise_sigma, options);
-  std::vector<shaders::FitResult> out(positions.size());
-  for (std::size_t i = 0; i < out.size(); ++i)
-    out[i] = {glm::vec4(mesh.normals[i], 0),
-              glm::vec4(0, shaders::kNoScore, shaders::kNoScore, shaders::kNoScore)};
-  const std::vector<std::uint32_t> fitted = comparable(choices);
-  const std::size_t batch = gpu::batch_size(sizeof(shaders::MatchChoice), kBatch);
-  for (std::size_t first = 0; first < fitted.size(); first += batch) {
-    const auto part = std::span<const std::uint32_t>(fitted).subspan(
-        first, std::min(batch, fitted.size() - first));
-    parameters.counts.x = int(part.size());
-    const Buffer uniforms(sizeof parameters, &parameters);
-    std::vector<shaders::BakeVertex> surfels;
-    std::vector<shaders::FitShape> shapes;
-    for (const std::uint32_t i : part) {
-      surfels.push_back({glm::vec4(positions[i], 0), glm::vec4(mesh.normals[i], 0)});
-      shapes.push_back({glm::vec4(bends[i], holds_out(positions[i], options.hold_out))});
-    }
-    const Buffer points = Buffer::of(surfels);
-    const Buffer chosen = Buffer::of(pick(choices, part));
-    const Buffer shape = Buffer::of(shapes);
-    const Buffer results(part.size() * sizeof(shaders::FitResult));
-    uniforms.bind_uniform(0);
-    views.bind_storage(0);
-    points.bind_storage(1);
-    chosen.bind_storage(2);
-    results.bind_storage(3);
-    shape.bind_storage(4);
-    images.texture().bind(0);
-    program.dispatch(context, "refine_fit_patches", gpu::group_count(part.size(), 64));
-    const auto result = results.download<shaders::FitResult>(part.size());
-    for (std::size_t k = 0; k < part.size(); ++k) out[part[k]] = result[k];
-  }
-  return out;
-}
-
 std::vector<float> tap_spacings(const GridSpec& grid, std::span<const glm::vec3> positions,
                                 std::span<const Camera> cameras,
-                                std::span<const shaders::MatchChoice> choices,
-                                const FitOptions& options) {
-  std::vector<projtex::GridCamera> views;
-  for (const Camera& camera : cameras) views.push_back(projtex::to_grid(camera, grid));
+                                std::span<const ViewChoice> choices, const FitOptions& options) {
+  const std::vector<projtex::GridCamera> views = projtex::to_grid(cameras, grid);
   std::vector<float> out(positions.size(), float(options.least_spacing));
   for_vertices(out.size(), [&](std::size_t i) {
-    if (choices[i].second.w == 0) return;
-    const projtex::GridCamera& view = views[std::size_t(choices[i].first.x)];
+    if (choices[i].views.empty()) return;
+    const projtex::GridCamera& view = views[std::size_t(choices[i].reference())];
     const double pixel = glm::distance(view.centre, glm::dvec3(positions[i])) / view.focal;
     out[i] = float(std::max(options.least_spacing, options.pixel_spacing * pixel));
   });
   return out;
 }
 
-std::vector<Peak> peaks_of(std::span<const shaders::FitResult> results,
-                           std::span<const float> spacings, const FitOptions& options) {
+std::vector<Peak> peaks_of(std::span<const PatchFit> results, std::span<const float> spacings,
+                           const FitOptions& options) {
   std::vector<Peak> peaks(results.size());
   for (std::size_t i = 0; i < results.size(); ++i) {
-    const shaders::FitResult& r = results[i];
-    if (std::abs(r.plane.w) >= options.largest_offset) continue;  // it wanted to go farther
+    const PatchFit& r = results[i];
+    if (std::abs(r.offset) >= options.largest_offset) continue;  // it wanted to go farther
     const double agreement = std::clamp(
-        (r.evidence.y - options.least_score) / (options.sure_score - options.least_score), 0.0,
-        1.0);
+        (r.score - options.least_score) / (options.sure_score - options.least_score), 0.0, 1.0);
     const double weight =
-        agreement * std::min(r.evidence.x * options.sure * options.sure, options.most_weight);
+        agreement * std::min(r.information * options.sure * options.sure, options.most_weight);
     if (!(weight > 0)) continue;
     const double square = double(spacings[i]) * spacings[i];
-    peaks[i] = {r.plane.w, float(weight / (square * square)), r.evidence.y};
+    peaks[i] = {r.offset, float(weight / (square * square)), r.score};
   }
   return peaks;
 }
 
-std::int64_t samples_of(std::span<const shaders::MatchChoice> choices, const FitOptions& options) {
+std::int64_t samples_of(std::span<const ViewChoice> choices, const FitOptions& options) {
   std::int64_t views = 0;
-  for (const shaders::MatchChoice& choice : choices)
-    if (choice.second.w >= 2) views += choice.second.w;
-  return views * 2 * shaders::kMatchTaps * (options.steps + 1);
+  for (const ViewChoice& choice : choices)
+    if (choice.comparable()) views += choice.views.size();
+  return views * 2 * kPatchTaps * (options.steps + 1);
 }
 
-HeldOut held_out(std::span<const shaders::FitResult> results) {
+HeldOut held_out(std::span<const PatchFit> results) {
   HeldOut out;
-  for (const shaders::FitResult& r : results) {
-    if (r.evidence.z == shaders::kNoScore || r.evidence.w == shaders::kNoScore) continue;
-    out.before += r.evidence.z, out.after += r.evidence.w;
+  for (const PatchFit& r : results) {
+    if (r.held_before == kNoScore || r.held_after == kNoScore) continue;
+    out.before += r.held_before, out.after += r.held_after;
     ++out.surfels;
   }
   if (out.surfels) out.before /= double(out.surfels), out.after /= double(out.surfels);

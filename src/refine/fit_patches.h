@@ -1,18 +1,18 @@
-// Planes fitted to the photographs: where matching found the surface, to a fraction of a voxel.
+// Planes fitted to the photographs: where matching found the surface, to a fraction of a voxel. The
+// kernel is kernels/fit_patches.h.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "core/camera.h"
 #include "core/describe.h"
 #include "core/grid.h"
-#include "core/mesh.h"
-#include "gpu/context.h"
-#include "projtex/image_set.h"
 #include "refine/displacement.h"
+#include "refine/match.h"
 #include "refine/surface.h"
-#include "shared/refine.h"
+#include "refine/view_choice.h"
 
 namespace photohull::refine {
 
@@ -77,33 +77,31 @@ struct TangentAxes {
 };
 TangentAxes tangent_axes(const glm::dvec3& normal);
 
-/// Fits a patch to every vertex of `mesh` (with normals), in the views that `choices` (from
-/// match_patches, one per vertex) names: minimises over offset and slopes the robust squared
-/// differences of the views' patches from their mean, gain and offset of each eliminated
-/// [Goesele07; Furukawa10].
-std::vector<shaders::FitResult> fit_patches(gpu::Context& context, const GridSpec& grid,
-                                            const TriMesh& mesh, const VertexGraph& graph,
-                                            const projtex::ImageSet& images,
-                                            std::span<const Camera> cameras,
-                                            std::span<const shaders::MatchChoice> choices,
-                                            double noise_sigma, const FitOptions& options);
+/// A patch fitted to the photographs.
+struct PatchFit {
+  glm::vec3 normal{0};    ///< unit
+  float offset = 0;       ///< voxels along the surfel's own normal
+  float information = 0;  ///< on the offset, 1 / voxel^2
+  float score = kNoScore;
+  float held_before = kNoScore;  ///< score of the view that is held out, before the fit
+  float held_after = kNoScore;   ///< the same after it
+};
 
 /// Voxels between the taps of each vertex's patch.
 std::vector<float> tap_spacings(const GridSpec& grid, std::span<const glm::vec3> positions,
                                 std::span<const Camera> cameras,
-                                std::span<const shaders::MatchChoice> choices,
-                                const FitOptions& options);
+                                std::span<const ViewChoice> choices, const FitOptions& options);
 
 /// The fitted offsets as peaks, weighed by their information: 1 at a standard deviation of
 /// options.sure, never more than options.most_weight, both for taps a voxel apart. By the inverse
 /// fourth power of the spacing, the surface is smoothed over as many pixels whatever the voxels'
 /// size: more vertices share a tap's evidence, and smoothing must reach across more of them.
-std::vector<Peak> peaks_of(std::span<const shaders::FitResult> results,
-                           std::span<const float> spacings, const FitOptions& options);
+std::vector<Peak> peaks_of(std::span<const PatchFit> results, std::span<const float> spacings,
+                           const FitOptions& options);
 
 /// Texture samples that fitting takes.
-std::int64_t samples_of(std::span<const shaders::MatchChoice> choices, const FitOptions& options);
+std::int64_t samples_of(std::span<const ViewChoice> choices, const FitOptions& options);
 
-HeldOut held_out(std::span<const shaders::FitResult> results);
+HeldOut held_out(std::span<const PatchFit> results);
 
 }  // namespace photohull::refine

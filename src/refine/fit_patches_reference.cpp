@@ -12,8 +12,8 @@ using glm::dmat3;
 using glm::dvec2;
 using glm::dvec3;
 
-constexpr int kRadius = shaders::kMatchRadius;
-constexpr int kValues = 3 * shaders::kMatchTaps;
+constexpr int kRadius = kPatchRadius;
+constexpr int kValues = 3 * kPatchTaps;
 
 /// Variance of a derivative over that of a value where both are noise, texels.
 constexpr double kDerivativeNoise = 2.4;
@@ -34,7 +34,7 @@ void add(double factor, const Values& from, Values& to) {
 void centre(Values& x) {
   for (int c = 0; c < 3; ++c) {
     double mean = 0;
-    for (int k = c; k < kValues; k += 3) mean += x[k] / shaders::kMatchTaps;
+    for (int k = c; k < kValues; k += 3) mean += x[k] / kPatchTaps;
     for (int k = c; k < kValues; k += 3) x[k] -= mean;
   }
 }
@@ -50,7 +50,7 @@ struct Sight {
 struct Model {
   dvec3 gradient{0.0};
   dmat3 hessian{0.0};
-  double score = shaders::kNoScore, held = shaders::kNoScore, variance = 0, noise = 0;
+  double score = kNoScore, held = kNoScore, variance = 0, noise = 0;
 };
 
 struct Frame {
@@ -106,25 +106,42 @@ Sight look(const MatchView& view, const Frame& frame, const dvec3& theta, double
   return out;
 }
 
-Model evaluate(std::span<const MatchView> views, std::span<const int> chosen, int held,
-               const Frame& frame, const dvec3& theta, double noise, const FitOptions& options) {
-  Model out;
+/// What is fitted.
+struct Problem {
+  std::span<const MatchView> views;
+  std::span<const int> chosen;
+  int held = -1;  // slot of the view that is held out
+  Frame frame;
+  double noise = 0;
+  const FitOptions& options;
+};
+
+/// The views that count, and how much.
+struct WeighedSights {
   std::vector<Sight> sights;
   std::vector<double> weights;
+  double total = 0;
+};
+
+/// Fills the scores of the model.
+WeighedSights weigh(const Problem& problem, const dvec3& theta, Model& model) {
+  const FitOptions& options = problem.options;
+  const double noise = options.noise * problem.noise * problem.noise;
+  WeighedSights out;
   Values sum{};
-  double total = 0, scores = 0;
+  double scores = 0;
   int scored = 0;
-  for (std::size_t slot = 0; slot < chosen.size(); ++slot) {
-    const Sight sight =
-        look(views[std::size_t(chosen[slot])], frame, theta, options.noise * noise * noise);
+  for (std::size_t slot = 0; slot < problem.chosen.size(); ++slot) {
+    const MatchView& view = problem.views[std::size_t(problem.chosen[slot])];
+    const Sight sight = look(view, problem.frame, theta, noise);
     if (!sight.before_camera) continue;
-    const double correlation = total > 0 ? dot(sight.x, sum) / total : 0;
-    if (int(slot) == held) {
-      out.held = correlation;
+    const double correlation = out.total > 0 ? dot(sight.x, sum) / out.total : 0;
+    if (int(slot) == problem.held) {
+      model.held = correlation;
       continue;
     }
     double weight = 1;
-    if (total > 0) {
+    if (out.total > 0) {
       const double share = std::clamp(
           (correlation - options.least_score) / (options.sure_score - options.least_score), 0.0,
           1.0);
@@ -133,11 +150,17 @@ Model evaluate(std::span<const MatchView> views, std::span<const int> chosen, in
       ++scored;
     }
     add(weight, sight.x, sum);
-    total += weight;
-    sights.push_back(sight);
-    weights.push_back(weight);
+    out.total += weight;
+    out.sights.push_back(sight);
+    out.weights.push_back(weight);
   }
-  if (scored) out.score = scores / scored;
+  if (scored) model.score = scores / scored;
+  return out;
+}
+
+Model evaluate(const Problem& problem, const dvec3& theta) {
+  Model out;
+  const auto [sights, weights, total] = weigh(problem, theta, out);
   if (sights.empty()) return out;
 
   Values mean{};
@@ -188,7 +211,7 @@ FittedPatch fit_patch(std::span<const MatchView> views, std::span<const int> cho
   dvec3 theta(0), best_theta(0);
   double damping = 0.01;
   for (int step = 0; step <= options.steps; ++step) {
-    const Model model = evaluate(views, chosen, held, frame, theta, noise_sigma, options);
+    const Model model = evaluate({views, chosen, held, frame, noise_sigma, options}, theta);
     if (step == 0) out.held_before = model.held;
     if (step == 0 || model.score > best.score) {
       best = model, best_theta = theta;
@@ -219,7 +242,7 @@ FittedPatch fit_patch(std::span<const MatchView> views, std::span<const int> cho
                                          2 * coupling.x * coupling.y * slopes[0][1] +
                                          coupling.y * coupling.y * slopes[0][0]) /
                                             std::max(glm::determinant(slopes), 1e-12);
-  if (best.score > shaders::kNoScore && best.variance > 0)
+  if (best.score > kNoScore && best.variance > 0)
     out.information = std::max(marginal, 0.0) / best.variance;
   out.offset = best_theta.x;
   out.normal =

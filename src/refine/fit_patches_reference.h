@@ -21,7 +21,7 @@ struct FittedPatch {
   /// 1 / voxel^2: the Gauss-Newton matrix over the variance about the mean, the slopes
   /// marginalised, less what noise makes of it
   double information = 0;
-  double score = shaders::kNoScore, held_before = shaders::kNoScore, held_after = shaders::kNoScore;
+  double score = kNoScore, held_before = kNoScore, held_after = kNoScore;
 };
 
 /// A patch fitted to the chosen views (refine_fit_patches.comp.glsl).

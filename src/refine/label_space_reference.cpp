@@ -3,7 +3,7 @@
 
 #include "core/error.h"
 #include "core/grid.h"
-#include "refine/label_space.h"
+#include "refine/kernels/label_space.h"
 
 namespace photohull::refine::reference {
 namespace {

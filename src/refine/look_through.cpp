@@ -6,9 +6,10 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
-#include "projtex/gpu_views.h"
+#include "refine/kernels/match_patches.h"
 #include "refine/voxel_set.h"
 
 namespace photohull::refine {
@@ -19,12 +20,6 @@ using glm::ivec3;
 constexpr float kFreed = 0.5f;  // distance of a voxel that was freed, voxels
 constexpr int kLeastViews = 3;  // that a surfel was matched in
 constexpr int kPasses = 3;      // of freeing what freed voxels outnumber
-
-std::vector<projtex::GridCamera> on_grid(std::span<const Camera> cameras, const GridSpec& grid) {
-  std::vector<projtex::GridCamera> out;
-  for (const Camera& camera : cameras) out.push_back(projtex::to_grid(camera, grid));
-  return out;
-}
 
 /// Where lines pass through the volume's inside: a voxel comes as often as lines do.
 VoxelSet blocked(std::span<const Sightline> lines, std::span<const projtex::GridCamera> cameras,
@@ -70,25 +65,22 @@ std::vector<ivec3> outnumbered(const std::vector<ivec3>& fresh, const VoxelSet& 
 }
 
 /// Of the views that a surfel was matched in, the one that looks at it most like `view`.
-int nearest_chosen(const shaders::MatchChoice& choice, int view,
-                   std::span<const projtex::GridCamera> cameras, const glm::dvec3& position) {
+int nearest_chosen(const ViewChoice& choice, int view, std::span<const projtex::GridCamera> cameras,
+                   const glm::dvec3& position) {
   const auto direction = [&](int v) {
     return glm::normalize(cameras[std::size_t(v)].centre - position);
   };
-  const int views[shaders::kMatchViews] = {choice.first.x, choice.first.y,  choice.first.z,
-                                           choice.first.w, choice.second.x, choice.second.y};
   const glm::dvec3 ray = direction(view);
-  int best = views[0];
-  for (int k = 1; k < choice.second.w; ++k)
-    if (glm::dot(ray, direction(views[k])) > glm::dot(ray, direction(best))) best = views[k];
+  int best = choice.reference();
+  for (const int other : choice.others())
+    if (glm::dot(ray, direction(other)) > glm::dot(ray, direction(best))) best = other;
   return best;
 }
 
 }  // namespace
 
 KnownSurface known_surface(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
-                           std::span<const Peak> peaks,
-                           std::span<const shaders::MatchChoice> choices,
+                           std::span<const Peak> peaks, std::span<const ViewChoice> choices,
                            const LookOptions& options) {
   KnownSurface out;
   for (std::size_t i = 0; i < peaks.size(); ++i) {
@@ -102,32 +94,30 @@ KnownSurface known_surface(std::span<const glm::vec3> positions, std::span<const
 }
 
 std::vector<Sightline> find_sightlines(gpu::Context& context, const GridSpec& grid,
-                                       const KnownSurface& known, const projtex::ImageSet& images,
-                                       std::span<const Camera> cameras, double noise_sigma,
+                                       const KnownSurface& known,
+                                       const projtex::Photographs& photographs,
                                        const MatchOptions& match, const LookOptions& options) {
-  const std::vector<projtex::GridCamera> grid_cameras = on_grid(cameras, grid);
-  std::vector<shaders::BakeVertex> surfels;
-  std::vector<shaders::MatchChoice> pairs;
+  const std::vector<projtex::GridCamera> cameras = projtex::to_grid(photographs.cameras, grid);
+  std::vector<PatchSurfel> surfels;
+  std::vector<ViewChoice> pairs;  // a witness, and a view that the surfel is hidden from
   for (std::size_t i = 0; i < known.positions.size(); ++i) {
-    const shaders::MatchChoice& choice = known.choices[i];
-    if (choice.second.w < kLeastViews || known.weights[i] < options.least_weight) continue;
-    for (int k = 0; k < shaders::kHiddenViews && choice.hidden[k] >= 0; ++k) {
-      const int view = choice.hidden[k];
-      const int witness =
-          nearest_chosen(choice, view, grid_cameras, glm::dvec3(known.positions[i]));
-      surfels.push_back({glm::vec4(known.positions[i], 1), glm::vec4(known.normals[i], 0)});
-      pairs.push_back({{witness, view, -1, -1}, {-1, -1, 0, 2}, glm::ivec4(-1)});
+    const ViewChoice& choice = known.choices[i];
+    if (choice.views.size() < kLeastViews || known.weights[i] < options.least_weight) continue;
+    for (const int view : choice.hidden) {
+      const int witness = nearest_chosen(choice, view, cameras, glm::dvec3(known.positions[i]));
+      surfels.push_back({known.positions[i], known.normals[i]});
+      pairs.emplace_back().views = ViewList<ViewChoice::kMostViews>(std::array{witness, view});
     }
   }
-  const std::vector<float> scores =
-      match_patches(context, grid, surfels, {}, pairs, images, cameras, noise_sigma, {}, match)
-          .scores;
+  const PatchMatcher matcher(context, photographs.images, cameras,
+                             patch_rules(match, photographs.noise_sigma), "refine_match_patches");
+  const std::vector<float> scores = matcher.match(surfels, {}, pairs, {}).scores;
   std::vector<Sightline> out;
   for (std::size_t i = 0; i < scores.size(); ++i) {
     if (scores[i] < options.least_score) continue;
-    const glm::vec3 at(surfels[i].position), normal(surfels[i].normal);
-    const int view = pairs[i].first.y;
-    const glm::vec3 way = glm::normalize(glm::vec3(grid_cameras[std::size_t(view)].centre) - at);
+    const auto& [at, normal, scale] = surfels[i];
+    const int view = pairs[i].others().front();
+    const glm::vec3 way = glm::normalize(glm::vec3(cameras[std::size_t(view)].centre) - at);
     out.push_back({at + float(options.margin) / glm::dot(way, normal) * way, view});
   }
   return out;
@@ -138,7 +128,7 @@ std::size_t free_sightlines(std::span<const Sightline> lines,
                             std::span<const Camera> cameras, const LookOptions& options,
                             SparseVolume& volume) {
   if (lines.empty()) return 0;
-  const VoxelSet hits = blocked(lines, on_grid(cameras, volume.grid), volume);
+  const VoxelSet hits = blocked(lines, projtex::to_grid(cameras, volume.grid), volume);
   const VoxelSet kept = around(known_positions, volume.grid);
   const Lattice lattice(volume.grid);
   std::vector<ivec3> fresh;

@@ -8,9 +8,10 @@
 #include "core/describe.h"
 #include "core/grid.h"
 #include "gpu/context.h"
-#include "projtex/image_set.h"
+#include "projtex/photographs.h"
 #include "refine/displacement.h"
 #include "refine/match.h"
+#include "refine/view_choice.h"
 
 namespace photohull::refine {
 
@@ -34,12 +35,11 @@ inline void describe(Described& to, LookOptions& o) {
 struct KnownSurface {
   std::vector<glm::vec3> positions, normals;
   std::vector<float> weights;  ///< of their peaks
-  std::vector<shaders::MatchChoice> choices;
+  std::vector<ViewChoice> choices;
 };
 
 KnownSurface known_surface(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
-                           std::span<const Peak> peaks,
-                           std::span<const shaders::MatchChoice> choices,
+                           std::span<const Peak> peaks, std::span<const ViewChoice> choices,
                            const LookOptions& options);
 
 /// A camera sees along this line, from a point a little above the surface on.
@@ -49,11 +49,11 @@ struct Sightline {
 };
 
 /// Lines of sight that the volume blocks and should not: from known surface to views that it is
-/// hidden from (MatchChoice::hidden) and that show it all the same, by correlation with the view
+/// hidden from (ViewChoice::hidden) and that show it all the same, by correlation with the view
 /// nearest in direction that it was matched in.
 std::vector<Sightline> find_sightlines(gpu::Context& context, const GridSpec& grid,
-                                       const KnownSurface& known, const projtex::ImageSet& images,
-                                       std::span<const Camera> cameras, double noise_sigma,
+                                       const KnownSurface& known,
+                                       const projtex::Photographs& photographs,
                                        const MatchOptions& match, const LookOptions& options);
 
 /// Takes out of the volume what enough lines of sight pass through, and then, a few times, voxels

@@ -1,4 +1,4 @@
-// Photo-consistency of surface patches against offsets along their normals.
+// What is known of surface patches by photo-consistency, and what decides it.
 #pragma once
 
 #include <algorithm>
@@ -7,15 +7,13 @@
 #include <vector>
 
 #include "core/describe.h"
-#include "core/grid.h"
-#include "core/mesh.h"
-#include "gpu/context.h"
 #include "photo/noise.h"
-#include "projtex/image_set.h"
-#include "shared/bake.h"
-#include "shared/refine.h"
 
 namespace photohull::refine {
+
+inline constexpr float kNoScore = -2;   ///< there are too few views to compare
+inline constexpr int kPatchRadius = 2;  ///< taps: every other place of 5 x 5 in the tangent plane
+inline constexpr int kPatchTaps = 13;
 
 struct MatchOptions {
   double least_spacing = 0.4, pixel_spacing = 1, most_bend = 1, best_pairs = 0.4;
@@ -79,22 +77,5 @@ struct Matches {
     return {scores.data() + vertex * std::size_t(range.count), std::size_t(range.count)};
   }
 };
-
-/// The views that each vertex of `mesh` (with normals) is matched in, sharp ones first where
-/// others are blurred (reference::choose_views). Visibility by depth maps of the mesh itself.
-std::vector<shaders::MatchChoice> choose_views(gpu::Context& context, const GridSpec& grid,
-                                               const TriMesh& mesh, const projtex::ImageSet& images,
-                                               std::span<const Camera> cameras,
-                                               const MatchOptions& options);
-
-/// Score in [-1, 1] of every surfel (voxels; positions and unit normals), moved by each offset, in
-/// the views chosen for it. Patches bend as `bends` (one per surfel, see curvatures()) says; empty:
-/// they are planes.
-Matches match_patches(gpu::Context& context, const GridSpec& grid,
-                      std::span<const shaders::BakeVertex> surfels,
-                      std::span<const glm::vec3> bends,
-                      std::span<const shaders::MatchChoice> choices,
-                      const projtex::ImageSet& images, std::span<const Camera> cameras,
-                      double noise_sigma, const OffsetRange& range, const MatchOptions& options);
 
 }  // namespace photohull::refine

@@ -5,7 +5,7 @@
 #include <functional>
 #include <limits>
 
-#include "refine/match.h"
+#include "refine/view_choice.h"
 #include "visibility/depth_maps.h"
 
 namespace photohull::refine::reference {
@@ -148,9 +148,9 @@ Choice choose_views(std::span<const MatchView> views, const dvec3& position, con
                    [](const Candidate& a, const Candidate& b) { return a.cosine > b.cosine; });
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.worth > b.worth; });
-  for (std::size_t k = 0; k < std::min<std::size_t>(hidden.size(), shaders::kHiddenViews); ++k)
+  for (std::size_t k = 0; k < std::min<std::size_t>(hidden.size(), ViewChoice::kMostHidden); ++k)
     out.hidden.push_back(hidden[k].view);
-  if (candidates.size() > shaders::kMatchCandidates) candidates.resize(shaders::kMatchCandidates);
+  if (candidates.size() > ViewChoice::kCandidates) candidates.resize(ViewChoice::kCandidates);
 
   std::vector<dvec3> directions;
   const auto take = [&](int k) {
@@ -165,7 +165,7 @@ Choice choose_views(std::span<const MatchView> views, const dvec3& position, con
     const double angle = degrees_between(c.direction, directions[0]);
     return angle < options.nearest_angle || angle > options.farthest_angle;
   });
-  while (out.views.size() < shaders::kMatchViews && !candidates.empty())
+  while (out.views.size() < ViewChoice::kMostViews && !candidates.empty())
     take(best_of(candidates, tie(out.views.size()), [&](const Candidate& c) {
       const bool duplicate = std::any_of(directions.begin(), directions.end(), [&](const dvec3& d) {
         return degrees_between(c.direction, d) < options.duplicate_angle;
@@ -177,7 +177,7 @@ Choice choose_views(std::span<const MatchView> views, const dvec3& position, con
 
 double match_patch(std::span<const MatchView> views, std::span<const int> chosen,
                    const Patch& patch, double noise_sigma, const MatchOptions& options) {
-  if (chosen.size() < 2) return shaders::kNoScore;
+  if (chosen.size() < 2) return kNoScore;
   const Frame f = frame(views[std::size_t(chosen[0])], patch, options);
   const std::vector<dvec3> own = taps(views[std::size_t(chosen[0])], patch, f.u, f.v);
   const double noise = 3 * double(own.size()) * variance_floor(noise_sigma);

@@ -8,7 +8,7 @@
 #include "projtex/gpu_views.h"
 #include "projtex/project_layer_reference.h"
 #include "refine/match.h"
-#include "shared/sweep.h"
+#include "shared/depth_map.h"
 
 namespace photohull::refine::reference {
 
@@ -29,7 +29,7 @@ glm::dvec2 derivative(const projtex::GridCamera& camera, const glm::dvec3& at,
 glm::dvec3 sample(const MatchView& view, const glm::dvec2& pixel, int level);
 
 struct Choice {
-  std::vector<int> views;   ///< the reference view first; at most kMatchViews
+  std::vector<int> views;   ///< the reference view first; at most ViewChoice::kMostViews
   int seen = 0;             ///< views that see the surfel
   std::vector<int> hidden;  ///< the most frontal of those in whose frame something hides it
 };
@@ -37,9 +37,10 @@ struct Choice {
 /// The views that a surfel (voxel coordinates; unit outward normal, or zero) is matched in
 /// (refine_choose_views.comp.glsl). The worthiest view that sees it is the reference. The others
 /// follow by falling worth, a third of it for near-duplicates of what was chosen, among those of
-/// the kMatchCandidates worthiest whose angle to the reference lies in the options' range. Worth is
-/// the cosine between normal and direction times the fourth power of the view's sharpness: the
-/// square of its gradients' energy, which places a patch. Least cosines are of the direction alone.
+/// the ViewChoice::kCandidates worthiest whose angle to the reference lies in the options' range.
+/// Worth is the cosine between normal and direction times the fourth power of the view's sharpness:
+/// the square of its gradients' energy, which places a patch. Least cosines are of the direction
+/// alone.
 ///
 /// `ties`: a choice that is taken where it is the best but for rounding.
 Choice choose_views(std::span<const MatchView> views, const glm::dvec3& position,
@@ -49,7 +50,7 @@ Choice choose_views(std::span<const MatchView> views, const glm::dvec3& position
 struct Patch {
   glm::dvec3 centre{0.0};  ///< voxel coordinates
   glm::dvec3 normal{0.0};  ///< unit
-  int radius = shaders::kMatchRadius;
+  int radius = kPatchRadius;
   glm::dvec3 bend{0.0};  ///< curvature along uu, uv, vv of the patch's axes, 1 / voxel
 };
 

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "core/viewing_depth.h"
-#include "projtex/gpu_views.h"
 #include "refine/ray_partners.h"
 #include "refine/ray_search.h"
 
@@ -52,15 +51,14 @@ glm::dvec3 normal_at(const SparseVolume& surface, const Ray& ray) {
 class RayMapper {
  public:
   RayMapper(gpu::Context& context, const SparseVolume& hull, const SparseVolume* surface,
-            const projtex::ImageSet& images, std::span<const Camera> cameras, double noise_sigma,
-            const VoteOptions& options)
+            const projtex::Photographs& photographs, const VoteOptions& options)
       : hull_(hull),
         surface_(surface),
         options_(options),
-        cameras_(on_grid(cameras, hull.grid)),
+        cameras_(projtex::to_grid(photographs.cameras, hull.grid)),
         partners_(choose_partners(cameras_, {glm::dvec3(0), glm::dvec3(hull.grid.voxels())},
                                   options.nearest_partner, options.tiles)),
-        search_(context, images, gpu_views(images), noise_sigma, options) {}
+        search_(context, photographs.images, cameras_, photographs.noise_sigma, options) {}
 
   /// View by view, so that memory is that of one view's rays.
   std::vector<RayMap> run() {
@@ -70,20 +68,6 @@ class RayMapper {
   }
 
  private:
-  static std::vector<projtex::GridCamera> on_grid(std::span<const Camera> cameras,
-                                                  const GridSpec& grid) {
-    std::vector<projtex::GridCamera> out;
-    for (const Camera& camera : cameras) out.push_back(projtex::to_grid(camera, grid));
-    return out;
-  }
-
-  std::vector<shaders::GpuView> gpu_views(const projtex::ImageSet& images) const {
-    const glm::ivec2 size(images.texture().width(), images.texture().height());
-    std::vector<shaders::GpuView> out;
-    for (const auto& camera : cameras_) out.push_back(projtex::to_gpu_view(camera, size));
-    return out;
-  }
-
   RayMap map_of(std::size_t v) const {
     RayMap map = empty_map(v);
     std::vector<Ray> rays = make_rays(v, map);
@@ -261,16 +245,16 @@ class RayMapper {
 }  // namespace
 
 std::vector<RayMap> match_rays(gpu::Context& context, const SparseVolume& hull,
-                               const projtex::ImageSet& images, std::span<const Camera> cameras,
-                               double noise_sigma, const VoteOptions& options) {
-  return RayMapper(context, hull, nullptr, images, cameras, noise_sigma, options).run();
+                               const projtex::Photographs& photographs,
+                               const VoteOptions& options) {
+  return RayMapper(context, hull, nullptr, photographs, options).run();
 }
 
 std::vector<RayMap> match_rays_again(gpu::Context& context, const SparseVolume& hull,
-                                     const SparseVolume& surface, const projtex::ImageSet& images,
-                                     std::span<const Camera> cameras, double noise_sigma,
+                                     const SparseVolume& surface,
+                                     const projtex::Photographs& photographs,
                                      const VoteOptions& options) {
-  return RayMapper(context, hull, &surface, images, cameras, noise_sigma, options).run();
+  return RayMapper(context, hull, &surface, photographs, options).run();
 }
 
 }  // namespace photohull::refine

@@ -1,12 +1,11 @@
 // Private to module refine: coarse depth maps of the views.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "core/grid.h"
 #include "gpu/context.h"
-#include "projtex/image_set.h"
+#include "projtex/photographs.h"
 #include "refine/vote.h"
 
 namespace photohull::refine {
@@ -23,15 +22,14 @@ struct RayMap {
 
 /// For every view, the depths at which its rays through the hull agree best with views near it.
 std::vector<RayMap> match_rays(gpu::Context& context, const SparseVolume& hull,
-                               const projtex::ImageSet& images, std::span<const Camera> cameras,
-                               double noise_sigma, const VoteOptions& options);
+                               const projtex::Photographs& photographs, const VoteOptions& options);
 
 /// Likewise, with `surface` (on the same grid) known: depths of the surface where it explains what
 /// the photographs show, and of what is found elsewhere along the ray where it does not. Rays that
 /// do not meet the surface say nothing.
 std::vector<RayMap> match_rays_again(gpu::Context& context, const SparseVolume& hull,
-                                     const SparseVolume& surface, const projtex::ImageSet& images,
-                                     std::span<const Camera> cameras, double noise_sigma,
+                                     const SparseVolume& surface,
+                                     const projtex::Photographs& photographs,
                                      const VoteOptions& options);
 
 }  // namespace photohull::refine

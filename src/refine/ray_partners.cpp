@@ -61,25 +61,22 @@ int next_partner(std::span<const glm::dvec3> directions, std::span<const int> ch
   return best;
 }
 
-shaders::MatchChoice choose(std::span<const glm::dvec3> directions, int own, double nearest) {
+ViewChoice choose(std::span<const glm::dvec3> directions, int own, double nearest) {
   std::vector<int> chosen{own};
-  while (chosen.size() < shaders::kMatchViews) {
+  while (chosen.size() < ViewChoice::kMostViews) {
     const int next = next_partner(directions, chosen, nearest);
     if (next < 0) break;
     chosen.push_back(next);
   }
-  shaders::MatchChoice c{{-1, -1, -1, -1}, {-1, -1, 0, int(chosen.size())}, glm::ivec4(-1)};
-  for (std::size_t k = 0; k < chosen.size(); ++k)
-    (k < 4 ? c.first[int(k)] : c.second[int(k - 4)]) = chosen[k];
-  return c;
+  ViewChoice out;
+  out.views = ViewList<ViewChoice::kMostViews>(chosen);
+  return out;
 }
 
-bool all_see(const shaders::MatchChoice& choice, std::span<const projtex::GridCamera> cameras,
+bool all_see(const ViewChoice& choice, std::span<const projtex::GridCamera> cameras,
              const glm::dvec3& place) {
-  for (int k = 0; k < choice.second.w; ++k)
-    if (!on_image(cameras[std::size_t(k < 4 ? choice.first[k] : choice.second[k - 4])], place))
-      return false;
-  return true;
+  return std::all_of(choice.views.begin(), choice.views.end(),
+                     [&](int view) { return on_image(cameras[std::size_t(view)], place); });
 }
 
 /// Unit, from a place to the cameras that have it on their image, and to `own`; else 0.
@@ -104,7 +101,7 @@ std::vector<ViewPartners> choose_partners(std::span<const projtex::GridCamera> c
   std::vector<ViewPartners> out(cameras.size());
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     const projtex::GridCamera& camera = cameras[i];
-    const shaders::MatchChoice usual = choose(about_middle, int(i), nearest);
+    const ViewChoice usual = choose(about_middle, int(i), nearest);
     out[i].across = tiles;
     for (int tile = 0; tile < tiles * tiles; ++tile) {
       const glm::dvec2 pixel(camera.width * (tile % tiles + 0.5) / tiles - 0.5,

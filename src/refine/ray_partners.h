@@ -8,15 +8,15 @@
 
 #include "core/box.h"
 #include "projtex/gpu_views.h"
-#include "shared/refine.h"
+#include "refine/view_choice.h"
 
 namespace photohull::refine {
 
 /// The views that one view's rays are matched with: a choice for each of its tiles, for what is
 /// seen in different parts of a photograph may be on the images of different neighbours.
 struct ViewPartners {
-  int across = 1;                           ///< tiles along either side
-  std::vector<shaders::MatchChoice> tiles;  ///< row-major
+  int across = 1;                 ///< tiles along either side
+  std::vector<ViewChoice> tiles;  ///< row-major
 
   /// Of the ray at (x, y) on a lattice of width x height rays over the image.
   int tile(int x, int y, int width, int height) const {

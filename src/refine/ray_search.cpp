@@ -5,26 +5,23 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <utility>
-
-#include "gpu/buffer.h"
-#include "gpu/program.h"
-#include "refine/match.h"
 
 namespace photohull::refine {
 namespace {
 
-using gpu::Buffer;
-
 constexpr int kLengths[] = {8, 16, 32, 64};                 // samples along a ray
-constexpr std::size_t kMostThreads = std::size_t(1) << 21;  // of a dispatch
+constexpr std::size_t kMostThreads = std::size_t(1) << 21;  // samples at a time
 constexpr double kHopeful = 0.2;               // below the least score, of what is worth spreading
 constexpr double kElsewhere = 2.5;             // voxels between places that are not the same
 constexpr int kGuesses = 8;                    // planes that a ray tries in a round
 constexpr double kLeastCosine = 0.2;           // between a plane's normal and the ray
 constexpr double kTilt = 0.7;                  // of the first round's guesses: tangent of the angle
 constexpr double kGolden = 2.399963229728653;  // radians; turns by it never repeat
+
+/// Of patches that face the camera: their normals point at it.
+OffsetRange away_from_camera(int count) { return {0, -1, count}; }
 
 double step_of(const Ray& ray, int count) { return std::max(1.0, ray.length / count); }
 
@@ -171,69 +168,26 @@ double Finding::lead() const {
 }
 
 RaySearch::RaySearch(gpu::Context& context, const projtex::ImageSet& images,
-                     std::vector<shaders::GpuView> views, double noise_sigma,
+                     std::span<const projtex::GridCamera> cameras, double noise_sigma,
                      const VoteOptions& options)
-    : context_(context),
-      images_(images),
-      views_(std::move(views)),
-      noise_(noise_sigma),
+    : matcher_(context, images, cameras,
+               {1, options.tap_spacing, 1, options.best_pairs, noise_sigma}, "refine_vote"),
       options_(options) {}
-
-RaySearch::Scores RaySearch::match(std::span<const shaders::BakeVertex> surfels,
-                                   std::span<const shaders::MatchChoice> choices,
-                                   int offsets) const {
-  const auto program =
-      gpu::Program::compute("refine_match_patches.comp.glsl", "#define PATCH_RADIUS 1\n");
-  const std::size_t batch = gpu::batch_size(
-      std::max(sizeof(shaders::MatchChoice), std::size_t(offsets) * sizeof(float)), surfels.size());
-  Scores out;
-  for (std::size_t first = 0; first < surfels.size(); first += batch) {
-    const std::size_t count = std::min(batch, surfels.size() - first);
-    match(program, surfels.subspan(first, count), choices.subspan(first, count), offsets, out);
-  }
-  return out;
-}
-
-void RaySearch::match(const gpu::Program& program, std::span<const shaders::BakeVertex> surfels,
-                      std::span<const shaders::MatchChoice> choices, int offsets,
-                      Scores& out) const {
-  shaders::MatchParameters p{};
-  p.counts = {int(surfels.size()), int(views_.size()), offsets, 0};
-  p.search = {0, -1, float(options_.tap_spacing), 1};
-  p.consistency = {float(noise_ * noise_), float(options_.best_pairs),
-                   float(variance_floor(noise_)), 0};
-  const std::size_t samples = surfels.size() * std::size_t(offsets);
-  const Buffer uniforms(sizeof p, &p), views = Buffer::of(views_);
-  const Buffer points(surfels.size() * sizeof(shaders::BakeVertex), surfels.data());
-  const Buffer choice_buffer(choices.size_bytes(), choices.data());
-  const Buffer scores(samples * sizeof(float)), textures(surfels.size() * sizeof(float));
-  uniforms.bind_uniform(0);
-  views.bind_storage(0);
-  points.bind_storage(1);
-  choice_buffer.bind_storage(2);
-  scores.bind_storage(3);
-  textures.bind_storage(5);
-  images_.texture().bind(0);
-  program.dispatch(context_, "refine_vote", gpu::group_count(samples, 64));
-  const auto score = scores.download<float>(samples);
-  const auto texture = textures.download<float>(surfels.size());
-  out.score.insert(out.score.end(), score.begin(), score.end());
-  out.texture.insert(out.texture.end(), texture.begin(), texture.end());
-}
 
 void RaySearch::scores_along(std::span<const Ray> rays, const ViewPartners& partners, int count,
                              const Decide& decide) const {
   const std::size_t batch = kMostThreads / std::size_t(count);
   for (std::size_t first = 0; first < rays.size(); first += batch) {
-    std::vector<shaders::BakeVertex> surfels;
-    std::vector<shaders::MatchChoice> choices;
+    std::vector<PatchSurfel> surfels;
+    std::vector<ViewChoice> choices;
     for (const Ray& ray : rays.subspan(first, std::min(batch, rays.size() - first))) {
-      surfels.push_back({glm::vec4(ray.from, step_of(ray, count)), glm::vec4(-ray.direction, 0)});
+      surfels.push_back(
+          {glm::vec3(ray.from), glm::vec3(-ray.direction), float(step_of(ray, count))});
       choices.push_back(partners.tiles[std::size_t(ray.tile)]);
     }
-    const Scores s = match(surfels, choices, count);
+    const Matches s = matcher_.match(surfels, {}, choices, away_from_camera(count));
     for (std::size_t i = 0; i < surfels.size(); ++i)
-      decide(first + i, s.score.data() + i * std::size_t(count));
+      decide(first + i, s.scores.data() + i * std::size_t(count));
   }
 }
 
@@ -241,14 +195,14 @@ std::vector<float> RaySearch::textures(std::span<const Ray> rays,
                                        const ViewPartners& partners) const {
   std::vector<float> out;
   for (std::size_t first = 0; first < rays.size(); first += kMostThreads) {
-    std::vector<shaders::BakeVertex> surfels;
-    std::vector<shaders::MatchChoice> choices;
+    std::vector<PatchSurfel> surfels;
+    std::vector<ViewChoice> choices;
     for (const Ray& ray : rays.subspan(first, std::min(kMostThreads, rays.size() - first))) {
-      surfels.push_back({glm::vec4(ray.from + 0.5 * ray.length * ray.direction, 1),
-                         glm::vec4(-ray.direction, 0)});
+      surfels.push_back(
+          {glm::vec3(ray.from + 0.5 * ray.length * ray.direction), glm::vec3(-ray.direction)});
       choices.push_back(partners.tiles[std::size_t(ray.tile)]);
     }
-    const Scores s = match(surfels, choices, 1);
+    const Matches s = matcher_.match(surfels, {}, choices, away_from_camera(1));
     out.insert(out.end(), s.texture.begin(), s.texture.end());
   }
   return out;
@@ -292,25 +246,25 @@ void RaySearch::spread(std::span<const Ray> rays, int width, int height,
     for (std::size_t first = 0; first < trying.size(); first += batch) {
       const auto part = std::span<const std::size_t>(trying).subspan(
           first, std::min(batch, trying.size() - first));
-      std::vector<shaders::BakeVertex> surfels(part.size() * kGuesses);
-      std::vector<shaders::MatchChoice> choices(surfels.size());
+      std::vector<PatchSurfel> surfels(part.size() * kGuesses);
+      std::vector<ViewChoice> choices(surfels.size());
       tbb::parallel_for(std::size_t(0), part.size(), [&](std::size_t i) {
         const Guesses guesses = lattice.guesses(part[i], before, round);
         const Ray& ray = rays[part[i]];
         for (std::size_t k = 0; k < kGuesses; ++k) {
-          surfels[i * kGuesses + k] = {glm::vec4(ray.from + guesses[k].along * ray.direction, 1),
-                                       glm::vec4(guesses[k].normal, 0)};
+          surfels[i * kGuesses + k] = {glm::vec3(ray.from + guesses[k].along * ray.direction),
+                                       glm::vec3(guesses[k].normal)};
           choices[i * kGuesses + k] = partners.tiles[std::size_t(ray.tile)];
         }
       });
-      const Scores s = match(surfels, choices, 1);
+      const Matches s = matcher_.match(surfels, {}, choices, away_from_camera(1));
       tbb::parallel_for(std::size_t(0), part.size(), [&](std::size_t i) {
         Finding& found = findings[part[i]];
         const Ray& ray = rays[part[i]];
         for (std::size_t k = i * kGuesses; k < (i + 1) * kGuesses; ++k) {
-          if (s.score[k] <= found.score) continue;
+          if (s.scores[k] <= found.score) continue;
           found.moved = true;
-          found.score = s.score[k];
+          found.score = s.scores[k];
           found.along = glm::dot(glm::dvec3(surfels[k].position) - ray.from, ray.direction);
           found.normal = glm::dvec3(surfels[k].normal);
         }

@@ -10,11 +10,9 @@
 
 #include "gpu/context.h"
 #include "projtex/image_set.h"
+#include "refine/kernels/match_patches.h"
 #include "refine/ray_partners.h"
 #include "refine/vote.h"
-#include "shared/bake.h"
-#include "shared/refine.h"
-#include "shared/view.h"
 
 namespace photohull::refine {
 
@@ -46,9 +44,10 @@ struct Finding {
 /// Searches the rays of one view after another.
 class RaySearch {
  public:
-  /// `images` and `views` are in the same order, on the grid of the rays.
+  /// `images` and `cameras` are in the same order, on the grid of the rays.
   RaySearch(gpu::Context& context, const projtex::ImageSet& images,
-            std::vector<shaders::GpuView> views, double noise_sigma, const VoteOptions& options);
+            std::span<const projtex::GridCamera> cameras, double noise_sigma,
+            const VoteOptions& options);
 
   /// Calls decide(i, scores) with the scores of `count` patches across the i-th ray, `step_of`
   /// voxels apart from its start on. Throws Error when the device cannot hold a batch.
@@ -72,20 +71,7 @@ class RaySearch {
               std::span<Finding> findings) const;
 
  private:
-  struct Scores {
-    std::vector<float> score, texture;
-  };
-  /// `choices`: one for each surfel.
-  Scores match(std::span<const shaders::BakeVertex> surfels,
-               std::span<const shaders::MatchChoice> choices, int offsets) const;
-  /// Adds the scores of as many surfels as storage blocks hold.
-  void match(const gpu::Program& program, std::span<const shaders::BakeVertex> surfels,
-             std::span<const shaders::MatchChoice> choices, int offsets, Scores& out) const;
-
-  gpu::Context& context_;
-  const projtex::ImageSet& images_;
-  std::vector<shaders::GpuView> views_;
-  double noise_;
+  PatchMatcher matcher_;
   const VoteOptions& options_;
 };
 

@@ -164,16 +164,22 @@ struct CheckpointFile {
 /// The visual hull on a grid.
 using HullAt = std::function<SparseVolume(const GridSpec&)>;
 
-/// The surface that the photographs agree on, on the grid `finest`, from the hull's silhouettes
-/// (one per camera, parts may be empty) inwards. A level starts from the one before, takes back
-/// what only finer voxels of the hull show, and then matches the surface's tangent patches between
-/// the views that see them and moves its signed distance, a few times over. Surface that no camera
-/// sees is closed smoothly. Deterministic on one device. With a `checkpoint`, levels that an
-/// interrupted run of the same job finished are not done again; the caller removes the file. Throws
-/// Cancelled, UsageError for options, and what hull_at throws.
-SparseVolume refine_surface(gpu::Context& context, const GridSpec& finest, const HullAt& hull_at,
-                            std::span<const carving::Silhouette> silhouettes,
-                            const projtex::ImageSet& images, std::span<const Camera> cameras,
+/// What a surface is refined from. The parts outlive the call.
+struct RefineScene {
+  const GridSpec& finest;  ///< the result's
+  HullAt hull_at;
+  std::span<const carving::Silhouette> silhouettes;  ///< one a camera, parts may be empty
+  const projtex::ImageSet& images;                   ///< one a camera
+  std::span<const Camera> cameras;
+};
+
+/// The surface that the photographs agree on, on the finest grid, from the hull inwards. A level
+/// starts from the one before, takes back what only finer voxels of the hull show, and then matches
+/// the surface's tangent patches between the views that see them and moves its signed distance, a
+/// few times over. Surface that no camera sees is closed smoothly. Deterministic on one device.
+/// With a `checkpoint`, levels that an interrupted run of the same job finished are not done again;
+/// the caller removes the file. Throws Cancelled, UsageError for options, and what hull_at throws.
+SparseVolume refine_surface(gpu::Context& context, const RefineScene& scene,
                             const RefineOptions& options, Progress& progress,
                             RefineReport* report = nullptr,
                             const CheckpointFile* checkpoint = nullptr);

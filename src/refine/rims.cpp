@@ -45,9 +45,8 @@ double tightness(const SparseVolume& hull, std::span<const glm::vec3> positions,
 }  // namespace
 
 double pull_to_hull(const SparseVolume& hull, const VertexGraph& graph,
-                    std::span<const glm::vec3> positions, std::span<const float> texture,
-                    std::span<const float> trust, const RimOptions& options,
-                    std::vector<Peak>& peaks) {
+                    std::span<const glm::vec3> positions, const PatchQuality& patches,
+                    const RimOptions& options, std::vector<Peak>& peaks) {
   const std::vector<float> told = evidence_around(graph, peaks);
   const double tight = tightness(hull, positions, peaks, told, options.reach);
   const double strongest = options.weight * tight;
@@ -56,8 +55,8 @@ double pull_to_hull(const SparseVolume& hull, const VertexGraph& graph,
     const float share = 1 - std::clamp(under, 0.0f, float(options.reach)) / float(options.reach);
     Peak& peak = peaks[i];
     const float open = std::max(0.0f, 1 - told[i] / float(options.told));
-    const float thick = trust[i] * trust[i];
-    const float weight = float(strongest) * thick * share * open * (1 - texture[i]);
+    const float thick = patches.trust[i] * patches.trust[i];
+    const float weight = float(strongest) * thick * share * open * (1 - patches.texture[i]);
     if (!(weight > 0)) return;
     peak.offset = (peak.weight * peak.offset + weight * under) / (peak.weight + weight);
     peak.weight += weight;

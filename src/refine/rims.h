@@ -24,17 +24,22 @@ inline void describe(Described& to, RimOptions& o) {
             "mean weight of the peaks around at which the hull has lost its say, too");
 }
 
+/// What a patch at each surfel is worth, [0, 1].
+struct PatchQuality {
+  std::span<const float> texture;  ///< Matches::texture
+  std::span<const float> trust;    ///< by the body behind it (trust_thickness)
+};
+
 /// Mixes into the peaks of vertices on the hull, or just under it, that they want to lie on it:
-/// the less texture a vertex has (Matches::texture), and the less the photographs tell around it,
+/// the less texture a vertex has (`patches.texture`), and the less the photographs tell around it,
 /// the more it counts. The hull holds the object with room to spare: where noise makes single
 /// peaks weak, many that agree still know better. A hull that is loose where photographs check it
 /// is not believed where they do not: the weight falls with the fourth power of the share of what
 /// they tell surely that lies on it. Nor is it at thin parts, which it makes too thick: the weight
-/// falls with the square of `trust` (trust_thickness). `positions` in voxels of the hull's grid.
+/// falls with the square of `patches.trust`. `positions` in voxels of the hull's grid.
 /// Returns how far the hull can be believed, [0, 1].
 double pull_to_hull(const SparseVolume& hull, const VertexGraph& graph,
-                    std::span<const glm::vec3> positions, std::span<const float> texture,
-                    std::span<const float> trust, const RimOptions& options,
-                    std::vector<Peak>& peaks);
+                    std::span<const glm::vec3> positions, const PatchQuality& patches,
+                    const RimOptions& options, std::vector<Peak>& peaks);
 
 }  // namespace photohull::refine

@@ -72,12 +72,12 @@ std::vector<float> told_around(const VertexGraph& graph, std::span<const float> 
   return mean;
 }
 
-void seat_outlines(const SparseVolume& hull, std::span<const Camera> cameras,
-                   std::span<const carving::Silhouette> silhouettes, const TriMesh& mesh,
-                   const VertexGraph& graph, std::span<const glm::vec3> positions,
-                   std::span<const float> told, std::span<const float> tight,
+void seat_outlines(const SparseVolume& hull, const SilhouetteCones& cones,
+                   const MeshSurfels& surfels, const SeatBeliefs& beliefs,
                    const SeatOptions& options, std::vector<float>& moves) {
   if (options.passes == 0) return;
+  const TriMesh& mesh = surfels.mesh;
+  const std::span<const glm::vec3> positions = surfels.positions;
   const std::size_t n = positions.size();
   const std::vector<float> photographs = moves, fair(n, 1);
   RegularizeOptions smooth;
@@ -87,22 +87,22 @@ void seat_outlines(const SparseVolume& hull, std::span<const Camera> cameras,
     std::vector<glm::vec3> moved(positions.begin(), positions.end());
     for (std::size_t i = 0; i < n; ++i) moved[i] += moves[i] * mesh.normals[i];
     const std::vector<glm::vec3> normals = face_normals(mesh, moved);
-    std::vector<Peak> peaks = asked(
-        hull, find_contacts(hull.grid, mesh, moved, normals, cameras, silhouettes, options.reach),
-        moved, tight, options);
+    std::vector<Peak> peaks =
+        asked(hull, find_contacts(hull.grid, mesh, moved, normals, cones, options.reach), moved,
+              beliefs.tight, options);
     for (std::size_t i = 0; i < n; ++i) {
-      const float own = told[i] + kHold;
+      const float own = beliefs.told[i] + kHold;
       peaks[i].offset =
           (peaks[i].offset + own * (photographs[i] - moves[i])) / (peaks[i].weight + own);
       peaks[i].weight += own;
     }
-    const std::vector<float> more = regularize(graph, peaks, moved, normals, fair, smooth);
+    const std::vector<float> more = regularize(surfels.graph, peaks, moved, normals, fair, smooth);
     for (std::size_t i = 0; i < n; ++i) moves[i] += more[i];
   }
   for (std::size_t i = 0; i < n; ++i) {
     const double under = -hull.interpolated(glm::dvec3(positions[i])) - moves[i];
-    const double known = options.unsure / std::sqrt(double(told[i]) + kHold);
-    if (under < std::min(options.margin * double(tight[i]), known))
+    const double known = options.unsure / std::sqrt(double(beliefs.told[i]) + kHold);
+    if (under < std::min(options.margin * double(beliefs.tight[i]), known))
       moves[i] += float(options.margin);
   }
 }

@@ -4,11 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "carving/hull.h"
-#include "core/camera.h"
 #include "core/describe.h"
 #include "core/grid.h"
-#include "core/mesh.h"
+#include "refine/silhouette_cones.h"
 #include "refine/surface.h"
 
 namespace photohull::refine {
@@ -34,8 +32,14 @@ inline void describe(Described& to, SeatOptions& o) {
 /// surface around such that single surfels with strong claims among many without any count little.
 std::vector<float> told_around(const VertexGraph& graph, std::span<const float> weights);
 
-/// Changes the displacements `moves` (voxels along the normals) of a mesh's vertices (`positions`
-/// in voxels of the hull's grid), such that the moved surface touches the rays through the
+/// What is believed of each surfel.
+struct SeatBeliefs {
+  std::span<const float> told;   ///< how surely photographs tell its offset (told_around)
+  std::span<const float> tight;  ///< chance in [0, 1] that surface lies on the hull here
+};
+
+/// Changes the displacements `moves` (voxels along the normals) of a mesh's vertices, on the hull's
+/// grid, such that the moved surface touches the rays through the
 /// silhouettes' outlines: least squares of what photographs tell (the moves as they come, by
 /// `told`, see told_around) and of what silhouettes tell. Each ray touches the object: the part of
 /// the surface that comes nearest to it is to, with options.unsure. Another part next to the ray
@@ -44,10 +48,8 @@ std::vector<float> told_around(const VertexGraph& graph, std::span<const float> 
 /// at thin parts, which hulls make too thick). Surface that ends closer under the hull than
 /// photographs can tell, and than the hull's distances are exact, is moved on beyond the hull: the
 /// caller intersects both.
-void seat_outlines(const SparseVolume& hull, std::span<const Camera> cameras,
-                   std::span<const carving::Silhouette> silhouettes, const TriMesh& mesh,
-                   const VertexGraph& graph, std::span<const glm::vec3> positions,
-                   std::span<const float> told, std::span<const float> tight,
+void seat_outlines(const SparseVolume& hull, const SilhouetteCones& cones,
+                   const MeshSurfels& surfels, const SeatBeliefs& beliefs,
                    const SeatOptions& options, std::vector<float>& moves);
 
 }  // namespace photohull::refine

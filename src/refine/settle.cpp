@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "projtex/gpu_views.h"
+#include "projtex/photographs.h"
 
 namespace photohull::refine {
 namespace {
@@ -16,29 +16,24 @@ double size_of(const glm::vec3& bend) {
 
 }  // namespace
 
-SettledBricks::SettledBricks(const GridSpec& grid, std::span<const glm::vec3> positions,
-                             std::span<const glm::vec3> bends, const Matches& matches,
-                             std::span<const Peak> peaks,
-                             std::span<const shaders::MatchChoice> choices,
-                             std::span<const Camera> cameras, std::span<const Settled> before,
-                             const SettleOptions& options)
+SettledBricks::SettledBricks(const GridSpec& grid, const MatchedSurfels& surfels,
+                             std::span<const Camera> cameras, const SettleOptions& options)
     : grid_(grid), kinds_(grid.brick_count(), kNone) {
-  std::vector<projtex::GridCamera> on_grid;
-  for (const Camera& camera : cameras) on_grid.push_back(projtex::to_grid(camera, grid));
+  const std::vector<projtex::GridCamera> on_grid = projtex::to_grid(cameras, grid);
   const auto kind_of = [&](std::size_t i) {
-    if (is_settled(before[i])) return before[i];
-    if (choices[i].second.w < 2) return Settled::kUnseen;
-    const projtex::GridCamera& camera = on_grid[std::size_t(choices[i].first.x)];
-    const double distance = glm::distance(camera.centre, glm::dvec3(positions[i]));
+    if (is_settled(surfels.before[i])) return surfels.before[i];
+    if (!surfels.choices[i].comparable()) return Settled::kUnseen;
+    const projtex::GridCamera& camera = on_grid[std::size_t(surfels.choices[i].reference())];
+    const double distance = glm::distance(camera.centre, glm::dvec3(surfels.positions[i]));
     if (0.5 * camera.focal / distance < options.least_pixels) return Settled::kPixels;
-    if (matches.texture[i] < options.least_texture) return Settled::kPlain;
-    const bool flat = !bends.empty() && size_of(bends[i]) < options.flat;
-    return flat && peaks[i].weight > 0.5f ? Settled::kFlat : Settled::kSplit;
+    if (surfels.texture[i] < options.least_texture) return Settled::kPlain;
+    const bool flat = !surfels.bends.empty() && size_of(surfels.bends[i]) < options.flat;
+    return flat && surfels.peaks[i].weight > 0.5f ? Settled::kFlat : Settled::kSplit;
   };
   const glm::ivec3 last = grid.voxels() - 1;
-  for (std::size_t i = 0; i < positions.size(); ++i) {
+  for (std::size_t i = 0; i < surfels.positions.size(); ++i) {
     const glm::ivec3 voxel =
-        glm::clamp(glm::ivec3(glm::floor(positions[i] + 0.5f)), glm::ivec3(0), last);
+        glm::clamp(glm::ivec3(glm::floor(surfels.positions[i] + 0.5f)), glm::ivec3(0), last);
     std::uint8_t& brick = kinds_[grid.brick_index(voxel / kBrickEdge)];
     brick = std::min(brick, std::uint8_t(kind_of(i)));
   }

@@ -12,6 +12,7 @@
 #include "core/grid.h"
 #include "refine/displacement.h"
 #include "refine/match.h"
+#include "refine/view_choice.h"
 
 namespace photohull::refine {
 
@@ -40,18 +41,23 @@ enum class Settled : std::uint8_t {
 /// Is there anything left to match?
 inline bool is_settled(Settled kind) { return kind != Settled::kSplit && kind != Settled::kUnseen; }
 
+/// A level's surfels, and what matching said of each.
+struct MatchedSurfels {
+  std::span<const glm::vec3> positions;  ///< voxels
+  std::span<const glm::vec3> bends;      ///< as curvatures() gives them, or empty
+  std::span<const float> texture;        ///< Matches::texture
+  std::span<const Peak> peaks;
+  std::span<const ViewChoice> choices;
+  std::span<const Settled> before;  ///< what the level before said
+};
+
 /// The bricks of one level's surface.
 class SettledBricks {
  public:
   SettledBricks() = default;
-  /// A brick is split when any of its surfels asks for it. `positions` in voxels; `bends` as
-  /// curvatures() gives them, or empty; `before`, what the level before said of each surfel: what
-  /// was settled stays so.
-  SettledBricks(const GridSpec& grid, std::span<const glm::vec3> positions,
-                std::span<const glm::vec3> bends, const Matches& matches,
-                std::span<const Peak> peaks, std::span<const shaders::MatchChoice> choices,
-                std::span<const Camera> cameras, std::span<const Settled> before,
-                const SettleOptions& options);
+  /// A brick is split when any of its surfels asks for it; what was settled before stays so.
+  SettledBricks(const GridSpec& grid, const MatchedSurfels& surfels,
+                std::span<const Camera> cameras, const SettleOptions& options);
 
   /// As grid() and kinds() gave it.
   SettledBricks(const GridSpec& grid, std::vector<std::uint8_t> kinds)

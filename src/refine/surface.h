@@ -27,6 +27,15 @@ struct VertexGraph {
 /// Triangles have three different corners each.
 VertexGraph make_graph(const TriMesh& mesh);
 
+/// A mesh on the grid of its volume, with the graph of its edges; `positions` are those of its
+/// vertices in voxels.
+struct MeshSurfels {
+  const GridSpec& grid;
+  const TriMesh& mesh;
+  const VertexGraph& graph;
+  std::span<const glm::vec3> positions;
+};
+
 inline constexpr float kStillReach = 2.25f;  ///< voxels from the surface
 
 /// The distances of a volume near its surface, while a step changes it: a third of its size.

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "projtex/gpu_views.h"
+#include "projtex/photographs.h"
 
 namespace photohull::refine {
 namespace {
@@ -42,24 +42,21 @@ std::vector<float> trust_thickness(const SparseVolume& volume, std::span<const g
 }
 
 void trust_outlines(const GridSpec& grid, std::span<const glm::vec3> positions,
-                    std::span<const shaders::MatchChoice> choices, std::span<const Camera> cameras,
-                    std::span<const carving::Silhouette> silhouettes, const FitOptions& options,
-                    std::vector<float>& trust) {
-  std::vector<projtex::GridCamera> on_grid;
-  for (const Camera& camera : cameras) on_grid.push_back(projtex::to_grid(camera, grid));
+                    std::span<const ViewChoice> choices, const SilhouetteCones& cones,
+                    const FitOptions& options, std::vector<float>& trust) {
+  const std::vector<projtex::GridCamera> on_grid = projtex::to_grid(cones.cameras, grid);
   for_surfels(positions.size(), [&](std::size_t i) {
     double share = 1, half_edge = 0;  // voxels
-    for (int k = 0; k < choices[i].second.w; ++k) {
-      const auto v = std::size_t(k < 4 ? choices[i].first[k] : choices[i].second[k - 4]);
-      const projtex::GridCamera& camera = on_grid[v];
+    for (const int v : choices[i].views) {
+      const projtex::GridCamera& camera = on_grid[std::size_t(v)];
       const glm::dvec3 p = camera.projection * glm::dvec4(glm::dvec3(positions[i]), 1);
       if (p.z <= 1) continue;
       const double pixels = camera.focal / p.z;  // per voxel
       if (half_edge == 0)
-        half_edge =
-            shaders::kMatchRadius * std::max(options.least_spacing, options.pixel_spacing / pixels);
-      if (!silhouettes[v].distance) continue;
-      const double inside = pixels_inside(*silhouettes[v].distance, glm::dvec2(p) / p.z);
+        half_edge = kPatchRadius * std::max(options.least_spacing, options.pixel_spacing / pixels);
+      const SilhouetteDistance* distance = cones.silhouettes[std::size_t(v)].distance;
+      if (!distance) continue;
+      const double inside = pixels_inside(*distance, glm::dvec2(p) / p.z);
       share = std::min(share, std::max(inside / (half_edge * pixels), 0.0));
     }
     trust[i] *= float(share * share);

@@ -4,11 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "carving/hull.h"
-#include "core/camera.h"
 #include "core/grid.h"
 #include "refine/fit_patches.h"
-#include "shared/refine.h"
+#include "refine/silhouette_cones.h"
+#include "refine/view_choice.h"
 
 namespace photohull::refine {
 
@@ -22,8 +21,7 @@ std::vector<float> trust_thickness(const SparseVolume& volume, std::span<const g
 /// the view's outline, where that is below the half edge of its patch. Views without a silhouette
 /// do not count.
 void trust_outlines(const GridSpec& grid, std::span<const glm::vec3> positions,
-                    std::span<const shaders::MatchChoice> choices, std::span<const Camera> cameras,
-                    std::span<const carving::Silhouette> silhouettes, const FitOptions& options,
-                    std::vector<float>& trust);
+                    std::span<const ViewChoice> choices, const SilhouetteCones& cones,
+                    const FitOptions& options, std::vector<float>& trust);
 
 }  // namespace photohull::refine

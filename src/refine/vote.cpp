@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "projtex/gpu_views.h"
 #include "refine/ray_maps.h"
 #include "refine/voxel_set.h"
 
@@ -23,9 +22,10 @@ class Voter {
  public:
   Voter(const SparseVolume& hull, std::span<const Camera> cameras, std::vector<RayMap> maps,
         const VoteOptions& options)
-      : hull_(hull), options_(options), maps_(std::move(maps)) {
-    for (const Camera& camera : cameras) cameras_.push_back(projtex::to_grid(camera, hull.grid));
-  }
+      : hull_(hull),
+        options_(options),
+        maps_(std::move(maps)),
+        cameras_(projtex::to_grid(cameras, hull.grid)) {}
 
   /// Asks again about voxels beside what rays found before the volume's surface, and beside where
   /// they passed through it.
@@ -193,31 +193,25 @@ class Voter {
 }  // namespace
 
 SparseVolume vote_free_space(gpu::Context& context, const SparseVolume& hull,
-                             const projtex::ImageSet& images, std::span<const Camera> cameras,
-                             double noise_sigma, const VoteOptions& options) {
-  return Voter(hull, cameras, match_rays(context, hull, images, cameras, noise_sigma, options),
-               options)
+                             const projtex::Photographs& photographs, const VoteOptions& options) {
+  return Voter(hull, photographs.cameras, match_rays(context, hull, photographs, options), options)
       .fuse();
 }
 
 SparseVolume label_by_votes(gpu::Context& context, const SparseVolume& hull,
-                            const projtex::ImageSet& images, std::span<const Camera> cameras,
-                            double noise_sigma, const VoteOptions& options,
+                            const projtex::Photographs& photographs, const VoteOptions& options,
                             const LabelOptions& label) {
-  return Voter(hull, cameras, match_rays(context, hull, images, cameras, noise_sigma, options),
-               options)
+  return Voter(hull, photographs.cameras, match_rays(context, hull, photographs, options), options)
       .label(context, label);
 }
 
 Revision vote_again(gpu::Context& context, SparseVolume& volume, const SparseVolume& hull,
-                    const projtex::ImageSet& images, std::span<const Camera> cameras,
-                    double noise_sigma, VoteOptions options) {
+                    const projtex::Photographs& photographs, VoteOptions options) {
   options.ray_spacing = options.again_spacing;
   options.least_score = options.again_score;
   options.least_weight = options.again_weight;
-  return Voter(hull, cameras,
-               match_rays_again(context, hull, volume, images, cameras, noise_sigma, options),
-               options)
+  return Voter(hull, photographs.cameras,
+               match_rays_again(context, hull, volume, photographs, options), options)
       .revise(volume);
 }
 

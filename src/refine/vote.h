@@ -2,13 +2,12 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 
 #include "core/describe.h"
 #include "core/grid.h"
 #include "gpu/context.h"
-#include "projtex/image_set.h"
-#include "refine/label_space.h"
+#include "projtex/photographs.h"
+#include "refine/kernels/label_space.h"
 
 namespace photohull::refine {
 
@@ -67,20 +66,17 @@ inline void describe(Described& to, VoteOptions& o) {
 /// near it by 3 x 3 patches across the ray, and a voxel takes the weighted mean of its signed
 /// distances along them (voxels, not below the hull's). Only the signs and the distances near zero
 /// are meaningful, and a stray ray may leave pockets in the body that no path joins to the outside
-/// (fill_cavities). `cameras` and `images` are in the same order, `noise_sigma` > 0 in square-root
-/// encoding. All bricks that are not outside are stored. Throws Error when the device cannot hold a
-/// batch.
+/// (fill_cavities). The photographs' noise is > 0. All bricks that are not outside are stored.
+/// Throws Error when the device cannot hold a batch.
 SparseVolume vote_free_space(gpu::Context& context, const SparseVolume& hull,
-                             const projtex::ImageSet& images, std::span<const Camera> cameras,
-                             double noise_sigma, const VoteOptions& options);
+                             const projtex::Photographs& photographs, const VoteOptions& options);
 
 /// Space that no silhouette bounds: free before the depths that the views' rays find, solid in a
 /// thin shell behind them, and elsewhere as the smallest surface has it (label_space), so that what
 /// is unknown is not solid unless solid space encloses it. Distances are as vote_free_space gives
 /// them. Throws as that does.
 SparseVolume label_by_votes(gpu::Context& context, const SparseVolume& hull,
-                            const projtex::ImageSet& images, std::span<const Camera> cameras,
-                            double noise_sigma, const VoteOptions& options,
+                            const projtex::Photographs& photographs, const VoteOptions& options,
                             const LabelOptions& label);
 
 struct Revision {
@@ -92,7 +88,6 @@ struct Revision {
 /// and bodies that only coarser voxels could not look past go. Rays that the surface explains vote
 /// too. `volume` is on the hull's grid.
 Revision vote_again(gpu::Context& context, SparseVolume& volume, const SparseVolume& hull,
-                    const projtex::ImageSet& images, std::span<const Camera> cameras,
-                    double noise_sigma, VoteOptions options);
+                    const projtex::Photographs& photographs, VoteOptions options);
 
 }  // namespace photohull::refine

@@ -12,7 +12,7 @@
 #include "projtex/gpu_views.h"
 #include "projtex/image_set.h"
 #include "render/confidence.h"
-#include "shared/sweep.h"
+#include "shared/depth_map.h"
 
 namespace photohull {
 

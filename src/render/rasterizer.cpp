@@ -127,7 +127,7 @@ Rasterizer::Rasterizer(gpu::Context& context, const TriMesh& mesh)
       geometry_(visibility::Geometry::of_mesh(mesh)),
       normals_(gpu::Buffer::of(mesh.normals)),
       colours_(gpu::Buffer::of(encode_colours(mesh))),
-      program_(gpu::Program::raster("render_mesh.vert.glsl", "render_mesh.frag.glsl",
+      program_(gpu::Program::raster(context, "render_mesh.vert.glsl", "render_mesh.frag.glsl",
                                     visibility::technique_defines(shadows()))) {
   glCreateVertexArrays(1, &vertex_array_);
   glVertexArrayVertexBuffer(vertex_array_, 0, geometry_.positions().id(), 0, sizeof(glm::vec3));
@@ -167,12 +167,12 @@ visibility::VisibilityMap Rasterizer::side_light(const Camera& camera) const {
 Rendering Rasterizer::draw(const Camera& camera, const Window& window, int width, int height) {
   const visibility::VisibilityMap light = side_light(camera);
   const Target target(width * kSupersample, height * kSupersample);
-  program_.set("clip_from_mesh", clip_from_mesh(camera, geometry_.origin(), window));
-  program_.set("camera_from_mesh", glm::mat4(glm::dmat4(camera.cam_from_world.rotation)));
+  program_->set("clip_from_mesh", clip_from_mesh(camera, geometry_.origin(), window));
+  program_->set("camera_from_mesh", glm::mat4(glm::dmat4(camera.cam_from_world.rotation)));
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_CULL_FACE);
   glFrontFace(GL_CW);
-  program_.use();
+  program_->use();
   light.bind();
   glBindVertexArray(vertex_array_);
   {

@@ -1,6 +1,8 @@
 // Private to module render: triangles to pictures through the GL pipeline.
 #pragma once
 
+#include <memory>
+
 #include "core/mesh.h"
 #include "gpu/buffer.h"
 #include "gpu/context.h"
@@ -38,7 +40,7 @@ class Rasterizer {
   gpu::Context& context_;
   visibility::Geometry geometry_;
   gpu::Buffer normals_, colours_;
-  gpu::Program program_;
+  std::shared_ptr<const gpu::Program> program_;
   unsigned vertex_array_ = 0;
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shared/bake.h"
+
 namespace photohull::render {
 namespace {
 
@@ -11,42 +13,42 @@ constexpr int kMaxSteps = 4096;
 
 /// Points of a regular subdivision of a triangle.
 void subdivide(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, int steps,
-               std::vector<shaders::BakeVertex>& out) {
+               std::vector<SurfacePoint>& out) {
   const glm::vec3 ab = (b - a) / float(steps), ac = (c - a) / float(steps);
-  const glm::vec4 normal(glm::cross(b - a, c - a), 0);  // the kernel needs its direction only
+  const glm::vec3 normal = glm::cross(b - a, c - a);  // the kernel needs its direction only
   for (int i = 0; i <= steps; ++i)
     for (int j = 0; i + j <= steps; ++j) {
       const bool corner = (i == 0 && j == 0) || i == steps || j == steps;
-      if (!corner) out.push_back({glm::vec4(a + float(i) * ab + float(j) * ac, 0), normal});
+      if (!corner) out.push_back({a + float(i) * ab + float(j) * ac, normal});
     }
 }
 
 }  // namespace
 
-std::vector<shaders::BakeVertex> to_voxels(const GridSpec& grid, const TriMesh& mesh) {
+std::vector<SurfacePoint> to_voxels(const GridSpec& grid, const TriMesh& mesh) {
   return to_voxels(grid, mesh, 0, mesh.positions.size());
 }
 
-std::vector<shaders::BakeVertex> to_voxels(const GridSpec& grid, const TriMesh& mesh,
-                                           std::size_t first, std::size_t count) {
-  std::vector<shaders::BakeVertex> out(count);
+std::vector<SurfacePoint> to_voxels(const GridSpec& grid, const TriMesh& mesh, std::size_t first,
+                                    std::size_t count) {
+  std::vector<SurfacePoint> out(count);
   const glm::dvec3 offset = (mesh.origin - grid.origin) / grid.voxel_size;
   const double scale = 1.0 / grid.voxel_size;
   for (std::size_t i = 0; i < out.size(); ++i) {
     const glm::vec3 voxel(scale * glm::dvec3(mesh.positions[first + i]) + offset);
-    out[i] = {glm::vec4(voxel, 0), glm::vec4(mesh.normals[first + i], 0)};
+    out[i] = {voxel, mesh.normals[first + i]};
   }
   return out;
 }
 
-std::vector<shaders::BakeVertex> points_between(const TriMesh& mesh,
-                                                const std::vector<shaders::BakeVertex>& vertices) {
-  std::vector<shaders::BakeVertex> points;
+std::vector<SurfacePoint> points_between(const TriMesh& mesh,
+                                         std::span<const SurfacePoint> vertices) {
+  std::vector<SurfacePoint> points;
   constexpr float kSquare = float(kPointSpacing * kPointSpacing);
   for (const auto& t : mesh.triangles) {
-    const glm::vec3 a(vertices[t[0]].position);
-    const glm::vec3 b(vertices[t[1]].position);
-    const glm::vec3 c(vertices[t[2]].position);
+    const glm::vec3 a = vertices[t[0]].position;
+    const glm::vec3 b = vertices[t[1]].position;
+    const glm::vec3 c = vertices[t[2]].position;
     const glm::vec3 ab = b - a, ac = c - a, bc = c - b;
     const float longest = std::max({glm::dot(ab, ab), glm::dot(ac, ac), glm::dot(bc, bc)});
     if (!(longest > kSquare)) continue;
@@ -61,9 +63,7 @@ visibility::DepthMaps occluder_maps(std::span<const Camera> cameras, const GridS
   GridSpec coarse = grid;
   coarse.voxel_size *= shaders::kBakeTexel;
   coarse.bricks = glm::max(grid.bricks / int(shaders::kBakeTexel), 1);
-  std::vector<projtex::GridCamera> coarse_cameras;
-  for (const Camera& camera : cameras) coarse_cameras.push_back(projtex::to_grid(camera, coarse));
-  return visibility::DepthMaps(coarse_cameras, coarse);
+  return visibility::DepthMaps(projtex::to_grid(cameras, coarse), coarse);
 }
 
 }  // namespace photohull::render

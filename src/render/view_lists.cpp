@@ -19,13 +19,13 @@ struct Group {
   float spread = kPi;  ///< radians between the axis and the normal furthest from it
 };
 
-Group bound(std::span<const shaders::BakeVertex> vertices) {
+Group bound(std::span<const SurfacePoint> vertices) {
   Group group;
   glm::vec3 low(std::numeric_limits<float>::max()), high(std::numeric_limits<float>::lowest());
-  for (const shaders::BakeVertex& v : vertices) {
-    low = glm::min(low, glm::vec3(v.position));
-    high = glm::max(high, glm::vec3(v.position));
-    group.axis += glm::vec3(v.normal);
+  for (const SurfacePoint& v : vertices) {
+    low = glm::min(low, v.position);
+    high = glm::max(high, v.position);
+    group.axis += v.normal;
   }
   group.centre = 0.5f * (low + high);
   group.radius = 0.5f * glm::distance(low, high);
@@ -33,8 +33,7 @@ Group bound(std::span<const shaders::BakeVertex> vertices) {
   if (!(length > 1e-3f)) return group;
   group.axis /= length;
   float least = 1;
-  for (const shaders::BakeVertex& v : vertices)
-    least = std::min(least, glm::dot(group.axis, glm::vec3(v.normal)));
+  for (const SurfacePoint& v : vertices) least = std::min(least, glm::dot(group.axis, v.normal));
   group.spread = std::acos(std::clamp(least, -1.0f, 1.0f));
   return group;
 }
@@ -52,19 +51,20 @@ bool may_face(const Group& group, const glm::vec3& eye, float flattest) {
 }  // namespace
 
 std::size_t listed_batch(std::size_t vertex_bytes, std::size_t most, std::size_t views) {
-  constexpr std::size_t kGroup = shaders::kBakeGroup;
+  constexpr std::size_t kGroup = shaders::kListedPoints;
   const std::size_t group_bytes = std::max(kGroup * vertex_bytes, (views + 1) * 4);
   return kGroup * gpu::batch_size(group_bytes, most / kGroup);
 }
 
-std::vector<std::uint32_t> list_views(std::span<const shaders::BakeVertex> vertices,
+std::vector<std::uint32_t> list_views(std::span<const SurfacePoint> vertices,
                                       std::span<const shaders::GpuView> views, float least_cosine) {
   const float flattest = std::acos(least_cosine) + 1e-3f;
   const std::size_t stride = views.size() + 1;
   std::vector<std::uint32_t> lists;
-  lists.reserve((vertices.size() / shaders::kBakeGroup + 1) * stride);
-  for (std::size_t first = 0; first < vertices.size(); first += shaders::kBakeGroup) {
-    const std::size_t count = std::min<std::size_t>(shaders::kBakeGroup, vertices.size() - first);
+  lists.reserve((vertices.size() / shaders::kListedPoints + 1) * stride);
+  for (std::size_t first = 0; first < vertices.size(); first += shaders::kListedPoints) {
+    const std::size_t count =
+        std::min<std::size_t>(shaders::kListedPoints, vertices.size() - first);
     const Group group = bound(vertices.subspan(first, count));
     const std::size_t header = lists.size();
     lists.resize(header + stride);

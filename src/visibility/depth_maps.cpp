@@ -5,8 +5,12 @@
 #include <cmath>
 #include <limits>
 
+#include "gpu/program.h"
+
 namespace photohull::visibility {
 namespace {
+
+constexpr std::size_t kVoxels = std::size_t(1) << 20;  // drawn at once
 
 /// Texels per pixel such that a voxel at the grid's centre covers one texel; never finer than
 /// pixels.
@@ -37,7 +41,6 @@ DepthMaps::DepthMaps(std::span<const projtex::GridCamera> cameras, const GridSpe
     for (auto& info : infos_) info.size.z = info.size.w;
   }
   info_buffer_ = gpu::Buffer::of(infos_);
-  splat_ = gpu::Program::compute("visibility_splat_voxels.comp.glsl", defines());
   clear();
 }
 
@@ -50,17 +53,45 @@ void DepthMaps::clear() {
 }
 
 void DepthMaps::bind() const {
-  info_buffer_.bind_storage(8);
+  info_buffer_.bind_storage(shaders::kDepthMapInfosBinding);
   if (layers_.id())
-    layers_.bind_read_write(2);
+    layers_.bind_read_write(shaders::kDepthMapLayersUnit);
   else
-    depths_.bind_storage(9);
+    depths_.bind_storage(shaders::kDepthMapsBinding);
 }
 
 void DepthMaps::splat(gpu::Context& context, const gpu::Buffer& voxels, std::size_t count) {
   bind();
-  voxels.bind_storage(6);
-  splat_->dispatch(context, "visibility_splat_voxels", gpu::group_count(count, 64), infos_.size());
+  voxels.bind_storage(shaders::kOccludersBinding);
+  gpu::Program::compute(context, "visibility_splat_voxels.comp.glsl", defines())
+      ->dispatch(context, "visibility_splat_voxels", gpu::group_count(count, 64), infos_.size());
+}
+
+void DepthMaps::draw(gpu::Context& context, std::span<const projtex::GridCamera> cameras,
+                     std::span<const glm::ivec3> voxels) {
+  std::vector<shaders::GpuView> views;
+  for (const auto& camera : cameras)
+    views.push_back(projtex::to_gpu_view(camera, glm::ivec2(camera.width, camera.height)));
+  const gpu::Buffer view_buffer = gpu::Buffer::of(views);
+  view_buffer.bind_storage(shaders::kViewsBinding);
+  const std::size_t batch = gpu::batch_size(sizeof(glm::ivec4), kVoxels);
+  for (std::size_t first = 0; first < voxels.size(); first += batch) {
+    const auto part = voxels.subspan(first, std::min(batch, voxels.size() - first));
+    std::vector<glm::ivec4> list{glm::ivec4(int(part.size()), 0, 0, 0)};
+    for (const glm::ivec3& voxel : part) list.emplace_back(voxel, 0);
+    splat(context, gpu::Buffer::of(list), part.size());
+  }
+}
+
+HostDepthMap DepthMaps::map(std::size_t index) const {
+  const shaders::DepthMapInfo& info = infos_[index];
+  return {glm::ivec2(info.size), info.scale.x, download(index)};
+}
+
+float HostDepthMap::at(const glm::dvec2& pixel) const {
+  const int x = std::clamp(int((pixel.x + 0.5) * texels_per_pixel), 0, size.x - 1);
+  const int y = std::clamp(int((pixel.y + 0.5) * texels_per_pixel), 0, size.y - 1);
+  return depths[std::size_t(y) * size.x + x];
 }
 
 std::vector<float> DepthMaps::download(std::size_t map) const {

@@ -1,19 +1,27 @@
 // Depth maps of voxels from the input cameras [Williams78].
 #pragma once
 
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "core/grid.h"
 #include "gpu/buffer.h"
 #include "gpu/context.h"
-#include "gpu/program.h"
 #include "gpu/texture.h"
 #include "projtex/gpu_views.h"
-#include "shared/sweep.h"
+#include "shared/depth_map.h"
 
 namespace photohull::visibility {
+
+/// One map, on the host.
+struct HostDepthMap {
+  glm::ivec2 size{0};          ///< texels
+  float texels_per_pixel = 1;  ///< at most 1
+  std::vector<float> depths;   ///< voxels, row-major; +infinity where nothing was drawn
+
+  /// At a place on the image (pixels), or at the texel next to it.
+  float at(const glm::dvec2& pixel) const;
+};
 
 /// One depth map per camera, with texels about as large as a voxel looks from there.
 class DepthMaps {
@@ -24,13 +32,19 @@ class DepthMaps {
 
   /// Forgets all that was drawn.
   void clear();
-  /// Storage blocks 8 (infos) and 9 (depths), or image 2, of include/depth_map.glsl.
+  /// Binds what include/depth_map.glsl reads and writes.
   void bind() const;
   /// What programs that use the maps are compiled with: where the depths are.
   const char* defines() const { return layers_.id() ? "#define DEPTH_MAPS_LAYERED\n" : ""; }
   /// Draws the first `count` voxels of `voxels` (ivec4, preceded by a header of 16 bytes whose
-  /// first word is the count) into all maps. Cameras must be bound to storage block 0.
+  /// first word is the count) into all maps. Cameras must be bound to
+  /// kViewsBinding.
   void splat(gpu::Context& context, const gpu::Buffer& voxels, std::size_t count);
+
+  /// Draws voxels into all maps; `cameras` are those that the maps were made for.
+  void draw(gpu::Context& context, std::span<const projtex::GridCamera> cameras,
+            std::span<const glm::ivec3> voxels);
+  HostDepthMap map(std::size_t index) const;
 
   const std::vector<shaders::DepthMapInfo>& infos() const { return infos_; }
   /// Depths in voxels of one map, row-major; +infinity where nothing was drawn.
@@ -40,7 +54,6 @@ class DepthMaps {
   std::vector<shaders::DepthMapInfo> infos_;
   gpu::Buffer info_buffer_, depths_;
   gpu::TextureArray layers_;  ///< in place of depths_, where a storage block is too small
-  std::optional<gpu::Program> splat_;
 };
 
 namespace reference {

@@ -49,22 +49,22 @@ class DetailRenderer {
   }
 
   void bind(const gpu::Buffer& words) const {
-    map_.info_.bind_uniform(1);
-    large_.bind_storage(0);
-    depths_.bind_storage(1);
-    geometry_.positions().bind_storage(2);
-    geometry_.indices().bind_storage(3);
-    map_.triangles_.bind_storage(4);
-    words.bind_storage(5);
-    (map_.list_.id() ? map_.list_ : large_).bind_storage(6);
-    if (map_.list_rest_.id()) map_.list_rest_.bind_storage(7);
+    map_.info_.bind_uniform(shaders::kMapInfoBinding);
+    large_.bind_storage(shaders::kLargeTrianglesBinding);
+    depths_.bind_storage(shaders::kCoverDepthsBinding);
+    geometry_.positions().bind_storage(shaders::kMeshPositionsBinding);
+    geometry_.indices().bind_storage(shaders::kMeshIndicesBinding);
+    map_.triangles_.bind_storage(shaders::kMapTrianglesBinding);
+    words.bind_storage(shaders::kCoverWordsBinding);
+    (map_.list_.id() ? map_.list_ : large_).bind_storage(shaders::kMapListBinding);
+    if (map_.list_rest_.id()) map_.list_rest_.bind_storage(shaders::kMapListRestBinding);
   }
 
   /// Runs a pass of visibility_cover_texels over all triangles of a partition.
   void cover(const char* mode, int part, std::size_t large_triangles) {
     const auto launch = [&](const std::string& defines, std::size_t groups) {
       const auto program =
-          gpu::Program::shared_compute(context_, "visibility_cover_texels.comp.glsl", defines);
+          gpu::Program::compute(context_, "visibility_cover_texels.comp.glsl", defines);
       program->set("part", part);
       program->dispatch(context_, "visibility_cover_texels", groups);
     };
@@ -78,8 +78,7 @@ class DetailRenderer {
   std::size_t set_up(int part) {
     const std::uint32_t none = 0;
     large_.write(0, 4, &none);
-    const auto program =
-        gpu::Program::shared_compute(context_, "visibility_setup_triangles.comp.glsl");
+    const auto program = gpu::Program::compute(context_, "visibility_setup_triangles.comp.glsl");
     program->set("part", part);
     program->dispatch(context_, "visibility_setup_triangles",
                       gpu::group_count(triangle_count_, 64));
@@ -135,8 +134,8 @@ class DetailRenderer {
     map_.list_ = gpu::Buffer(std::max<std::size_t>(first, 1) * 4);
     if (total == first) return;
     map_.list_rest_ = gpu::Buffer((total - first) * 4);
-    map_.test_ = gpu::Program::shared_compute(context_, "visibility_test_receivers.comp.glsl",
-                                              technique_defines(map_.technique_) + kTwoBlocks);
+    map_.test_ = gpu::Program::compute(context_, "visibility_test_receivers.comp.glsl",
+                                       technique_defines(map_.technique_) + kTwoBlocks);
   }
 
   gpu::Context& context_;

@@ -105,13 +105,13 @@ class MapRenderer {
                          " texels; lower the resolution"));
     const shaders::MapInfo info = to_info(map_.layout_, technique, geometry.triangles());
     map_.info_.write(0, sizeof info, &info);
-    map_.test_ = gpu::Program::shared_compute(context, "visibility_test_receivers.comp.glsl",
-                                              technique_defines(technique));
+    map_.test_ = gpu::Program::compute(context, "visibility_test_receivers.comp.glsl",
+                                       technique_defines(technique));
   }
 
   VisibilityMap run() {
     const Technique& t = map_.technique_;
-    map_.info_.bind_uniform(1);
+    map_.info_.bind_uniform(shaders::kMapInfoBinding);
     if (t.detail != Detail::kNone) {
       draw_detail(context_, geometry_, map_);
       return std::move(map_);
@@ -141,12 +141,12 @@ class MapRenderer {
     std::string defines = second ? "#define DRAW_SECOND\n" : "";
     if (ids) defines += geometry_.is_volume() ? "#define DRAW_BRICKS\n" : "#define DRAW_IDS\n";
     if (map_.technique_.bias == Bias::kSlope) defines += "#define DRAW_SLOPE\n";
-    const auto program = gpu::Program::shared_raster(context_, "visibility_draw_mesh.vert.glsl",
-                                                     "visibility_draw_mesh.frag.glsl", defines);
+    const auto program = gpu::Program::raster(context_, "visibility_draw_mesh.vert.glsl",
+                                              "visibility_draw_mesh.frag.glsl", defines);
     const VertexArray vertices(geometry_);
     Target target(map_.layout_.size);
-    if (second) map_.first_.bind(0);
-    if (geometry_.is_volume()) geometry_.face_bricks().bind_storage(2);
+    if (second) map_.first_.bind(shaders::kFirstDepthUnit);
+    if (geometry_.is_volume()) geometry_.face_bricks().bind_storage(shaders::kFaceBricksBinding);
     program->use();
     const bool anything = map_.layout_.far > map_.layout_.near;
     for (int part = 0; part < int(map_.layout_.parts.size()); ++part) {
@@ -161,8 +161,7 @@ class MapRenderer {
   }
 
   void march() {
-    const auto program =
-        gpu::Program::shared_compute(context_, "visibility_march_bricks.comp.glsl");
+    const auto program = gpu::Program::compute(context_, "visibility_march_bricks.comp.glsl");
     const GridSpec& grid = geometry_.grid();
     // Voxel coordinates with the corner of voxel (0, 0, 0) at 0.
     const auto to_voxels = [&](const glm::dvec3& p) {
@@ -179,10 +178,10 @@ class MapRenderer {
     program->set("ray_x", ray({1 / per_pixel, 0, 0}));
     program->set("ray_y", ray({0, 1 / per_pixel, 0}));
     program->set("ray_1", ray({-0.5, -0.5, 1}));
-    geometry_.table().bind_storage(2);
-    geometry_.words().bind_storage(3);
-    map_.first_.bind_image(0, 0, true);
-    map_.ids_.bind_image(1, 0, true);
+    geometry_.table().bind_storage(shaders::kMarchTableBinding);
+    geometry_.words().bind_storage(shaders::kMarchOccupancyBinding);
+    map_.first_.bind_image(shaders::kMarchDepthsUnit, 0, true);
+    map_.ids_.bind_image(shaders::kMarchIdsUnit, 0, true);
     program->dispatch(context_, "visibility_march_bricks",
                       gpu::group_count(std::size_t(map_.layout_.size.x), 8),
                       gpu::group_count(std::size_t(map_.layout_.size.y), 8));
@@ -200,10 +199,10 @@ class MapRenderer {
   void blur_along(const glm::ivec2& direction, const std::string& defines,
                   const TextureArray& source, const TextureArray& result) {
     const auto program =
-        gpu::Program::shared_compute(context_, "visibility_blur_moments.comp.glsl", defines);
+        gpu::Program::compute(context_, "visibility_blur_moments.comp.glsl", defines);
     program->set("direction", direction);
-    source.bind(0);
-    result.bind_image(0, 0, true);
+    source.bind(shaders::kBlurSourceUnit);
+    result.bind_image(shaders::kBlurMomentsUnit, 0, true);
     program->dispatch(
         context_, "visibility_blur_moments", gpu::group_count(std::size_t(map_.layout_.size.x), 8),
         gpu::group_count(std::size_t(map_.layout_.size.y), 8), map_.layout_.parts.size());

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "projtex/gpu_views.h"
-#include "shared/sweep.h"
+#include "shared/depth_map.h"
 #include "visibility/sweep_test.h"
 
 namespace photohull::visibility::reference {

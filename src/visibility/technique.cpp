@@ -42,6 +42,11 @@ void warp(Technique& t, Warp warp, int partitions = 1) {
   t.partitions = partitions;
 }
 
+void detailed(Technique& t, Detail detail) {
+  t.detail = detail;
+  t.bias_texels = 0.01;
+}
+
 std::vector<Technique> make_techniques() {
   using T = Technique;
   return {
@@ -86,21 +91,9 @@ std::vector<Technique> make_techniques() {
              t.warp = Warp::kGeneralLispsm;
              t.partitions = 2;
            }),
-      made("sub-pixel",
-           [](T& t) {
-             t.detail = Detail::kSubPixel;
-             t.bias_texels = 0.01;
-           }),
-      made("coverage",
-           [](T& t) {
-             t.detail = Detail::kCoverage;
-             t.bias_texels = 0.01;
-           }),
-      made("lists",
-           [](T& t) {
-             t.detail = Detail::kLists;
-             t.bias_texels = 0.01;
-           }),
+      made("sub-pixel", [](T& t) { detailed(t, Detail::kSubPixel); }),
+      made("coverage", [](T& t) { detailed(t, Detail::kCoverage); }),
+      made("lists", [](T& t) { detailed(t, Detail::kLists); }),
   };
 }
 

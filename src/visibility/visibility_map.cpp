@@ -50,9 +50,8 @@ std::vector<std::uint32_t> VisibilityMap::triangles_at(gpu::Context& context, in
   } else if (technique_.detail == Detail::kCoverage) {
     const gpu::Buffer links(sizeof(glm::uvec4));
     bind();
-    links.bind_storage(1);
-    const auto program =
-        gpu::Program::shared_compute(context, "visibility_link_triangles.comp.glsl");
+    links.bind_storage(shaders::kLinksBinding);
+    const auto program = gpu::Program::compute(context, "visibility_link_triangles.comp.glsl");
     program->set("texel", glm::ivec3(texel, part));
     program->dispatch(context, "visibility_link_triangles", 1);
     out = links.download<std::uint32_t>(shaders::kMaxLinks);
@@ -65,14 +64,15 @@ std::vector<std::uint32_t> VisibilityMap::triangles_at(gpu::Context& context, in
 }
 
 void VisibilityMap::bind() const {
-  info_.bind_uniform(1);
-  const gpu::TextureArray* units[] = {&first_, &second_, &ids_, &moments_};
-  for (unsigned i = 0; i < 4; ++i)
-    if (units[i]->id()) units[i]->bind(i);
-  if (triangles_.id()) triangles_.bind_storage(4);
-  if (list_ends_.id()) list_ends_.bind_storage(5);
-  if (list_.id()) list_.bind_storage(6);
-  if (list_rest_.id()) list_rest_.bind_storage(7);
+  info_.bind_uniform(shaders::kMapInfoBinding);
+  if (first_.id()) first_.bind(shaders::kFirstDepthUnit);
+  if (second_.id()) second_.bind(shaders::kSecondDepthUnit);
+  if (ids_.id()) ids_.bind(shaders::kNearestIdsUnit);
+  if (moments_.id()) moments_.bind(shaders::kDepthMomentsUnit);
+  if (triangles_.id()) triangles_.bind_storage(shaders::kMapTrianglesBinding);
+  if (list_ends_.id()) list_ends_.bind_storage(shaders::kMapListEndsBinding);
+  if (list_.id()) list_.bind_storage(shaders::kMapListBinding);
+  if (list_rest_.id()) list_rest_.bind_storage(shaders::kMapListRestBinding);
 }
 
 std::vector<float> visible(gpu::Context& context, const VisibilityMap& map,
@@ -90,8 +90,8 @@ std::vector<float> visible(gpu::Context& context, const VisibilityMap& map,
                            glm::vec4(s.step_y, 0),
                            {s.id, 0, 0, 0}});
     const gpu::Buffer receiver_buffer = gpu::Buffer::of(receivers), fractions(receivers.size() * 4);
-    receiver_buffer.bind_storage(0);
-    fractions.bind_storage(1);
+    receiver_buffer.bind_storage(shaders::kReceiversBinding);
+    fractions.bind_storage(shaders::kFractionsBinding);
     map.test_->set("count", int(receivers.size()));
     map.test_->dispatch(context, "visibility_test_receivers",
                         gpu::group_count(receivers.size(), 64));

@@ -42,8 +42,7 @@ class VisibilityMap {
   /// Detail::kLists: length of all lists together.
   std::size_t linked() const { return linked_; }
 
-  /// Binds what include/visibility_test.glsl reads: uniform block 1, textures 0 to 3, storage 4 to
-  /// 7.
+  /// Binds what include/visibility_test.glsl reads, where shared/visibility.h says.
   void bind() const;
 
  private:

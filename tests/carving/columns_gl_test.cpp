@@ -18,7 +18,6 @@ using glm::ivec3;
 using reference::ColumnJudge;
 using reference::Consistency;
 using reference::SweepFrame;
-using shaders::Decision;
 using test_kernels::SelectedLayer;
 using test_kernels::SweepKernels;
 
@@ -109,7 +108,7 @@ void ColumnsTest::compare_decisions(const SweepKernels& kernels, const BitVolume
                                     const std::vector<std::vector<Consistency>>& scores) {
   const int layers = frame.voxels[frame.axis], width = frame.voxels[frame.u()];
   std::map<std::pair<int, int>, std::vector<Decision>> found;
-  for (const Decision& d : kernels.decisions()) found[{d.place.x, d.place.y}].push_back(d);
+  for (const Decision& d : kernels.decisions()) found[{d.column.x, d.column.y}].push_back(d);
   int outcomes[4] = {};
   for (int i = 0; i < int(scores.size()); ++i) {
     const ivec2 column(i % width, i / width);
@@ -119,12 +118,11 @@ void ColumnsTest::compare_decisions(const SweepKernels& kernels, const BitVolume
     const auto expected = ColumnJudge(rules, standing, scores[i]).decisions(column);
     auto& mine = found[{column.x, column.y}];
     std::sort(mine.begin(), mine.end(),
-              [](const Decision& a, const Decision& b) { return a.place.z < b.place.z; });
+              [](const Decision& a, const Decision& b) { return a.bare < b.bare; });
     ASSERT_EQ(mine.size(), expected.size()) << column.x << ", " << column.y;
     for (std::size_t k = 0; k < mine.size(); ++k) {
-      EXPECT_EQ(mine[k].place, expected[k].place) << column.x << ", " << column.y;
-      EXPECT_EQ(mine[k].scores, expected[k].scores) << column.x << ", " << column.y;
-      ++outcomes[int(expected[k].scores.z)];
+      EXPECT_TRUE(mine[k] == expected[k]) << column.x << ", " << column.y;
+      ++outcomes[int(expected[k].outcome)];
     }
   }
   for (const int count : outcomes) EXPECT_GT(count, 10);
@@ -160,7 +158,7 @@ void ColumnsTest::sweep(double density, const reference::JudgeRules& rules) {
     const std::vector<Decision> decisions = kernels.decisions();
     std::vector<ivec3> hiding = selected.occluders;
     for (; decided < decisions.size(); ++decided)
-      hiding.push_back(frame.voxel(ivec2(decisions[decided].place), decisions[decided].place.w));
+      hiding.push_back(frame.voxel(decisions[decided].column, decisions[decided].surface));
     EXPECT_EQ(sorted(kernels.occluders()), sorted(hiding)) << "layer " << layer;
   }
   EXPECT_EQ(kernels.judged_count(), judged);

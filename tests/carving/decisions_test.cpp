@@ -11,7 +11,6 @@ namespace {
 
 using glm::ivec2;
 using glm::ivec3;
-using shaders::Decision;
 
 constexpr int kColumns = 16, kLayers = 24, kBare = 4;
 
@@ -41,15 +40,13 @@ BitVolume solid(int axis = 2, int sign = 1) {
 }
 
 Decision kept(int u, int v, int layer = kBare) {
-  return {{u, v, layer, layer}, {0.9f, 0.9f, shaders::kKept, 0}};
+  return {{u, v}, layer, layer, 0.9f, 0.9f, Outcome::kKept};
 }
 Decision better(int u, int v, int surface) {
-  return {{u, v, kBare, surface}, {0.1f, 0.9f, shaders::kBetter, 0}};
+  return {{u, v}, kBare, surface, 0.1f, 0.9f, Outcome::kBetter};
 }
-Decision undecided(int u, int v) {
-  return {{u, v, kBare, kBare}, {0.1f, 0.2f, shaders::kUndecided, 0}};
-}
-Decision unseen(int u, int v) { return {{u, v, kBare, kBare}, {0, 0, shaders::kUnseen, 0}}; }
+Decision undecided(int u, int v) { return {{u, v}, kBare, kBare, 0.1f, 0.2f, Outcome::kUndecided}; }
+Decision unseen(int u, int v) { return {{u, v}, kBare, kBare, 0, 0, Outcome::kUnseen}; }
 
 /// One decision for every column.
 template <typename F>
@@ -130,7 +127,7 @@ TEST(ApplyDecisions, AnIsolatedSpikeIsOverruled) {
     apply_decisions(bits, 2, 1, plane([&](int u, int v) {
                       return ivec2(u, v) == kMiddle ? spike : better(u, v, 10);
                     }));
-    EXPECT_EQ(carved_layers(bits, kMiddle), 10 - kBare) << spike.scores.z;
+    EXPECT_EQ(carved_layers(bits, kMiddle), 10 - kBare) << int(spike.outcome);
   }
 }
 

@@ -69,15 +69,15 @@ std::vector<std::uint32_t> HullKernels::classify(const std::vector<glm::ivec4>& 
   const gpu::Buffer parameters(sizeof parameters_, &parameters_);
   const gpu::Buffer node_buffer = gpu::Buffer::of(nodes), classes(nodes.size() * 4);
   const gpu::Buffer relevant(nodes.size() * 4 * words_);
-  parameters.bind_uniform(0);
-  views_.bind_storage(0);
-  node_buffer.bind_storage(1);
-  classes.bind_storage(2);
-  relevant.bind_storage(3);
-  pyramid_.bind(0);
-  distance_maps_.bind(1);
-  gpu::Program::compute("carving_classify_nodes.comp.glsl")
-      .dispatch(context_, "carving_classify_nodes", gpu::group_count(nodes.size(), 64));
+  parameters.bind_uniform(shaders::kHullParametersBinding);
+  views_.bind_storage(shaders::kViewsBinding);
+  node_buffer.bind_storage(shaders::kHullNodesBinding);
+  classes.bind_storage(shaders::kHullClassesBinding);
+  relevant.bind_storage(shaders::kHullRelevantBinding);
+  pyramid_.bind(shaders::kMaskPyramidUnit);
+  distance_maps_.bind(shaders::kNodeSilhouettesUnit);
+  gpu::Program::compute(context_, "carving_classify_nodes.comp.glsl")
+      ->dispatch(context_, "carving_classify_nodes", gpu::group_count(nodes.size(), 64));
   std::vector<std::uint32_t> kinds = classes.download<std::uint32_t>(nodes.size());
   for (std::uint32_t& kind : kinds) kind &= shaders::kNodeKindMask;
   return kinds;
@@ -96,14 +96,14 @@ std::vector<float> HullKernels::distances(const std::vector<glm::ivec4>& bricks)
   for (glm::ivec4& brick : unsure) brick.w = 1;
   const gpu::Buffer brick_buffer = gpu::Buffer::of(unsure), list_buffer = gpu::Buffer::of(lists);
   const gpu::Buffer out(count * kBrickVoxels * 4);
-  parameters.bind_uniform(0);
-  views_.bind_storage(0);
-  brick_buffer.bind_storage(1);
-  out.bind_storage(2);
-  list_buffer.bind_storage(3);
-  distance_maps_.bind(0);
-  gpu::Program::compute("carving_hull_distance.comp.glsl")
-      .dispatch(context_, "carving_hull_distance", count);
+  parameters.bind_uniform(shaders::kHullParametersBinding);
+  views_.bind_storage(shaders::kViewsBinding);
+  brick_buffer.bind_storage(shaders::kHullBricksBinding);
+  out.bind_storage(shaders::kHullDistancesBinding);
+  list_buffer.bind_storage(shaders::kHullViewListsBinding);
+  distance_maps_.bind(shaders::kBrickSilhouettesUnit);
+  gpu::Program::compute(context_, "carving_hull_distance.comp.glsl")
+      ->dispatch(context_, "carving_hull_distance", count);
   return out.download<float>(count * kBrickVoxels);
 }
 

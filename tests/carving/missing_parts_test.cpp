@@ -102,9 +102,9 @@ struct Scene {
   std::vector<PreparedMask> masks;
 };
 
-ExplainedView sum(const MissingParts& found) {
-  ExplainedView all;
-  for (const ExplainedView& v : found.views)
+ForegroundCounts sum(const MissingParts& found) {
+  ForegroundCounts all;
+  for (const ForegroundCounts& v : found.views)
     all.looked_at += v.looked_at, all.unexplained += v.unexplained, all.placed += v.placed;
   return all;
 }

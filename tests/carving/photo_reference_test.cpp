@@ -70,8 +70,7 @@ TEST(PhotoConsistency, OfTooFewViewsIsTheLeast) {
 constexpr JudgeRules kRules{0.6, 0.15, 3, 1e-4, 8};
 constexpr double kEmpty = -9;
 
-std::vector<shaders::Decision> judge(const std::vector<double>& column,
-                                     const JudgeRules& rules = kRules) {
+std::vector<Decision> judge(const std::vector<double>& column, const JudgeRules& rules = kRules) {
   std::vector<std::uint8_t> standing;
   std::vector<Consistency> scores;
   for (const double score : column) {
@@ -85,43 +84,45 @@ std::vector<shaders::Decision> judge(const std::vector<double>& column,
   return ColumnJudge(rules, standing, scores).decisions({3, 5});
 }
 
-void expect_decision(const shaders::Decision& d, int bare, int surface, int outcome) {
-  EXPECT_EQ(d.place, glm::ivec4(3, 5, bare, surface));
-  EXPECT_EQ(int(d.scores.z), outcome);
+void expect_decision(const Decision& d, int bare, int surface, Outcome outcome) {
+  EXPECT_EQ(d.column, glm::ivec2(3, 5));
+  EXPECT_EQ(d.bare, bare);
+  EXPECT_EQ(d.surface, surface);
+  EXPECT_EQ(d.outcome, outcome);
 }
 
 TEST(ColumnJudge, AConsistentBareVoxelStays) {
   const auto decisions = judge({kEmpty, 0.7, 0.9, 0.1, kEmpty});
   ASSERT_EQ(decisions.size(), 1u);
-  expect_decision(decisions[0], 1, 1, shaders::kKept);
+  expect_decision(decisions[0], 1, 1, Outcome::kKept);
 }
 
 TEST(ColumnJudge, ThePeakBehindIsTheSurface) {
   const auto decisions = judge({kEmpty, 0.1, 0.2, 0.65, 0.9, 0.7, 0.1, 0.95, 0.1, kEmpty});
   ASSERT_EQ(decisions.size(), 1u);
-  expect_decision(decisions[0], 1, 4, shaders::kBetter);
-  EXPECT_FLOAT_EQ(decisions[0].scores.x, 0.1f);
-  EXPECT_FLOAT_EQ(decisions[0].scores.y, 0.9f);
+  expect_decision(decisions[0], 1, 4, Outcome::kBetter);
+  EXPECT_FLOAT_EQ(decisions[0].score, 0.1f);
+  EXPECT_FLOAT_EQ(decisions[0].best_score, 0.9f);
 }
 
 TEST(ColumnJudge, NothingBetterBehindLeavesItUndecided) {
   const auto decisions = judge({kEmpty, 0.1, 0.2, 0.55, 0.3, kEmpty});
   ASSERT_EQ(decisions.size(), 1u);
-  expect_decision(decisions[0], 1, 1, shaders::kUndecided);
-  EXPECT_FLOAT_EQ(decisions[0].scores.y, 0.55f);
+  expect_decision(decisions[0], 1, 1, Outcome::kUndecided);
+  EXPECT_FLOAT_EQ(decisions[0].best_score, 0.55f);
 }
 
 TEST(ColumnJudge, AGainThatIsTooSmallLeavesItUndecided) {
   const auto decisions = judge({kEmpty, 0.5, 0.62, 0.3, 0.2, 0.1, kEmpty});
   ASSERT_EQ(decisions.size(), 1u);
-  expect_decision(decisions[0], 1, 1, shaders::kUndecided);
+  expect_decision(decisions[0], 1, 1, Outcome::kUndecided);
 }
 
 TEST(ColumnJudge, EmptySpaceEndsThePathAndBaresTheNextVoxel) {
   const auto decisions = judge({0.1, 0.2, kEmpty, 0.9, 0.1, kEmpty});
   ASSERT_EQ(decisions.size(), 2u);
-  expect_decision(decisions[0], 0, 0, shaders::kUndecided);
-  expect_decision(decisions[1], 3, 3, shaders::kKept);
+  expect_decision(decisions[0], 0, 0, Outcome::kUndecided);
+  expect_decision(decisions[1], 3, 3, Outcome::kKept);
 }
 
 TEST(ColumnJudge, ThePathEndsAtItsLongest) {
@@ -129,10 +130,10 @@ TEST(ColumnJudge, ThePathEndsAtItsLongest) {
   column[10] = 0.9;
   column.push_back(kEmpty);
   // The path from layer 0 reaches layer 8.
-  expect_decision(judge(column).at(0), 0, 0, shaders::kUndecided);
+  expect_decision(judge(column).at(0), 0, 0, Outcome::kUndecided);
   JudgeRules longer = kRules;
   longer.max_path = 10;
-  expect_decision(judge(column, longer).at(0), 0, 10, shaders::kBetter);
+  expect_decision(judge(column, longer).at(0), 0, 10, Outcome::kBetter);
 }
 
 TEST(ColumnJudge, FewViewsOrLittleTextureTellNothing) {
@@ -143,11 +144,11 @@ TEST(ColumnJudge, FewViewsOrLittleTextureTellNothing) {
   scores[0].texture = 1;
   auto decisions = ColumnJudge(kRules, standing, scores).decisions({3, 5});
   ASSERT_EQ(decisions.size(), 1u);
-  expect_decision(decisions[0], 0, 0, shaders::kUnseen);
+  expect_decision(decisions[0], 0, 0, Outcome::kUnseen);
   scores[0].seen = 5;
   scores[0].texture = 1e-5;
   decisions = ColumnJudge(kRules, standing, scores).decisions({3, 5});
-  expect_decision(decisions.at(0), 0, 0, shaders::kUnseen);
+  expect_decision(decisions.at(0), 0, 0, Outcome::kUnseen);
 }
 
 TEST(ColumnJudge, AnEmptyColumnNeedsNoDecision) {

@@ -226,7 +226,7 @@ TEST_F(ScoreTest, OnlyViewsThatSeeTheVoxelCount) {
     list.emplace_back(ivec3(test::uniform_in(rng_, {glm::dvec3(-12), glm::dvec3(20)})), 0);
   list[0].x = int(list.size()) - 1;
   const gpu::Buffer voxels = gpu::Buffer::of(list);
-  kernels.views().bind_storage(0);
+  kernels.views().bind_storage(shaders::kViewsBinding);
   kernels.depth_maps().splat(context_, voxels, list.size() - 1);
   const auto found = kernels.score(samples_of(kernels, [&](int, int) { return random_colour(); }));
 

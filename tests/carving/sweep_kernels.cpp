@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "carving/kernels/read_decisions.h"
+
 namespace photohull::carving::test_kernels {
 namespace {
 
@@ -32,10 +34,10 @@ SweepKernels::SweepKernels(gpu::Context& context, const BitVolume& bits,
       bricks_(bits.grid.bricks),
       view_count_(int(cameras.size())),
       shifts_(shifts),
-      select_(gpu::Program::compute("carving_select_columns.comp.glsl")),
-      score_(gpu::Program::compute("carving_score_columns.comp.glsl", score_defines)),
-      update_(gpu::Program::compute("carving_update_columns.comp.glsl")),
-      mark_(gpu::Program::compute("carving_mark_passed.comp.glsl")),
+      select_(gpu::Program::compute(context, "carving_select_columns.comp.glsl")),
+      score_(gpu::Program::compute(context, "carving_score_columns.comp.glsl", score_defines)),
+      update_(gpu::Program::compute(context, "carving_update_columns.comp.glsl")),
+      mark_(gpu::Program::compute(context, "carving_mark_passed.comp.glsl")),
       maps_(cameras, bits.grid),
       views_(Buffer::of(to_gpu(cameras))),
       table_(Buffer::of(bits.table)),
@@ -52,24 +54,23 @@ SweepKernels::SweepKernels(gpu::Context& context, const BitVolume& bits,
   parameters.axes = {frame.u(), frame.v(), frame.axis, frame.sign};
 }
 
-void SweepKernels::bind(const Buffer& block6) {
+void SweepKernels::bind() {
   parameters.chunk.x = parameters.chunk.z = 0;
   parameters.chunk.w = int(judged_.size());
   uniforms_.write(0, sizeof parameters, &parameters);
-  uniforms_.bind_uniform(0);
-  views_.bind_storage(0);
-  items_.bind_storage(1);
-  table_.bind_storage(2);
-  occupancy_.bind_storage(3);
-  columns_.bind_storage(4);
-  selected_.bind_storage(5);
-  block6.bind_storage(6);
-  scores_.bind_storage(7);
+  uniforms_.bind_uniform(shaders::kSweepParametersBinding);
+  views_.bind_storage(shaders::kViewsBinding);
+  items_.bind_storage(shaders::kSweepItemsBinding);
+  table_.bind_storage(shaders::kSweepTableBinding);
+  occupancy_.bind_storage(shaders::kSweepOccupancyBinding);
+  columns_.bind_storage(shaders::kSweepColumnsBinding);
+  selected_.bind_storage(shaders::kSweepSelectedBinding);
+  scores_.bind_storage(shaders::kSweepScoresBinding);
   maps_.bind();
-  active_.bind_storage(10);
-  decisions_.bind_storage(11);
-  packed_.bind_storage(12);
-  passed_.bind_storage(13);
+  active_.bind_storage(shaders::kSweepActiveBinding);
+  decisions_.bind_storage(shaders::kSweepDecisionsBinding);
+  packed_.bind_storage(shaders::kSweepSelectedColumnsBinding);
+  passed_.bind_storage(shaders::kSweepPassedBinding);
 }
 
 SelectedLayer SweepKernels::select(int layer) {
@@ -89,8 +90,9 @@ SelectedLayer SweepKernels::select(int layer) {
   selected_ = list_of(items.size(), 16);
   occluders_ = list_of(items.size() * 128, 16);
   judged_.clear();
-  bind(occluders_);
-  select_.dispatch(context_, "carving_select_columns", items.size());
+  bind();
+  occluders_.bind_storage(shaders::kOccludersBinding);
+  select_->dispatch(context_, "carving_select_columns", items.size());
 
   const std::uint32_t count = selected_.download<std::uint32_t>(1)[0];
   entries_ = selected_.download<glm::uvec4>(count, 1);
@@ -113,21 +115,24 @@ SelectedLayer SweepKernels::select(int layer) {
 }
 
 void SweepKernels::mark(const Buffer& voxels, std::size_t count) {
-  bind(voxels);
-  mark_.dispatch(context_, "carving_mark_passed", gpu::group_count(count, 64));
+  bind();
+  voxels.bind_storage(shaders::kOccludersBinding);
+  mark_->dispatch(context_, "carving_mark_passed", gpu::group_count(count, 64));
 }
 
 std::vector<glm::vec4> SweepKernels::score(const std::vector<glm::vec4>& samples) {
   const Buffer sample_buffer = Buffer::of(samples);
-  bind(sample_buffer);
-  score_.dispatch(context_, "carving_score_columns", gpu::group_count(judged_.size(), 64));
+  bind();
+  sample_buffer.bind_storage(shaders::kSweepSamplesBinding);
+  score_->dispatch(context_, "carving_score_columns", gpu::group_count(judged_.size(), 64));
   return scores_.download<glm::vec4>(judged_.size());
 }
 
 void SweepKernels::update(const std::vector<glm::vec4>& scores) {
   scores_ = Buffer::of(scores);
-  bind(occluders_);
-  update_.dispatch(context_, "carving_update_columns", gpu::group_count(judged_.size(), 64));
+  bind();
+  occluders_.bind_storage(shaders::kOccludersBinding);
+  update_->dispatch(context_, "carving_update_columns", gpu::group_count(judged_.size(), 64));
 }
 
 std::size_t SweepKernels::patch_base(std::size_t judged, int view, int shift) const {
@@ -145,9 +150,9 @@ std::vector<std::uint8_t> SweepKernels::on_path() const {
   return out;
 }
 
-std::vector<shaders::Decision> SweepKernels::decisions() const {
-  std::vector<shaders::Decision> out(decisions_.download<std::uint32_t>(1)[0]);
-  decisions_.read(16, out.size() * sizeof(shaders::Decision), out.data());
+std::vector<Decision> SweepKernels::decisions() const {
+  std::vector<Decision> out;
+  read_decisions(decisions_, out);
   return out;
 }
 

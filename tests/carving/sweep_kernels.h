@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "carving/bit_volume.h"
+#include "carving/decisions.h"
 #include "carving/photo_reference.h"
 #include "gpu/buffer.h"
 #include "gpu/context.h"
@@ -48,18 +49,18 @@ class SweepKernels {
   const gpu::Buffer& views() const { return views_; }
   /// Is a path open, for every column of the grid?
   std::vector<std::uint8_t> on_path() const;
-  std::vector<shaders::Decision> decisions() const;
+  std::vector<Decision> decisions() const;
   std::vector<glm::ivec3> occluders() const;
   std::uint32_t judged_count() const;
 
  private:
-  void bind(const gpu::Buffer& block6);
+  void bind();
 
   gpu::Context& context_;
   reference::SweepFrame frame_;
   glm::ivec3 bricks_;
   int view_count_, shifts_;
-  gpu::Program select_, score_, update_, mark_;
+  std::shared_ptr<const gpu::Program> select_, score_, update_, mark_;
   visibility::DepthMaps maps_;
   gpu::Buffer views_, table_, occupancy_, columns_, active_, passed_, uniforms_;
   gpu::Buffer items_, selected_, occluders_, packed_, scores_, decisions_;

@@ -67,7 +67,7 @@ TEST_P(SweepVisibility, SharesOfTheViewsAreTheReferences) {
     }
     list[0].x = int(list.size()) - 1;
     const gpu::Buffer list_buffer = gpu::Buffer::of(list);
-    kernels.views().bind_storage(0);
+    kernels.views().bind_storage(shaders::kViewsBinding);
     kernels.depth_maps().splat(context_, list_buffer, list.size() - 1);
     kernels.mark(list_buffer, list.size() - 1);
     const auto scores = kernels.score(

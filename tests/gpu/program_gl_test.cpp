@@ -14,41 +14,51 @@ namespace {
 using ::testing::HasSubstr;
 
 TEST(Program, EveryEmbeddedComputeShaderCompilesOnTheDevice) {
-  test::gl_context();
+  Context& context = test::gl_context();
   int count = 0;
   for (const EmbeddedShader& shader : embedded_shaders()) {
     if (!shader.path.ends_with(".comp.glsl")) continue;
-    EXPECT_NO_THROW(Program::compute(shader.path)) << shader.path;
+    EXPECT_NO_THROW(Program::compute(context, shader.path)) << shader.path;
     ++count;
   }
   EXPECT_GT(count, 0);
 }
 
 TEST(Program, CompileErrorsNameTheShaderFile) {
-  test::gl_context();
+  Context& context = test::gl_context();
   try {
     // Breaks the first line of code of the first file that is included.
-    Program::compute("visibility_splat_voxels.comp.glsl", "#define GpuView 3\n");
+    Program::compute(context, "visibility_splat_voxels.comp.glsl", "#define GpuView 3\n");
     FAIL();
   } catch (const Error& e) {
     EXPECT_THAT(e.what(), HasSubstr("shaders/visibility_splat_voxels.comp.glsl does not compile"));
-    EXPECT_THAT(e.what(), HasSubstr("\nshaders/shared/view.h:12"));
+    EXPECT_THAT(e.what(), HasSubstr("\nshaders/shared/view.h:17"));
   }
+}
+
+TEST(Program, IsMadeOnceForAContext) {
+  Context& context = test::gl_context();
+  const auto program = Program::compute(context, "visibility_splat_voxels.comp.glsl");
+  EXPECT_EQ(Program::compute(context, "visibility_splat_voxels.comp.glsl"), program);
+  EXPECT_NE(Program::compute(context, "visibility_splat_voxels.comp.glsl",
+                             "#define DEPTH_MAPS_LAYERED\n"),
+            program);
 }
 
 TEST(Program, AnEmptyDispatchIsNoWorkAndNoError) {
   Context& context = test::gl_context();
-  const Program program = Program::compute("visibility_splat_voxels.comp.glsl");
-  EXPECT_NO_THROW(program.dispatch(context, "empty", 0));
-  EXPECT_NO_THROW(program.dispatch(context, "empty", 1, 0));
+  const auto program = Program::compute(context, "visibility_splat_voxels.comp.glsl");
+  EXPECT_NO_THROW(program->dispatch(context, "empty", 0));
+  EXPECT_NO_THROW(program->dispatch(context, "empty", 1, 0));
   EXPECT_EQ(context.statistics().count("empty"), 0u);
 }
 
 TEST(ProgramDeathTest, UnknownUniformsAndShadersAreProgrammerErrors) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
-  test::gl_context();
-  EXPECT_DEATH(Program::compute("no_such.comp.glsl"), "no embedded shader no_such");
-  EXPECT_DEATH(Program::compute("visibility_splat_voxels.comp.glsl").set("no_such", 1), "no_such");
+  Context& context = test::gl_context();
+  EXPECT_DEATH(Program::compute(context, "no_such.comp.glsl"), "no embedded shader no_such");
+  EXPECT_DEATH(Program::compute(context, "visibility_splat_voxels.comp.glsl")->set("no_such", 1),
+               "no_such");
 }
 
 TEST(GroupCount, RoundsUp) {

@@ -92,15 +92,15 @@ class ProjectLayer : public ::testing::Test {
     const gpu::Buffer parameter_buffer(sizeof parameters, &parameters);
     const gpu::Buffer view_buffer = gpu::Buffer::of(views), item_buffer = gpu::Buffer::of(items);
     const gpu::Buffer selected_buffer = gpu::Buffer::of(selected), samples(count * 16);
-    parameter_buffer.bind_uniform(0);
-    view_buffer.bind_storage(0);
-    item_buffer.bind_storage(1);
-    selected_buffer.bind_storage(5);
-    samples.bind_storage(6);
-    texture_.bind(0);
-    gpu::Program::compute("projtex_project_layer.comp.glsl",
+    parameter_buffer.bind_uniform(shaders::kSweepParametersBinding);
+    view_buffer.bind_storage(shaders::kViewsBinding);
+    item_buffer.bind_storage(shaders::kSweepItemsBinding);
+    selected_buffer.bind_storage(shaders::kSweepSelectedBinding);
+    samples.bind_storage(shaders::kSweepSamplesBinding);
+    texture_.bind(shaders::kImagesUnit);
+    gpu::Program::compute(context_, "projtex_project_layer.comp.glsl",
                           concat("#define SUPERSAMPLE ", layer_case.supersample, "\n"))
-        .dispatch(context_, "projtex_project_layer", items.size());
+        ->dispatch(context_, "projtex_project_layer", items.size());
     return samples.download<glm::vec4>(count);
   }
 

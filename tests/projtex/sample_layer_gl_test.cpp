@@ -84,14 +84,15 @@ class SampleLayer : public ::testing::Test {
     const std::size_t offsets = c.search ? 3 : 1;
     const std::size_t count = shaders::kMaxLayerViews * offsets * shaders::kApronArea;
     const gpu::Buffer samples(count * 16);
-    uniforms.bind_uniform(0);
-    view_buffer.bind_storage(0);
-    items.bind_storage(1);
-    selected.bind_storage(5);
-    samples.bind_storage(6);
-    images.bind();
-    images.program("projtex_sample_layer.comp.glsl", c.supersample, c.search ? kSearch : "")
-        .dispatch(context_, "projtex_sample_layer", 1, offsets);
+    uniforms.bind_uniform(shaders::kSweepParametersBinding);
+    view_buffer.bind_storage(shaders::kViewsBinding);
+    items.bind_storage(shaders::kSweepItemsBinding);
+    selected.bind_storage(shaders::kSweepSelectedBinding);
+    samples.bind_storage(shaders::kSweepSamplesBinding);
+    const auto program = images.program(context_, "projtex_sample_layer.comp.glsl", c.supersample,
+                                        c.search ? kSearch : "");
+    images.bind(*program);
+    program->dispatch(context_, "projtex_sample_layer", 1, offsets);
     const auto found = samples.download<glm::vec4>(count);
     for (int view = 0; view < kViews; ++view)
       for (int place = 0; place < shaders::kApronArea; ++place) {

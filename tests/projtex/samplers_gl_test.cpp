@@ -75,14 +75,15 @@ class SamplersTest : public ::testing::TestWithParam<Sampler> {
                       glm::vec4(squares[i].v, 0)});
     const gpu::Buffer view_buffer = gpu::Buffer::of(views), square_buffer = gpu::Buffer::of(list);
     const gpu::Buffer samples(squares.size() * 16);
-    const gpu::Program program = images_->program("projtex_sample_squares.comp.glsl", supersample);
-    program.set("count", int(squares.size()));
-    view_buffer.bind_storage(0);
-    square_buffer.bind_storage(1);
-    samples.bind_storage(2);
-    images_->bind();
-    program.dispatch(context_, "projtex_sample_squares",
-                     gpu::group_count(squares.size(), shaders::kSquareGroup));
+    const auto program =
+        images_->program(context_, "projtex_sample_squares.comp.glsl", supersample);
+    program->set("count", int(squares.size()));
+    view_buffer.bind_storage(shaders::kViewsBinding);
+    square_buffer.bind_storage(shaders::kSquaresBinding);
+    samples.bind_storage(shaders::kSquareSamplesBinding);
+    images_->bind(*program);
+    program->dispatch(context_, "projtex_sample_squares",
+                      gpu::group_count(squares.size(), shaders::kSquareGroup));
     return samples.download<glm::vec4>(squares.size());
   }
 

@@ -37,10 +37,10 @@ class CheckpointedRefine : public testing::Test {
     RefineOptions options;
     options.levels = 3;
     options.noise_sigma = 0.01;
-    return refine_surface(
-        context, scene_.grid(5), [&](const GridSpec& grid) { return scene_.hull(grid); },
-        scene_.silhouettes(), projtex::ImageSet(scene_.views), scene_.cameras, options, progress,
-        &report_, file);
+    return refine_surface(context,
+                          {scene_.grid(5), [&](const GridSpec& grid) { return scene_.hull(grid); },
+                           scene_.silhouettes(), projtex::ImageSet(scene_.views), scene_.cameras},
+                          options, progress, &report_, file);
   }
   SparseVolume run_through(const CheckpointFile* file) {
     warnings_.clear();

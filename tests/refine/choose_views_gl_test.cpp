@@ -5,6 +5,8 @@
 #include <set>
 
 #include "match_scene.h"
+#include "refine/kernels/choose_views.h"
+#include "refine/kernels/match_patches.h"
 #include "support/gl_context.h"
 
 namespace photohull::refine {
@@ -15,7 +17,7 @@ using reference::MatchView;
 
 struct Found {
   Matches matches;
-  std::vector<shaders::MatchChoice> choices;
+  std::vector<ViewChoice> choices;
 };
 
 class ChooseViews : public ::testing::TestWithParam<int> {
@@ -25,9 +27,14 @@ class ChooseViews : public ::testing::TestWithParam<int> {
     gpu::Context& context = test::gl_context();  // before the images need it
     const projtex::ImageSet images(views_);
     const std::vector<Camera> cameras = projtex::cameras_of(views_);
-    out.choices = choose_views(context, test::kGrid, mesh, images, cameras, options_);
-    out.matches = match_patches(context, test::kGrid, render::to_voxels(test::kGrid, mesh), {},
-                                out.choices, images, cameras, test::kNoise, range_, options_);
+    out.choices =
+        choose_views(context, test::kGrid, mesh, {images, cameras, test::kNoise}, options_);
+    std::vector<PatchSurfel> surfels;
+    for (const auto& point : render::to_voxels(test::kGrid, mesh))
+      surfels.push_back({point.position, point.normal});
+    out.matches = PatchMatcher(context, images, projtex::to_grid(cameras, test::kGrid),
+                               patch_rules(options_, test::kNoise), "choose views test")
+                      .match(surfels, {}, out.choices, range_);
     context.check_errors("choose views test");
     expected_ = test::reference_views(views_);
     test::draw(views_, mesh, expected_);
@@ -40,10 +47,8 @@ class ChooseViews : public ::testing::TestWithParam<int> {
     const auto at = render::to_voxels(test::kGrid, mesh)[i];
     const auto expected =
         reference::choose_views(expected_, dvec3(at.position), dvec3(at.normal), options_, chosen);
-    std::vector<int> hidden;
-    for (int k = 0; k < shaders::kHiddenViews && found.choices[i].hidden[k] >= 0; ++k)
-      hidden.push_back(found.choices[i].hidden[k]);
-    return expected.views == chosen && expected.seen == found.choices[i].second.z &&
+    const std::vector<int> hidden(found.choices[i].hidden.begin(), found.choices[i].hidden.end());
+    return expected.views == chosen && expected.seen == found.choices[i].seen &&
            expected.hidden == hidden;
   }
 
@@ -84,15 +89,15 @@ TEST_P(ChooseViews, AgreesOnRandomPoints) {
   int wrong = 0, seen = 0, several = 0, hidden = 0;
   for (std::size_t i = 0; i < found.choices.size(); ++i) {
     wrong += !agrees(mesh, found, i);
-    seen += found.choices[i].second.z > 0;
-    several += found.choices[i].second.w > 2;
-    hidden += found.choices[i].hidden.x >= 0;
+    seen += found.choices[i].seen > 0;
+    several += found.choices[i].views.size() > 2;
+    hidden += !found.choices[i].hidden.empty();
     if (i % 10 == 0) {
-      EXPECT_EQ(found.choices[i].second.z, 0) << "without a normal";
+      EXPECT_EQ(found.choices[i].seen, 0) << "without a normal";
     }
     for (const float score : found.matches.of(i)) {
-      if (found.choices[i].second.w < 2) {
-        EXPECT_EQ(score, shaders::kNoScore);
+      if (found.choices[i].views.size() < 2) {
+        EXPECT_EQ(score, kNoScore);
       } else {
         EXPECT_LE(std::abs(score), 1.001f);
       }
@@ -117,8 +122,8 @@ TEST_F(ChooseViewsOf, OneCameraSeesButNothingIsCompared) {
   test::add_vertex({24, 24, 24}, {0, 0, 1}, mesh);
   const Found found = run(mesh);
   EXPECT_EQ(test::views_of(found.choices[0]), std::vector<int>{0});
-  EXPECT_GT(found.choices[0].second.z, 0);
-  for (const float score : found.matches.of(0)) EXPECT_EQ(score, shaders::kNoScore);
+  EXPECT_GT(found.choices[0].seen, 0);
+  for (const float score : found.matches.of(0)) EXPECT_EQ(score, kNoScore);
   EXPECT_EQ(found.matches.samples, 0);
 }
 
@@ -131,10 +136,9 @@ TEST_F(ChooseViewsOf, NobodySeesWhatLiesBehindOrLooksAway) {
   test::add_vertex({24, 24, 20}, {0, 0, 0}, mesh);
   const Found found = run(mesh);
   for (std::size_t i = 0; i < 4; ++i) {
-    EXPECT_EQ(found.choices[i].second.w, 0) << i;
-    EXPECT_EQ(found.choices[i].first.x, -1) << i;
-    EXPECT_EQ(found.choices[i].second.z, 0) << i;
-    for (const float score : found.matches.of(i)) EXPECT_EQ(score, shaders::kNoScore);
+    EXPECT_EQ(found.choices[i].views.size(), 0) << i;
+    EXPECT_EQ(found.choices[i].seen, 0) << i;
+    for (const float score : found.matches.of(i)) EXPECT_EQ(score, kNoScore);
   }
 }
 
@@ -150,7 +154,7 @@ TEST_F(ChooseViewsOf, ImageEndsHalfAPixelBeyondTheLastCentre) {
     }
   const Found found = run(mesh);
   for (std::size_t i = 0; i < 8; ++i) {
-    EXPECT_EQ(found.choices[i].second.z > 0, i < 4) << i;
+    EXPECT_EQ(found.choices[i].seen > 0, i < 4) << i;
     EXPECT_TRUE(agrees(mesh, found, i)) << i;
   }
 }
@@ -160,9 +164,9 @@ TEST_F(ChooseViewsOf, FlatViewsSeeButAreNotMatched) {
   TriMesh mesh;
   test::add_vertex({24, 24, 24}, {0, 0, 1}, mesh);
   const Found found = run(mesh);
-  EXPECT_EQ(found.choices[0].second.z, 4);
-  EXPECT_EQ(found.choices[0].second.w, 0);
-  EXPECT_GT(found.choices[0].second.z, 0);
+  EXPECT_EQ(found.choices[0].seen, 4);
+  EXPECT_EQ(found.choices[0].views.size(), 0);
+  EXPECT_GT(found.choices[0].seen, 0);
 }
 
 TEST_F(ChooseViewsOf, HiddenSurfelIsUnseen) {
@@ -172,9 +176,8 @@ TEST_F(ChooseViewsOf, HiddenSurfelIsUnseen) {
   for (int x = 10; x < 38; ++x)
     for (int y = 10; y < 38; ++y) test::add_vertex({x, y, 34}, {0, 0, 1}, mesh);
   const Found found = run(mesh);
-  EXPECT_EQ(found.choices[0].second.z, 0);
-  const std::vector<int> hidden{found.choices[0].hidden.x, found.choices[0].hidden.y,
-                                found.choices[0].hidden.z, found.choices[0].hidden.w};
+  EXPECT_EQ(found.choices[0].seen, 0);
+  const auto& hidden = found.choices[0].hidden;
   EXPECT_EQ(std::set<int>(hidden.begin(), hidden.end()).size(), 4u);
   for (const int view : hidden) EXPECT_TRUE(view >= 0 && view < 8);
 }
@@ -187,7 +190,7 @@ TEST_F(ChooseViewsOf, BlurredViewsGiveWayToSharpOnesThatSeeTheSame) {
   test::add_vertex({24, 24, 24}, {0, 0, 1}, mesh);
   const Found found = run(mesh);
   const std::vector<int> chosen = test::views_of(found.choices[0]);
-  EXPECT_EQ(chosen.size(), std::size_t(shaders::kMatchViews));
+  EXPECT_EQ(chosen.size(), std::size_t(ViewChoice::kMostViews));
   for (const int view : chosen) EXPECT_GE(view, 10);  // cos 20 x 0.62 < cos 35
   EXPECT_TRUE(agrees(mesh, found, 0));
 }
@@ -200,7 +203,7 @@ TEST_F(ChooseViewsOf, BlurredViewsServeWhereThereAreNoOthersAndSharperOnesAreWor
   for (View& view : views_) view.sharpness = 2;
   EXPECT_EQ(test::views_of(run(mesh).choices[0]), plain);
   for (View& view : views_) view.sharpness = 0.5;
-  EXPECT_EQ(run(mesh).choices[0].second.w, int(plain.size()));
+  EXPECT_EQ(run(mesh).choices[0].views.size(), int(plain.size()));
 }
 
 TEST_F(ChooseViewsOf, TiesAreSettledOneWayOrTheOther) {
@@ -208,7 +211,7 @@ TEST_F(ChooseViewsOf, TiesAreSettledOneWayOrTheOther) {
   TriMesh mesh;
   test::add_vertex({24, 24, 24}, {0, 0, 1}, mesh);
   const Found found = run(mesh);
-  EXPECT_EQ(found.choices[0].second.w, shaders::kMatchViews);
+  EXPECT_EQ(found.choices[0].views.size(), ViewChoice::kMostViews);
   EXPECT_TRUE(agrees(mesh, found, 0));
 }
 
@@ -218,7 +221,7 @@ TEST_F(ChooseViewsOf, MoreEqualViewsThanCandidates) {
   test::add_vertex({24, 24, 24}, {0, 0, 1}, mesh);
   const Found found = run(mesh);
   const std::vector<int> chosen = test::views_of(found.choices[0]);
-  EXPECT_EQ(found.choices[0].second.z, 50);
+  EXPECT_EQ(found.choices[0].seen, 50);
   EXPECT_EQ(std::set<int>(chosen.begin(), chosen.end()).size(), chosen.size());
   ASSERT_GE(chosen.size(), 2u);
   for (std::size_t k = 1; k < chosen.size(); ++k) {
@@ -233,13 +236,13 @@ TEST_F(ChooseViewsOf, MoreEqualViewsThanCandidates) {
 
 TEST_F(ChooseViewsOf, OnlyTheMostFrontalAreCandidates) {
   // As many cameras as there are candidates, too near each other to be compared, and better ones.
-  add_ring(shaders::kMatchCandidates, 2);
+  add_ring(ViewChoice::kCandidates, 2);
   add_ring(5, 25);
   TriMesh mesh;
   test::add_vertex({24, 24, 24}, {0, 0, 1}, mesh);
   const Found found = run(mesh);
-  EXPECT_EQ(found.choices[0].second.z, shaders::kMatchCandidates + 5);
-  EXPECT_EQ(found.choices[0].second.w, 1);
+  EXPECT_EQ(found.choices[0].seen, ViewChoice::kCandidates + 5);
+  EXPECT_EQ(found.choices[0].views.size(), 1);
   EXPECT_TRUE(agrees(mesh, found, 0));
 }
 

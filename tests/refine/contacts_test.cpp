@@ -12,7 +12,7 @@ using glm::dvec3;
 std::vector<Contact> contacts_of(const Surface& surface, const BallViews& views,
                                  double reach = 1.5) {
   return find_contacts(surface.volume.grid, surface.mesh, surface.positions, surface.mesh.normals,
-                       views.cameras(), views.silhouettes(), reach);
+                       {views.cameras(), views.silhouettes()}, reach);
 }
 
 dvec3 place_of(const Surface& surface, const Contact& contact) {
@@ -105,7 +105,7 @@ TEST(FindContacts, ViewsWithoutSilhouettesSayNothing) {
   const Surface surface(sphere(kCentre, 9.7));
   const std::vector<carving::Silhouette> none(3);
   EXPECT_TRUE(find_contacts(surface.volume.grid, surface.mesh, surface.positions,
-                            surface.mesh.normals, views.cameras(), none, 1.5)
+                            surface.mesh.normals, {views.cameras(), none}, 1.5)
                   .empty());
 }
 

@@ -8,7 +8,7 @@
 namespace photohull::refine {
 namespace {
 
-constexpr float kNone = shaders::kNoScore;
+constexpr float kNone = kNoScore;
 
 /// A row of vertices, each joined to the next, and one by itself at the end.
 VertexGraph row_of(std::uint32_t count) {

@@ -10,6 +10,7 @@
 
 #include "match_scene.h"
 #include "refine/fit_patches_reference.h"
+#include "refine/kernels/fit_patches.h"
 #include "support/gl_context.h"
 
 namespace photohull::refine {
@@ -34,23 +35,30 @@ using Surface = std::function<std::optional<dvec3>(const dvec3& eye, const dvec3
 
 class FitPatches : public ::testing::Test {
  protected:
-  std::vector<shaders::FitResult> run(const std::vector<Probe>& probes) {
+  std::vector<PatchFit> run(const std::vector<Probe>& probes) {
     gpu::Context& context = test::gl_context();  // before the images need it
     mesh_ = TriMesh();
-    std::vector<shaders::MatchChoice> choices;
+    std::vector<ViewChoice> choices;
     for (const Probe& probe : probes) {
       test::add_vertex(probe.position, probe.normal, mesh_);
       choices.push_back(test::choice_of(probe.views));
     }
-    auto out =
-        fit_patches(context, test::kGrid, mesh_, make_graph(mesh_), projtex::ImageSet(views_),
-                    projtex::cameras_of(views_), choices, noise_, options_);
+    auto out = fit(context, mesh_, choices);
     context.check_errors("fit patches test");
     return out;
   }
 
+  std::vector<PatchFit> fit(gpu::Context& context, const TriMesh& mesh,
+                            const std::vector<ViewChoice>& choices) const {
+    const projtex::ImageSet images(views_);
+    const std::vector<Camera> cameras = projtex::cameras_of(views_);
+    const VertexGraph graph = make_graph(mesh);
+    return fit_patches(context, {test::kGrid, mesh, graph, {}}, {images, cameras, noise_}, choices,
+                       options_);
+  }
+
   /// How many results are not the reference's.
-  int compare(const std::vector<Probe>& probes, const std::vector<shaders::FitResult>& results,
+  int compare(const std::vector<Probe>& probes, const std::vector<PatchFit>& results,
               const Bounds& bounds = {}) {
     const auto views = test::reference_views(views_);
     const auto vertices = render::to_voxels(test::kGrid, mesh_);
@@ -60,15 +68,15 @@ class FitPatches : public ::testing::Test {
       surfel.hold_out = holds_out(glm::vec3(vertices[i].position), options_.hold_out);
       const FittedPatch expected =
           reference::fit_patch(views, probes[i].views, surfel, noise_, options_);
-      const shaders::FitResult& r = results[i];
+      const PatchFit& r = results[i];
       const auto near = [](double a, double b, double bound) { return std::abs(a - b) < bound; };
-      const bool ok = near(r.plane.w, expected.offset, bounds.offset) &&
-                      glm::distance(dvec3(r.plane), expected.normal) < bounds.normal &&
-                      near(r.evidence.x, expected.information,
+      const bool ok = near(r.offset, expected.offset, bounds.offset) &&
+                      glm::distance(dvec3(r.normal), expected.normal) < bounds.normal &&
+                      near(r.information, expected.information,
                            bounds.information * (expected.information + 1)) &&
-                      near(r.evidence.y, expected.score, bounds.score) &&
-                      near(r.evidence.z, expected.held_before, bounds.score) &&
-                      near(r.evidence.w, expected.held_after, bounds.score);
+                      near(r.score, expected.score, bounds.score) &&
+                      near(r.held_before, expected.held_before, bounds.score) &&
+                      near(r.held_after, expected.held_after, bounds.score);
       wrong += !ok;
       informed_ += expected.information > 1;
       held_ += expected.held_before > -1;
@@ -77,11 +85,11 @@ class FitPatches : public ::testing::Test {
     return wrong;
   }
 
-  static void tell(std::size_t i, const shaders::FitResult& r, const FittedPatch& e) {
-    std::cout << "first that differs: probe " << i << ", offset " << r.plane.w << " / " << e.offset
-              << ", information " << r.evidence.x << " / " << e.information << ", score "
-              << r.evidence.y << " / " << e.score << ", held out " << r.evidence.z << ' '
-              << r.evidence.w << " / " << e.held_before << ' ' << e.held_after << '\n';
+  static void tell(std::size_t i, const PatchFit& r, const FittedPatch& e) {
+    std::cout << "first that differs: probe " << i << ", offset " << r.offset << " / " << e.offset
+              << ", information " << r.information << " / " << e.information << ", score "
+              << r.score << " / " << e.score << ", held out " << r.held_before << ' '
+              << r.held_after << " / " << e.held_before << ' ' << e.held_after << '\n';
   }
 
   /// Cameras on the side z > 24, a cross of `count` steps of `spread` degrees.
@@ -132,7 +140,7 @@ class FitPatches : public ::testing::Test {
       probe.position = test::uniform_in(rng_, {dvec3(8), dvec3(40)});
       for (int v = 0; v < int(views_.size()); ++v) probe.views.push_back(v);
       std::shuffle(probe.views.begin(), probe.views.end(), rng_);
-      probe.views.resize(std::min(std::size_t(i % (shaders::kMatchViews + 1)), views_.size()));
+      probe.views.resize(std::min(std::size_t(i % (ViewChoice::kMostViews + 1)), views_.size()));
       probe.normal = test::random_direction(rng_);
       if (!probe.views.empty()) {
         const dvec3 centre =
@@ -206,11 +214,11 @@ TEST_F(FitPatches, ComesBackToAPlane) {
   std::vector<Probe> probes = plane_probes(60, 0, 10);
   for (std::size_t i = 0; i < probes.size(); ++i) probes[i].position.z += i % 2 ? 0.5 : -0.5;
   std::vector<double> off, angle;
-  for (std::size_t i = 0; const shaders::FitResult& r : run(probes)) {
+  for (std::size_t i = 0; const PatchFit& r : run(probes)) {
     const Probe& probe = probes[i++];
-    off.push_back(std::abs((probe.position + double(r.plane.w) * probe.normal).z - 24));
-    angle.push_back(glm::degrees(std::acos(std::min(1.0f, r.plane.z))));
-    EXPECT_GT(r.evidence.x, 30);
+    off.push_back(std::abs((probe.position + double(r.offset) * probe.normal).z - 24));
+    angle.push_back(glm::degrees(std::acos(std::min(1.0f, r.normal.z))));
+    EXPECT_GT(r.information, 30);
   }
   std::sort(off.begin(), off.end());
   std::sort(angle.begin(), angle.end());
@@ -241,17 +249,13 @@ TEST_F(FitPatches, ComesBackToASphereWithItsCurvature) {
       mesh.triangles.push_back({at(i - 1, j - 1), at(i, j - 1), at(i, j)});
       mesh.triangles.push_back({at(i - 1, j - 1), at(i, j), at(i - 1, j)});
     }
-  const std::vector<shaders::MatchChoice> choices(mesh.positions.size(),
-                                                  test::choice_of({0, 1, 2, 3, 4, 5}));
+  const std::vector<ViewChoice> choices(mesh.positions.size(), test::choice_of({0, 1, 2, 3, 4, 5}));
   options_.steps = 5;
   options_.largest_offset = 1;
   gpu::Context& context = test::gl_context();  // before the images need it
   const auto error = [&] {
     double sum = 0;
-    for (const auto& r :
-         fit_patches(context, test::kGrid, mesh, make_graph(mesh), projtex::ImageSet(views_),
-                     projtex::cameras_of(views_), choices, noise_, options_))
-      sum += r.plane.w + 0.5;
+    for (const auto& r : fit(context, mesh, choices)) sum += r.offset + 0.5;
     return std::abs(sum / double(mesh.positions.size()));
   };
   const double bent = error();
@@ -272,7 +276,7 @@ TEST_F(FitPatches, LessNoiseMoreInformation) {
         for (std::uint8_t& byte : view.image.bytes)
           byte = std::uint8_t(std::clamp(byte + noise(rng_), 0.0, 255.0));
     std::vector<double> information;
-    for (const auto& r : run(probes)) information.push_back(r.evidence.x);
+    for (const auto& r : run(probes)) information.push_back(r.information);
     std::sort(information.begin(), information.end());
     EXPECT_LT(information[20], 0.7 * previous) << sigma;
     previous = information[20];
@@ -289,7 +293,7 @@ TEST_F(FitPatches, AViewThatDisagreesHasNoWeight) {
   const auto results = run(probes);
   EXPECT_LE(compare(probes, results), 3);
   for (std::size_t i = 0; i < probes.size(); ++i)
-    sum += std::abs((probes[i].position + double(results[i].plane.w) * probes[i].normal).z - 24);
+    sum += std::abs((probes[i].position + double(results[i].offset) * probes[i].normal).z - 24);
   EXPECT_LT(sum / 40, 0.05);
 }
 
@@ -299,23 +303,22 @@ TEST_F(FitPatches, PlainImagesSayNothing) {
   for (View& view : views_) std::fill(view.image.bytes.begin(), view.image.bytes.end(), 130);
   const std::vector<Probe> probes = random_probes(60);
   for (const auto& r : run(probes)) {
-    EXPECT_LT(std::abs(r.plane.w), 1e-3);
-    EXPECT_LT(r.evidence.x, 1e-2);
+    EXPECT_LT(std::abs(r.offset), 1e-3);
+    EXPECT_LT(r.information, 1e-2);
   }
 }
 
 TEST_F(FitPatches, PeaksWeighInformationByPixel) {
-  shaders::FitResult r{{0, 0, 1, 0.25f}, {100, 0.9f, 0, 0}};
+  const auto fit_of = [](float offset, float information, float score) {
+    return PatchFit{{0, 0, 1}, offset, information, score, 0, 0};
+  };
   options_.largest_offset = 0.5;
   options_.sure = 0.1, options_.most_weight = 4;
   options_.least_score = 0.1, options_.sure_score = 0.9;
-  const std::vector<Peak> peaks = peaks_of(std::vector{r,
-                                                       r,
-                                                       {r.plane, {1e6, 0.9, 0, 0}},
-                                                       {r.plane, {0, 0.9, 0, 0}},
-                                                       {r.plane, {100, 0.5, 0, 0}},
-                                                       {{0, 0, 1, 0.5f}, r.evidence}},
-                                           std::vector<float>{1, 2, 0.5, 1, 1, 1}, options_);
+  const std::vector<Peak> peaks = peaks_of(
+      std::vector{fit_of(0.25f, 100, 0.9f), fit_of(0.25f, 100, 0.9f), fit_of(0.25f, 1e6, 0.9f),
+                  fit_of(0.25f, 0, 0.9f), fit_of(0.25f, 100, 0.5f), fit_of(0.5f, 100, 0.9f)},
+      std::vector<float>{1, 2, 0.5, 1, 1, 1}, options_);
   EXPECT_FLOAT_EQ(peaks[0].weight, 1);
   EXPECT_FLOAT_EQ(peaks[0].offset, 0.25);
   EXPECT_FLOAT_EQ(peaks[1].weight, 1.0 / 16);
@@ -328,8 +331,8 @@ TEST_F(FitPatches, PeaksWeighInformationByPixel) {
 TEST_F(FitPatches, SpacingIsAPixelOrTheLeast) {
   add_plane_views(2, 11, 400);  // 10 world units, 200 voxels away
   const std::vector<glm::vec3> positions(3, glm::vec3(24));
-  const std::vector<shaders::MatchChoice> choices{test::choice_of({0, 1}), test::choice_of({}),
-                                                  test::choice_of({1})};
+  const std::vector<ViewChoice> choices{test::choice_of({0, 1}), test::choice_of({}),
+                                        test::choice_of({1})};
   options_.least_spacing = 0.1, options_.pixel_spacing = 2;
   const auto spacings =
       tap_spacings(test::kGrid, positions, projtex::cameras_of(views_), choices, options_);
@@ -345,10 +348,12 @@ TEST_F(FitPatches, TooFewViewsLeaveTheSurfel) {
   probes[1].views = {1};
   const auto results = run(probes);
   for (std::size_t i = 0; i < 2; ++i) {
-    EXPECT_EQ(results[i].plane.w, 0);
-    EXPECT_EQ(results[i].evidence,
-              glm::vec4(0, shaders::kNoScore, shaders::kNoScore, shaders::kNoScore));
-    EXPECT_LT(glm::distance(dvec3(results[i].plane), probes[i].normal), 1e-6);
+    EXPECT_EQ(results[i].offset, 0);
+    EXPECT_EQ(results[i].information, 0);
+    EXPECT_EQ(results[i].score, kNoScore);
+    EXPECT_EQ(results[i].held_before, kNoScore);
+    EXPECT_EQ(results[i].held_after, kNoScore);
+    EXPECT_LT(glm::distance(dvec3(results[i].normal), probes[i].normal), 1e-6);
   }
   EXPECT_EQ(peaks_of(results, std::vector<float>{1, 1}, options_)[1].weight, 0);
   EXPECT_EQ(held_out(results).surfels, 0u);
@@ -366,11 +371,11 @@ TEST_F(FitPatches, BorderEdgeOnAndBehindStayFinite) {
   for (int x = -60; x <= 108; x += 8) probes.push_back({{x, 20, 24}, {0, 0, 1}, {0, 1, 2}});
   const auto results = run(probes);
   for (const auto& r : results) {
-    EXPECT_LE(std::abs(r.plane.w), options_.largest_offset + 1e-6);
-    EXPECT_NEAR(glm::length(glm::vec3(r.plane)), 1, 1e-4);
-    EXPECT_GE(r.evidence.x, 0);
-    EXPECT_LT(r.evidence.x, 1e9);
-    EXPECT_LE(r.evidence.y, 1.001);
+    EXPECT_LE(std::abs(r.offset), options_.largest_offset + 1e-6);
+    EXPECT_NEAR(glm::length(r.normal), 1, 1e-4);
+    EXPECT_GE(r.information, 0);
+    EXPECT_LT(r.information, 1e9);
+    EXPECT_LE(r.score, 1.001);
   }
 }
 

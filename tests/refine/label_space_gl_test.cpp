@@ -1,5 +1,5 @@
 // Labels of space against the reference, and against cuts that are known.
-#include "refine/label_space.h"
+#include "refine/kernels/label_space.h"
 
 #include <gtest/gtest.h>
 

@@ -49,8 +49,8 @@ class LookThrough : public WallScene {
         known.positions.emplace_back(x, y, kWall);
         known.normals.emplace_back(0, 0, 1);
         known.weights.push_back(1);
-        shaders::MatchChoice choice = test::choice_of({0, 1, 5, 6});
-        for (int k = 0; k < int(hidden.size()); ++k) choice.hidden[k] = hidden[std::size_t(k)];
+        ViewChoice choice = test::choice_of({0, 1, 5, 6});
+        for (const int view : hidden) choice.hidden.push_back(view);
         known.choices.push_back(choice);
       }
     return known;
@@ -58,9 +58,10 @@ class LookThrough : public WallScene {
 
   std::vector<Sightline> look(const KnownSurface& known) {
     gpu::Context& context = test::gl_context();  // before the images need it
-    auto lines =
-        find_sightlines(context, test::kGrid, known, projtex::ImageSet(views_),
-                        projtex::cameras_of(views_), test::kNoise, MatchOptions(), options_);
+    const projtex::ImageSet images(views_);
+    const std::vector<Camera> cameras = projtex::cameras_of(views_);
+    auto lines = find_sightlines(context, test::kGrid, known, {images, cameras, test::kNoise},
+                                 MatchOptions(), options_);
     context.check_errors("look through test");
     return lines;
   }
@@ -119,11 +120,7 @@ TEST_F(LookThrough, LinesStartAboveTheSurface) {
 
 TEST_F(LookThrough, TooFewViewsVouchForNothing) {
   KnownSurface known = wall({2, 3, 4});
-  for (shaders::MatchChoice& choice : known.choices) {
-    const glm::ivec4 hidden = choice.hidden;
-    choice = test::choice_of({0, 1});
-    choice.hidden = hidden;
-  }
+  for (ViewChoice& choice : known.choices) choice.views = test::choice_of({0, 1}).views;
   EXPECT_TRUE(look(known).empty());
   EXPECT_TRUE(look(wall({})).empty());
   known = wall({2, 3, 4});
@@ -166,13 +163,13 @@ TEST_F(LookThrough, BricksDeepInsideAreStoredWhenTheyAreFreed) {
 TEST_F(LookThrough, KnownSurfaceLiesAtGoodPeaks) {
   const std::vector<vec3> positions(4, vec3(1, 2, 3)), normals(4, vec3(0, 0, 1));
   const std::vector<Peak> peaks{{0.5, 1, 0.95f}, {0, 1, 0.5f}, {0, 0, 0.95f}, {-1, 0.1f, 0.92f}};
-  std::vector<shaders::MatchChoice> choices;
+  std::vector<ViewChoice> choices;
   for (int i = 0; i < 4; ++i) choices.push_back(test::choice_of({i, 4}));
   const KnownSurface known = known_surface(positions, normals, peaks, choices, options_);
   ASSERT_EQ(known.positions.size(), 2u);
   EXPECT_EQ(known.positions[0], vec3(1, 2, 3.5));
   EXPECT_EQ(known.positions[1], vec3(1, 2, 2));
-  EXPECT_EQ(known.choices[1].first.x, 3);
+  EXPECT_EQ(known.choices[1].reference(), 3);
   EXPECT_FLOAT_EQ(known.weights[1], 0.1f);
 }
 

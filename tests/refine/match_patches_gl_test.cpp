@@ -3,11 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
+#include <utility>
 
-#include "gpu/buffer.h"
-#include "gpu/program.h"
 #include "match_scene.h"
+#include "refine/kernels/match_patches.h"
 #include "support/gl_context.h"
 
 namespace photohull::refine {
@@ -29,54 +28,31 @@ struct Probe {
 class MatchPatches : public ::testing::Test {
  protected:
   /// Scores of the probes, range.count each.
-  std::vector<float> run(const std::vector<Probe>& probes, int radius = shaders::kMatchRadius) {
+  std::vector<float> run(const std::vector<Probe>& probes, int radius = kPatchRadius) {
     gpu::Context& context = test::gl_context();  // before the images need it
     const projtex::ImageSet images(views_);
-    std::vector<shaders::GpuView> gpu_views;
-    for (const View& view : views_)
-      gpu_views.push_back(projtex::to_gpu_view(projtex::to_grid(view.camera, test::kGrid),
-                                               {test::kImageEdge, test::kImageEdge}));
-    std::vector<shaders::BakeVertex> surfels;
-    std::vector<shaders::MatchChoice> choices;
+    std::vector<PatchSurfel> surfels;
+    std::vector<ViewChoice> choices;
+    std::vector<glm::vec3> bends;
     for (const Probe& probe : probes) {
-      surfels.push_back({glm::vec4(probe.position, probe.scale), glm::vec4(probe.normal, 0)});
+      surfels.push_back({glm::vec3(probe.position), glm::vec3(probe.normal), float(probe.scale)});
       choices.push_back(test::choice_of(probe.views));
+      bends.emplace_back(probe.bend);
     }
-    const std::size_t count = probes.size() * std::size_t(range_.count);
-    shaders::MatchParameters p{};
-    p.counts = {int(probes.size()), int(views_.size()), range_.count, 0};
-    p.search = {float(range_.first), float(range_.step), float(options_.least_spacing),
-                float(options_.pixel_spacing)};
-    p.consistency = {float(noise_ * noise_), float(options_.best_pairs),
-                     float(variance_floor(noise_)), 0};
-    const gpu::Buffer uniforms(sizeof p, &p), view_buffer = gpu::Buffer::of(gpu_views),
-                                              surfel_buffer = gpu::Buffer::of(surfels),
-                                              choice_buffer = gpu::Buffer::of(choices);
-    std::vector<glm::vec4> bends;
-    for (const Probe& probe : probes) bends.emplace_back(probe.bend, 0);
-    const gpu::Buffer bend_buffer = gpu::Buffer::of(bends);
-    bend_buffer.bind_storage(4);
-    const gpu::Buffer scores(count * sizeof(float));
-    uniforms.bind_uniform(0);
-    view_buffer.bind_storage(0);
-    surfel_buffer.bind_storage(1);
-    choice_buffer.bind_storage(2);
-    scores.bind_storage(3);
-    const gpu::Buffer textures(probes.size() * sizeof(float));
-    textures.bind_storage(5);
-    images.texture().bind(0);
-    gpu::Program::compute(
-        "refine_match_patches.comp.glsl",
-        "#define PATCH_RADIUS " + std::to_string(radius) + "\n#define PATCH_BENT\n")
-        .dispatch(context, "refine_match_patches", gpu::group_count(count, 64));
+    PatchRules rules = patch_rules(options_, noise_);
+    rules.radius = radius;
+    const PatchMatcher matcher(context, images,
+                               projtex::to_grid(projtex::cameras_of(views_), test::kGrid), rules,
+                               "match patches test");
+    Matches matches = matcher.match(surfels, bends, choices, range_);
     context.check_errors("match patches test");
-    textures_ = textures.download<float>(probes.size());
-    return scores.download<float>(count);
+    textures_ = std::move(matches.texture);
+    return std::move(matches.scores);
   }
 
   /// Compares with the reference; returns how many scores are off by more than the bound.
   int compare(const std::vector<Probe>& probes, const std::vector<float>& scores,
-              int radius = shaders::kMatchRadius) {
+              int radius = kPatchRadius) {
     const std::vector<MatchView> views = test::reference_views(views_);
     int wrong = 0;
     for (std::size_t i = 0; i < scores.size(); ++i) {
@@ -161,7 +137,7 @@ class MatchPatches : public ::testing::Test {
 TEST_F(MatchPatches, AgreesOnRandomImages) {
   views_ = test::random_views(rng_, 9);
   views_.pop_back();  // the one amid the points
-  const std::vector<Probe> probes = random_probes(250, shaders::kMatchViews);
+  const std::vector<Probe> probes = random_probes(250, ViewChoice::kMostViews);
   // A footprint between two mip levels may fall either way.
   EXPECT_LE(compare(probes, run(probes)), 6) << worst_;
 }
@@ -170,7 +146,7 @@ TEST_F(MatchPatches, AgreesOnHalfFloatImages) {
   views_ = test::random_views(rng_, 7);
   views_.pop_back();
   for (View& view : views_) view.image = test::to_half(view.image);
-  const std::vector<Probe> probes = random_probes(100, shaders::kMatchViews);
+  const std::vector<Probe> probes = random_probes(100, ViewChoice::kMostViews);
   EXPECT_LE(compare(probes, run(probes)), 4) << worst_;
 }
 
@@ -180,7 +156,7 @@ TEST_F(MatchPatches, SmallPatchesAlongRays) {
   views_.pop_back();
   range_ = {0, -1, 8};
   options_.least_spacing = 0.7;
-  std::vector<Probe> probes = random_probes(120, shaders::kMatchViews);
+  std::vector<Probe> probes = random_probes(120, ViewChoice::kMostViews);
   for (Probe& probe : probes) probe.scale = test::uniform(rng_, 1, 3);
   EXPECT_LE(compare(probes, run(probes, 1), 1), 6) << worst_;
 }
@@ -189,7 +165,7 @@ TEST_F(MatchPatches, BestShareOfThePairs) {
   views_ = test::random_views(rng_, 9);
   views_.pop_back();
   range_ = {0, 1, 1};
-  const std::vector<Probe> probes = random_probes(140, shaders::kMatchViews);
+  const std::vector<Probe> probes = random_probes(140, ViewChoice::kMostViews);
   for (const double share : {0.01, 0.2, 0.4, 0.5, 0.75, 1.0}) {
     options_.best_pairs = share;
     EXPECT_LE(compare(probes, run(probes)), 2) << share << ": " << worst_;
@@ -240,7 +216,7 @@ TEST_F(MatchPatches, PlainImagesNeverAgree) {
   views_ = test::random_views(rng_, 7);
   views_.pop_back();
   for (View& view : views_) std::fill(view.image.bytes.begin(), view.image.bytes.end(), 130);
-  const std::vector<Probe> probes = random_probes(60, shaders::kMatchViews);
+  const std::vector<Probe> probes = random_probes(60, ViewChoice::kMostViews);
   const std::vector<float> scores = run(probes);
   EXPECT_EQ(compare(probes, scores), 0) << worst_;
   EXPECT_LT(greatest_, 1e-3);

@@ -5,6 +5,7 @@
 
 #include "core/mesh.h"
 #include "refine/match_reference.h"
+#include "refine/view_choice.h"
 #include "render/bake_colour.h"
 #include "render/surface_points.h"
 #include "support/ray_cast.h"
@@ -75,17 +76,13 @@ inline void add_vertex(const glm::dvec3& voxel, const glm::dvec3& normal, TriMes
   mesh.normals.emplace_back(normal);
 }
 
-inline std::vector<int> views_of(const shaders::MatchChoice& choice) {
-  std::vector<int> out;
-  for (int k = 0; k < choice.second.w; ++k)
-    out.push_back(k < 4 ? choice.first[k] : choice.second[k - 4]);
-  return out;
+inline std::vector<int> views_of(const refine::ViewChoice& choice) {
+  return {choice.views.begin(), choice.views.end()};
 }
 
-inline shaders::MatchChoice choice_of(const std::vector<int>& views) {
-  shaders::MatchChoice out{{-1, -1, -1, -1}, {-1, -1, 0, int(views.size())}, glm::ivec4(-1)};
-  for (int k = 0; k < int(views.size()); ++k)
-    (k < 4 ? out.first[k] : out.second[k - 4]) = views[std::size_t(k)];
+inline refine::ViewChoice choice_of(const std::vector<int>& views) {
+  refine::ViewChoice out;
+  out.views = refine::ViewList<refine::ViewChoice::kMostViews>(views);
   return out;
 }
 

@@ -29,11 +29,7 @@ std::vector<projtex::GridCamera> along_the_wall() {
 }
 
 /// Partners of a choice, without the view itself.
-std::vector<int> partners(const shaders::MatchChoice& c) {
-  std::vector<int> out;
-  for (int k = 1; k < c.second.w; ++k) out.push_back(k < 4 ? c.first[k] : c.second[k - 4]);
-  return out;
-}
+std::vector<int> partners(const ViewChoice& c) { return {c.others().begin(), c.others().end()}; }
 
 TEST(RayPartners, OfATileHaveOnTheirImagesWhatItLooksAt) {
   const auto cameras = along_the_wall();
@@ -43,8 +39,8 @@ TEST(RayPartners, OfATileHaveOnTheirImagesWhatItLooksAt) {
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     ASSERT_EQ(all[i].tiles.size(), std::size_t(kTiles * kTiles));
     for (int tile = 0; tile < kTiles * kTiles; ++tile) {
-      const shaders::MatchChoice& choice = all[i].tiles[std::size_t(tile)];
-      EXPECT_EQ(choice.first.x, int(i));
+      const ViewChoice& choice = all[i].tiles[std::size_t(tile)];
+      EXPECT_EQ(choice.reference(), int(i));
       const double column = (tile % kTiles + 0.5) / kTiles * kWidth - 0.5;
       const double depth = 55;
       const double x = cameras[i].centre.x + depth * (column - 0.5 * (kWidth - 1)) / kFocal;

@@ -46,11 +46,7 @@ class RaySearchTest : public WallScene {
   std::vector<Finding> search(const VoteOptions& options, std::vector<Finding> findings) {
     gpu::Context& context = test::gl_context();
     const projtex::ImageSet images(views_);
-    std::vector<shaders::GpuView> gpu_views;
-    for (const auto& camera : cameras_)
-      gpu_views.push_back(
-          projtex::to_gpu_view(camera, {images.texture().width(), images.texture().height()}));
-    const RaySearch search(context, images, gpu_views, 0.01, options);
+    const RaySearch search(context, images, cameras_, 0.01, options);
     search.sweep(rays_, partners_[kView], findings);
     search.spread(rays_, kEdge, kEdge, partners_[kView], findings);
     return findings;
@@ -164,8 +160,10 @@ class BareRays : public WallScene {
     hull.grid = half.grid = test::kGrid;
     VoteOptions options;
     options.bare_reach = reach;
-    const RayMap map = match_rays_again(test::gl_context(), hull, half, projtex::ImageSet(views_),
-                                        projtex::cameras_of(views_), 0.01, options)[3];
+    gpu::Context& context = test::gl_context();  // before the images need it
+    const projtex::ImageSet images(views_);
+    const std::vector<Camera> cameras = projtex::cameras_of(views_);
+    const RayMap map = match_rays_again(context, hull, half, {images, cameras, 0.01}, options)[3];
     int count[2] = {0, 0}, all[2] = {0, 0};
     for (int y = map.height / 3; y < 2 * map.height / 3; ++y)
       for (int x = map.width / 4; x < 3 * map.width / 4; ++x) {

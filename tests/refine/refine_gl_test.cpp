@@ -24,9 +24,10 @@ class RefineSurface : public testing::Test {
   SparseVolume run(int edge, bool masks = true) {
     gpu::Context& context = test::gl_context();
     const auto hull_at = [&](const GridSpec& grid) { return scene_.hull(grid, masks); };
-    return refine_surface(context, scene_.grid(edge), hull_at, scene_.silhouettes(masks),
-                          projtex::ImageSet(scene_.views), scene_.cameras, options_, progress_,
-                          &report_);
+    return refine_surface(context,
+                          {scene_.grid(edge), hull_at, scene_.silhouettes(masks),
+                           projtex::ImageSet(scene_.views), scene_.cameras},
+                          options_, progress_, &report_);
   }
 
   const test::BowlScene& scene_ = test::bowl_scene();

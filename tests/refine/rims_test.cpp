@@ -32,7 +32,7 @@ Peak pulled(float under, const Peak& peak, float texture, const RimOptions& opti
   const std::vector<vec3> positions = {vec3(12) + (8 - under) * glm::normalize(vec3(1, 2, -0.5))};
   std::vector<Peak> peaks = {peak};
   const VertexGraph alone{{0, 0}, {}};
-  pull_to_hull(ball(), alone, positions, {&texture, 1}, {&trust, 1}, options, peaks);
+  pull_to_hull(ball(), alone, positions, {{&texture, 1}, {&trust, 1}}, options, peaks);
   return peaks[0];
 }
 
@@ -64,7 +64,7 @@ TEST(PullToHull, WherePhotographsTellAroundTheHullHasNoSay) {
   const auto middle = [&](float weight_beside) {
     std::vector<Peak> peaks(3);
     peaks[0].weight = peaks[2].weight = weight_beside;
-    pull_to_hull(ball(), row, positions, texture, trust, {.told = 0.5}, peaks);
+    pull_to_hull(ball(), row, positions, {texture, trust}, {.told = 0.5}, peaks);
     return peaks[1];
   };
   EXPECT_GT(middle(0).weight, 2);
@@ -89,7 +89,7 @@ TEST(PullToHull, AHullThatIsLooseElsewhereIsNotBelieved) {
     std::vector<Peak> peaks(count, Peak{0.2f - depth, 2, 0.9f});
     peaks[0] = {};
     const VertexGraph apart{std::vector<std::uint32_t>(count + 1, 0), {}};
-    pull_to_hull(ball(), apart, positions, texture, trust, {}, peaks);
+    pull_to_hull(ball(), apart, positions, {texture, trust}, {}, peaks);
     return peaks[0].weight;
   };
   EXPECT_NEAR(plain(0.1f), 0.8 * RimOptions().weight, 0.1 * RimOptions().weight);

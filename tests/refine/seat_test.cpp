@@ -31,9 +31,12 @@ Seated seated(const Surface& surface, const Distance& hull, float told, double t
               const SeatOptions& options = {}) {
   static const BallViews views(60);
   std::vector<float> moves(surface.positions.size(), 0);
-  seat_outlines(sample_volume({4, 4, 4}, hull), views.cameras(), views.silhouettes(), surface.mesh,
-                make_graph(surface.mesh), surface.positions, std::vector<float>(moves.size(), told),
-                std::vector<float>(moves.size(), float(tight)), options, moves);
+  const SparseVolume volume = sample_volume({4, 4, 4}, hull);
+  const VertexGraph graph = make_graph(surface.mesh);
+  const std::vector<float> told_at(moves.size(), told), tight_at(moves.size(), float(tight));
+  seat_outlines(volume, {views.cameras(), views.silhouettes()},
+                {volume.grid, surface.mesh, graph, surface.positions}, {told_at, tight_at}, options,
+                moves);
   Seated out;
   int count = 0;
   for (std::size_t i = 0; i < moves.size(); ++i) {

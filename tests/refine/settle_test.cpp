@@ -28,11 +28,22 @@ class Settle : public testing::Test {
     matches_.texture.push_back(texture);
     peaks_.push_back({0, weight, 0.9f});
     before_.push_back(Settled::kSplit);
-    choices_.push_back({{0, 0, 0, -1}, {-1, -1, 3, views}, glm::ivec4(-1)});
+    choices_.push_back(seen_by(views));
+  }
+
+  /// Matched in so many views of the first camera.
+  static ViewChoice seen_by(int views) {
+    ViewChoice out;
+    out.seen = 3;
+    for (int k = 0; k < views; ++k) out.views.push_back(0);
+    return out;
   }
 
   SettledBricks settle() const {
-    return {grid_, positions_, bends_, matches_, peaks_, choices_, cameras_, before_, options_};
+    return {grid_,
+            {positions_, bends_, matches_.texture, peaks_, choices_, before_},
+            cameras_,
+            options_};
   }
 
   /// Of a brick with the first surfel as it is now.
@@ -43,7 +54,7 @@ class Settle : public testing::Test {
   std::vector<vec3> positions_, bends_;
   Matches matches_;
   std::vector<Peak> peaks_;
-  std::vector<shaders::MatchChoice> choices_;
+  std::vector<ViewChoice> choices_;
   std::vector<Settled> before_;
   SettleOptions options_;
 };
@@ -61,17 +72,17 @@ TEST_F(Settle, SaysWhy) {
   EXPECT_EQ(kind(), Settled::kPlain);
   options_.least_pixels = 0.6;
   EXPECT_EQ(kind(), Settled::kPixels) << "half a pixel";
-  choices_[0].second.w = 1;
+  choices_[0] = seen_by(1);
   EXPECT_EQ(kind(), Settled::kUnseen);
 }
 
 TEST_F(Settle, WhatWasSettledStaysSoAndWhatWasUnseenIsAskedAgain) {
-  choices_[0].second.w = 0;  // settled surfels are not matched
+  choices_[0] = seen_by(0);  // settled surfels are not matched
   before_[0] = Settled::kFlat;
   EXPECT_EQ(kind(), Settled::kFlat);
   before_[0] = Settled::kUnseen;
   EXPECT_EQ(kind(), Settled::kUnseen);
-  choices_[0].second.w = 3;
+  choices_[0] = seen_by(3);
   bends_[0] = {1, 0, 0};
   EXPECT_EQ(kind(), Settled::kSplit) << "somebody sees it now";
   EXPECT_FALSE(is_settled(Settled::kUnseen));

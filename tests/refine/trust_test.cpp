@@ -48,13 +48,13 @@ class TrustOutlines : public testing::Test {
     // Which way x runs in the image is the camera's business.
     const dvec3 right = glm::transpose(cameras_[0].cam_from_world.rotation)[0];
     const vec3 position(dvec3(16) + right * (40 - inside - centre.x));
-    shaders::MatchChoice choice{{-1, -1, -1, -1}, {-1, -1, 0, int(views.size())}, glm::ivec4(-1)};
-    for (int k = 0; k < int(views.size()); ++k) choice.first[k] = views[std::size_t(k)];
+    ViewChoice choice;
+    choice.views = ViewList<ViewChoice::kMostViews>(views);
     std::vector<carving::Silhouette> silhouettes(2);
     for (std::size_t i = 0; masks && i < 2; ++i) silhouettes[i].distance = &distances_[i];
     std::vector<float> out{0.5f};
-    trust_outlines({dvec3(0), 1, {4, 4, 4}}, std::vector{position}, std::vector{choice}, cameras_,
-                   silhouettes, options_, out);
+    trust_outlines({dvec3(0), 1, {4, 4, 4}}, std::vector{position}, std::vector{choice},
+                   {cameras_, silhouettes}, options_, out);
     return 2 * out[0];
   }
 

@@ -49,8 +49,9 @@ class VoteAgain : public WallScene {
     SparseVolume hull = block();
     hull.grid = volume.grid = test::kGrid;
     gpu::Context& context = test::gl_context();
-    return vote_again(context, volume, hull, projtex::ImageSet(views_), projtex::cameras_of(views_),
-                      0.01, options);
+    const projtex::ImageSet images(views_);
+    const std::vector<Camera> cameras = projtex::cameras_of(views_);
+    return vote_again(context, volume, hull, {images, cameras, 0.01}, options);
   }
 };
 
@@ -116,9 +117,11 @@ TEST_F(VoteAgain, RaysAreNoCloserThanPixelsTellApart) {
   SparseVolume hull = block();
   hull.grid = test::kGrid;
   VoteOptions options;
-  options.ray_spacing = 0.01;  // voxels, which are about a pixel wide here
-  for (const RayMap& map : match_rays(test::gl_context(), hull, projtex::ImageSet(views_),
-                                      projtex::cameras_of(views_), 0.01, options))
+  options.ray_spacing = 0.01;                  // voxels, which are about a pixel wide here
+  gpu::Context& context = test::gl_context();  // before the images need it
+  const projtex::ImageSet images(views_);
+  const std::vector<Camera> cameras = projtex::cameras_of(views_);
+  for (const RayMap& map : match_rays(context, hull, {images, cameras, 0.01}, options))
     EXPECT_DOUBLE_EQ(map.stride, 1.5);
 }
 

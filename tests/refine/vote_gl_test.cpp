@@ -23,8 +23,9 @@ void for_voxels(const GridSpec& grid, F&& f) {
 
 SparseVolume vote(const SparseVolume& hull, const std::vector<View>& views) {
   gpu::Context& context = test::gl_context();
-  return vote_free_space(context, hull, projtex::ImageSet(views), projtex::cameras_of(views), 0.01,
-                         {});
+  const projtex::ImageSet images(views);
+  const std::vector<Camera> cameras = projtex::cameras_of(views);
+  return vote_free_space(context, hull, {images, cameras, 0.01}, {});
 }
 
 TEST(VoteFreeSpace, OpensTheHollowAndSparesTheBody) {
@@ -87,8 +88,9 @@ TEST(VoteFreeSpace, EmptyHull) {
 
 SparseVolume label(const SparseVolume& hull, const std::vector<View>& views) {
   gpu::Context& context = test::gl_context();
-  return label_by_votes(context, hull, projtex::ImageSet(views), projtex::cameras_of(views), 0.01,
-                        {}, {});
+  const projtex::ImageSet images(views);
+  const std::vector<Camera> cameras = projtex::cameras_of(views);
+  return label_by_votes(context, hull, {images, cameras, 0.01}, {}, {});
 }
 
 TEST(LabelByVotes, WhatSilhouettesWouldTellIsFreeToo) {

@@ -37,7 +37,7 @@ void bake(const std::vector<View>& views, TriMesh& mesh, BakeReport* report = nu
 
 /// The reference's depth maps of a mesh that consists of vertices only.
 std::vector<BakeView> reference_views(const std::vector<View>& views,
-                                      const std::vector<shaders::BakeVertex>& vertices) {
+                                      const std::vector<render::SurfacePoint>& vertices) {
   const std::vector<Camera> cameras = cameras_of(views);
   const visibility::DepthMaps maps = render::occluder_maps(cameras, kGrid);
   std::vector<BakeView> out;

@@ -68,7 +68,7 @@ class DepthMapsTest : public ::testing::Test {
     std::vector<glm::ivec4> list{{int(voxels.size()), 0, 0, 0}};
     for (const ivec3& voxel : voxels) list.emplace_back(voxel, 0);
     const gpu::Buffer view_buffer = gpu::Buffer::of(views), list_buffer = gpu::Buffer::of(list);
-    view_buffer.bind_storage(0);
+    view_buffer.bind_storage(shaders::kViewsBinding);
     maps.splat(context_, list_buffer, voxels.size());
   }
 

@@ -152,10 +152,10 @@ class Study {
     }
     const gpu::Buffer square_buffer = gpu::Buffer::of(list), samples(count * 16);
     program.set("count", int(count));
-    view_buffer_.bind_storage(0);
-    square_buffer.bind_storage(1);
-    samples.bind_storage(2);
-    loaded_->bind();
+    view_buffer_.bind_storage(shaders::kViewsBinding);
+    square_buffer.bind_storage(shaders::kSquaresBinding);
+    samples.bind_storage(shaders::kSquareSamplesBinding);
+    loaded_->bind(program);
     for (int repeat = 0; repeat < 2; ++repeat)
       seconds = std::min(seconds, seconds_of(context_, [&] {
                            program.dispatch(context_, "projtex_sample_squares",
@@ -165,19 +165,20 @@ class Study {
   }
 
   void measure(Sampler sampler, int supersample, std::vector<StudyCell>& cells) {
-    const gpu::Program program = loaded_->program("projtex_sample_squares.comp.glsl", supersample);
+    const auto program =
+        loaded_->program(context_, "projtex_sample_squares.comp.glsl", supersample);
     std::size_t at = 0;
     for (const double footprint : options_.footprints)
       for (const double ratio : options_.ratios) {
         const Squares& squares = squares_[at++];
         double seconds = 1e30;
         std::size_t count = squares.list.size();
-        const std::vector<glm::vec4> found = sample(program, squares, count, seconds);
+        const std::vector<glm::vec4> found = sample(*program, squares, count, seconds);
         if (seconds < kLeastTimed) {
           const double more = 2 * kLeastTimed / std::max(seconds, 1e-6);
           count = std::size_t(std::min(more * double(count), std::max(kMostTimed, double(count))));
           seconds = 1e30;
-          sample(program, squares, count, seconds);
+          sample(*program, squares, count, seconds);
         }
         StudyCell cell{sampler, supersample, footprint, ratio, 0, 0, 1e9 * seconds / double(count)};
         std::vector<double> errors;

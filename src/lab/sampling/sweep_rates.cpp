@@ -9,6 +9,7 @@
 #include "projtex/gpu_views.h"
 #include "projtex/image_set.h"
 #include "projtex/sample_images.h"
+#include "shared/sampling.h"
 #include "shared/sweep.h"
 
 namespace photohull::projtex {
@@ -78,11 +79,11 @@ struct Layer {
     for (int repeat = 0; repeat < kRepeats; ++repeat)
       best = std::min(best, seconds_of(context, [&] {
                         bind();
-                        uniforms.bind_uniform(0);
-                        view_buffer.bind_storage(0);
-                        items.bind_storage(1);
-                        selected.bind_storage(5);
-                        samples.bind_storage(6);
+                        uniforms.bind_uniform(shaders::kSweepParametersBinding);
+                        view_buffer.bind_storage(shaders::kViewsBinding);
+                        items.bind_storage(shaders::kSweepItemsBinding);
+                        selected.bind_storage(shaders::kSweepSelectedBinding);
+                        samples.bind_storage(shaders::kSweepSamplesBinding);
                         program.dispatch(context, "sweep_rate", std::size_t(kBricks) * kBricks);
                       }));
     return 1e9 * best / double(values);
@@ -92,19 +93,19 @@ struct Layer {
 /// Nanoseconds a fetch of a bare loop, at one level for all or at a level of its own each.
 template <typename Bind>
 double time_raw(gpu::Context& context, float lod, float lod_step, const Bind& bind) {
-  const gpu::Program program = gpu::Program::compute("bench_fetch.comp.glsl");
+  const auto program = gpu::Program::compute(context, "bench_fetch.comp.glsl");
   const gpu::Buffer sums(std::size_t(kRawThreads) * 16);
-  program.set("taps", kRawTaps);
-  program.set("layers", kViews);
-  program.set("lod", lod);
-  program.set("lod_step", lod_step);
-  program.set("step_and_size", glm::vec4(1, 0, kWidth, kHeight));
+  program->set("taps", kRawTaps);
+  program->set("layers", kViews);
+  program->set("lod", lod);
+  program->set("lod_step", lod_step);
+  program->set("step_and_size", glm::vec4(1, 0, kWidth, kHeight));
   double best = 1e30;
   for (int repeat = 0; repeat < kRepeats; ++repeat)
     best = std::min(best, seconds_of(context, [&] {
                       bind();
-                      sums.bind_storage(0);
-                      program.dispatch(context, "raw_fetches", kRawThreads / 64);
+                      sums.bind_storage(shaders::kFetchSumsBinding);
+                      program->dispatch(context, "raw_fetches", kRawThreads / 64);
                     }));
   return 1e9 * best / (double(kRawThreads) * kRawTaps * kViews);
 }
@@ -116,14 +117,14 @@ std::vector<SweepRate> measure_sweeps(gpu::Context& context, Progress& progress)
   const Layer layer(1.0);
   {
     const ImageSet images(layer.views);
-    const auto bind = [&] { images.texture().bind(0); };
+    const auto bind = [&] { images.texture().bind(shaders::kImagesUnit); };
     const glm::ivec2 size(kWidth, kHeight);
     const double raw = time_raw(context, 0, 0, bind);
     rates.push_back({"bare fetches, 8-bit, one level", 1, raw, 1});
     for (const int n : {1, 2}) {
-      const gpu::Program program = gpu::Program::compute("projtex_project_layer.comp.glsl",
-                                                         concat("#define SUPERSAMPLE ", n, "\n"));
-      const double ns = layer.time(context, program, size, bind) / (n * n);
+      const auto program = gpu::Program::compute(context, "projtex_project_layer.comp.glsl",
+                                                 concat("#define SUPERSAMPLE ", n, "\n"));
+      const double ns = layer.time(context, *program, size, bind) / (n * n);
       rates.push_back({n == 1 ? "mipmap, one level a brick" : "mipmap, one level a brick, 2 x 2", 1,
                        ns, raw / ns});
     }
@@ -135,25 +136,25 @@ std::vector<SweepRate> measure_sweeps(gpu::Context& context, Progress& progress)
     progress.check_cancelled();
     try {
       const SampleImages images(layer.views, sampler);
-      const gpu::Program program = images.program("projtex_sample_layer.comp.glsl", 1);
-      const auto bind = [&] { images.bind(); };
+      const auto program = images.program(context, "projtex_sample_layer.comp.glsl", 1);
+      const auto bind = [&] { images.bind(*program); };
       rates.push_back(
-          {to_string(sampler), 1, layer.time(context, program, images.size(), bind), 0});
+          {to_string(sampler), 1, layer.time(context, *program, images.size(), bind), 0});
       if (sampler == Sampler::kBilinear)
         rates.back().share_of_raw = time_raw(context, 0, 0, bind) / rates.back().nanoseconds;
       if (sampler == Sampler::kBilinear || sampler == Sampler::kAnisotropic)
         rates.push_back(
-            {to_string(sampler), between, coarse.time(context, program, images.size(), bind), 0});
+            {to_string(sampler), between, coarse.time(context, *program, images.size(), bind), 0});
       if (sampler == Sampler::kTrilinear) {
         const double uniform = time_raw(context, 0.4f, 0, bind);
         const double raw = time_raw(context, 0.4f, 1e-3f, bind);
-        const double ns = coarse.time(context, program, images.size(), bind);
+        const double ns = coarse.time(context, *program, images.size(), bind);
         rates.push_back({"bare fetches, half float, one pair of levels for all", between, uniform,
                          raw / uniform});
         rates.push_back({"bare fetches, half float, a pair of levels each", between, raw, 1});
         rates.push_back({"trilinear between two levels", between, ns, raw / ns});
-        const gpu::Program four = images.program("projtex_sample_layer.comp.glsl", 2);
-        const double share = coarser.time(context, four, images.size(), bind) / 4;
+        const auto four = images.program(context, "projtex_sample_layer.comp.glsl", 2);
+        const double share = coarser.time(context, *four, images.size(), bind) / 4;
         rates.push_back({"trilinear between two levels, 2 x 2", 2 * between, share, raw / share});
       }
     } catch (const Error&) {

@@ -98,9 +98,12 @@ Surface carve(const SurfaceJob& job, SparseVolume) {
   const std::optional<refine::CheckpointFile> checkpoint = checkpoint_of(job);
   refine::RefineReport counts;
   Surface out;
+  const std::vector<Camera> cameras = projtex::cameras_of(job.subject.views);
+  const std::vector<carving::Silhouette> silhouettes = silhouettes_of(job.subject.views);
   out.volume = refine::refine_surface(
-      job.context, job.subject.grid, [&](const GridSpec& grid) { return job.hull.carve(grid); },
-      silhouettes_of(job.subject.views), job.images, projtex::cameras_of(job.subject.views),
+      job.context,
+      {job.subject.grid, [&](const GridSpec& grid) { return job.hull.carve(grid); }, silhouettes,
+       job.images, cameras},
       parameters_of(job).refine, job.progress, &counts, checkpoint ? &*checkpoint : nullptr);
   out.findings = findings_of(counts);
   check_found(job, out.volume, counts);
@@ -112,10 +115,12 @@ SparseVolume carve_around(const SurfaceJob& job, const AroundBox& around, std::i
   options.bounded = false;
   options.match.nearest_angle = options.vote.nearest_partner = around.nearest_angle;
   refine::RefineReport counts;
+  const std::vector<Camera> cameras = projtex::cameras_of(job.subject.views);
+  const std::vector<carving::Silhouette> silhouettes = silhouettes_of(job.subject.views);
   SparseVolume volume = refine::refine_surface(
-      job.context, around.grid,
-      [&](const GridSpec& coarse) { return job.hull.carve_box(coarse, around.box); },
-      silhouettes_of(job.subject.views), job.images, projtex::cameras_of(job.subject.views),
+      job.context,
+      {around.grid, [&](const GridSpec& coarse) { return job.hull.carve_box(coarse, around.box); },
+       silhouettes, job.images, cameras},
       options, job.progress, &counts);
   samples += findings_of(counts).samples;
   return volume;

@@ -1,4 +1,4 @@
-#include "refine/label_space.h"
+#include "refine/kernels/label_space.h"
 
 #include <algorithm>
 #include <map>
@@ -44,8 +44,8 @@ std::vector<float> label_space(gpu::Context& context, std::span<const glm::ivec3
   PHOTOHULL_CHECK_OP(evidence.size(), ==, bricks.size() * kBrickVoxels);
   if (bricks.empty()) return {};
   const auto dual =
-      gpu::Program::shared_compute(context, "refine_label_space.comp.glsl", "#define STEP_DUAL\n");
-  const auto primal = gpu::Program::shared_compute(context, "refine_label_space.comp.glsl");
+      gpu::Program::compute(context, "refine_label_space.comp.glsl", "#define STEP_DUAL\n");
+  const auto primal = gpu::Program::compute(context, "refine_label_space.comp.glsl");
   std::vector<glm::vec2> start(evidence.size());
   std::transform(evidence.begin(), evidence.end(), start.begin(),
                  [](float e) { return glm::vec2(e < 0 ? 1 : 0); });
@@ -54,11 +54,11 @@ std::vector<float> label_space(gpu::Context& context, std::span<const glm::ivec3
                                        told = Buffer::of(evidence), labels = Buffer::of(start);
   Buffer flow(evidence.size() * sizeof(glm::vec4));
   flow.fill(0);
-  uniforms.bind_uniform(0);
-  neighbours.bind_storage(0);
-  told.bind_storage(1);
-  labels.bind_storage(2);
-  flow.bind_storage(3);
+  uniforms.bind_uniform(shaders::kLabelParametersBinding);
+  neighbours.bind_storage(shaders::kLabelNeighboursBinding);
+  told.bind_storage(shaders::kLabelEvidenceBinding);
+  labels.bind_storage(shaders::kLabelsBinding);
+  flow.bind_storage(shaders::kLabelFlowBinding);
   const std::size_t groups = gpu::group_count(evidence.size(), kGroup);
   for (int i = 0; i < iterations; ++i) {
     dual->dispatch(context, "refine_label_dual", groups);

@@ -1,0 +1,28 @@
+// The photographs of a scene, with what their pixels are worth.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/grid.h"
+#include "projtex/gpu_views.h"
+#include "projtex/image_set.h"
+
+namespace photohull::projtex {
+
+/// Images and cameras are in the same order and outlive the object.
+struct Photographs {
+  const ImageSet& images;
+  std::span<const Camera> cameras;
+  double noise_sigma = 0;  ///< standard deviation, square roots of linear light
+};
+
+/// The cameras in voxel coordinates of a grid.
+std::vector<GridCamera> to_grid(std::span<const Camera> cameras, const GridSpec& grid);
+
+/// The same as kernels take them, with the images' sharpness.
+std::vector<shaders::GpuView> to_gpu_views(std::span<const GridCamera> cameras,
+                                           const ImageSet& images);
+
+}  // namespace photohull::projtex

@@ -1,0 +1,118 @@
+// Offset and slopes of patches by Gauss-Newton on normalised colours [Goesele07; Furukawa10].
+#include "refine/kernels/fit_patches.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "gpu/buffer.h"
+#include "gpu/program.h"
+#include "refine/kernels/device_choice.h"
+#include "render/kernels/device_points.h"
+
+namespace photohull::refine {
+namespace {
+
+using gpu::Buffer;
+
+constexpr std::size_t kBatch = std::size_t(1) << 18;  // surfels on the device at once
+
+/// As render::to_voxels has them.
+std::vector<glm::vec3> positions_in_voxels(const GridSpec& grid, const TriMesh& mesh) {
+  constexpr std::size_t kPart = 4096;
+  std::vector<glm::vec3> out;
+  out.reserve(mesh.positions.size());
+  for (std::size_t first = 0; first < mesh.positions.size(); first += kPart)
+    for (const render::SurfacePoint& surfel :
+         render::to_voxels(grid, mesh, first, std::min(kPart, mesh.positions.size() - first)))
+      out.push_back(surfel.position);
+  return out;
+}
+
+shaders::FitParameters parameters_of(std::size_t surfels, double noise_sigma, const FitOptions& o) {
+  shaders::FitParameters p{};
+  p.counts = {int(surfels), 0, o.steps, 0};
+  p.search = {float(o.least_spacing), float(o.pixel_spacing), float(o.largest_offset),
+              float(o.largest_step)};
+  p.robust = {float(o.noise * noise_sigma * noise_sigma), float(o.least_score), float(o.sure_score),
+              float(o.slope)};
+  return p;
+}
+
+PatchFit from_device(const shaders::FitResult& r) {
+  return {glm::vec3(r.plane), r.plane.w, r.evidence.x, r.evidence.y, r.evidence.z, r.evidence.w};
+}
+
+/// The surfels on the device, batch by batch.
+class Fitter {
+ public:
+  Fitter(gpu::Context& context, const projtex::Photographs& photographs, const GridSpec& grid,
+         const FitOptions& options)
+      : context_(context),
+        photographs_(photographs),
+        options_(options),
+        views_(Buffer::of(projtex::to_gpu_views(projtex::to_grid(photographs.cameras, grid),
+                                                photographs.images))) {}
+
+  std::vector<PatchFit> fit(std::span<const render::SurfacePoint> surfels,
+                            std::span<const glm::vec3> bends, const Buffer& choices) const {
+    std::vector<shaders::FitShape> shapes;
+    for (std::size_t i = 0; i < surfels.size(); ++i)
+      shapes.push_back({glm::vec4(bends[i], holds_out(surfels[i].position, options_.hold_out))});
+    const auto program = gpu::Program::compute(context_, "refine_fit_patches.comp.glsl");
+    const shaders::FitParameters parameters =
+        parameters_of(surfels.size(), photographs_.noise_sigma, options_);
+    const Buffer uniforms(sizeof parameters, &parameters), points = render::to_device(surfels);
+    const Buffer shape = Buffer::of(shapes);
+    const Buffer results(surfels.size() * sizeof(shaders::FitResult));
+    uniforms.bind_uniform(shaders::kFitParametersBinding);
+    views_.bind_storage(shaders::kViewsBinding);
+    points.bind_storage(shaders::kFitSurfelsBinding);
+    choices.bind_storage(shaders::kFitChoicesBinding);
+    results.bind_storage(shaders::kFitResultsBinding);
+    shape.bind_storage(shaders::kFitShapesBinding);
+    photographs_.images.texture().bind(shaders::kImagesUnit);
+    program->dispatch(context_, "refine_fit_patches",
+                      gpu::group_count(surfels.size(), shaders::kPatchGroup));
+    std::vector<PatchFit> out;
+    for (const auto& result : results.download<shaders::FitResult>(surfels.size()))
+      out.push_back(from_device(result));
+    return out;
+  }
+
+ private:
+  gpu::Context& context_;
+  const projtex::Photographs& photographs_;
+  const FitOptions& options_;
+  Buffer views_;
+};
+
+}  // namespace
+
+std::vector<PatchFit> fit_patches(gpu::Context& context, const MeshSurfels& surfels,
+                                  const projtex::Photographs& photographs,
+                                  std::span<const ViewChoice> choices, const FitOptions& options) {
+  const TriMesh& mesh = surfels.mesh;
+  PHOTOHULL_CHECK_OP(choices.size(), ==, mesh.positions.size());
+  const std::vector<glm::vec3> positions = positions_in_voxels(surfels.grid, mesh);
+  const std::vector<glm::vec3> bends =
+      curvatures(surfels.graph, positions, mesh.normals, options.most_bend);
+  std::vector<PatchFit> out(positions.size());
+  for (std::size_t i = 0; i < out.size(); ++i) out[i].normal = mesh.normals[i];
+  const std::vector<std::uint32_t> fitted = comparable(choices);
+  const Fitter fitter(context, photographs, surfels.grid, options);
+  const std::size_t batch = gpu::batch_size(sizeof(shaders::MatchChoice), kBatch);
+  for (std::size_t first = 0; first < fitted.size(); first += batch) {
+    const auto part = std::span(fitted).subspan(first, std::min(batch, fitted.size() - first));
+    std::vector<render::SurfacePoint> points;
+    std::vector<glm::vec3> bent;
+    for (const std::uint32_t i : part) {
+      points.push_back({positions[i], mesh.normals[i]});
+      bent.push_back(bends[i]);
+    }
+    const std::vector<PatchFit> fits = fitter.fit(points, bent, to_device(choices, part));
+    for (std::size_t k = 0; k < part.size(); ++k) out[part[k]] = fits[k];
+  }
+  return out;
+}
+
+}  // namespace photohull::refine

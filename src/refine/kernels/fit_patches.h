@@ -1,0 +1,23 @@
+// Patches fitted to the photographs (refine_fit_patches.comp.glsl).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "gpu/context.h"
+#include "projtex/photographs.h"
+#include "refine/fit_patches.h"
+#include "refine/surface.h"
+#include "refine/view_choice.h"
+
+namespace photohull::refine {
+
+/// Fits a patch to every vertex of the surfels' mesh (with normals), in the views that `choices`
+/// (one a vertex) names: minimises over offset and slopes the robust squared differences of the
+/// views' patches from their mean, gain and offset of each eliminated [Goesele07; Furukawa10].
+/// Patches follow the mesh's curvature. Throws Error when the device cannot hold a batch.
+std::vector<PatchFit> fit_patches(gpu::Context& context, const MeshSurfels& surfels,
+                                  const projtex::Photographs& photographs,
+                                  std::span<const ViewChoice> choices, const FitOptions& options);
+
+}  // namespace photohull::refine

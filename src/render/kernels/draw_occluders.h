@@ -1,0 +1,23 @@
+// What a mesh hides from the cameras (render_splat_points.comp.glsl).
+#pragma once
+
+#include <span>
+
+#include "core/camera.h"
+#include "core/grid.h"
+#include "core/mesh.h"
+#include "gpu/buffer.h"
+#include "gpu/context.h"
+#include "render/surface_points.h"
+#include "visibility/depth_maps.h"
+
+namespace photohull::render {
+
+/// Depth maps (occluder_maps) of a mesh whose vertices are `vertices` (to_voxels), drawn as points
+/// that are close enough to leave no gaps. `views` holds the cameras' shaders::GpuViews. Throws
+/// Error when the device cannot hold the data.
+visibility::DepthMaps draw_occluders(gpu::Context& context, const GridSpec& grid,
+                                     std::span<const Camera> cameras, const gpu::Buffer& views,
+                                     const TriMesh& mesh, std::span<const SurfacePoint> vertices);
+
+}  // namespace photohull::render
