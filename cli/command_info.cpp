@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <memory>
 
 #include "cameras/diagnose.h"
@@ -100,6 +101,7 @@ void write_picture(const std::string& path, const pipeline::Inspection& info,
   const pipeline::BoxPicture picture =
       pipeline::draw_box(info.scene, info.scales, info.grid.voxel_size,
                          points.empty() ? std::span<const ScenePoint>(listed) : points);
+  make_folder(std::filesystem::path(path).parent_path(), "--picture");
   io::write_png(path, picture.width, picture.height, 3, picture.rgb);
 }
 

@@ -1,5 +1,6 @@
 #include "option_flags.h"
 
+#include "cli/front/flag_words.h"
 #include "core/error.h"
 
 namespace photohull::cli {

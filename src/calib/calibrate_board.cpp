@@ -5,6 +5,7 @@
 #include "calib/board_model.h"
 #include "calib/object_error.h"
 #include "core/error.h"
+#include "core/option_word.h"
 
 namespace photohull {
 namespace {
@@ -27,7 +28,8 @@ class Calibrator {
     if (c_.used.size() < c_.fewest_views())
       throw Error(concat("the board was found in ", c_.used.size(), " of ", measured_.size(),
                          " pictures, but ", c_.lens_known ? "one is" : "three are",
-                         " needed; check --board, --columns and --rows"));
+                         " needed; check ", option_word("board"), ", ", option_word("columns"),
+                         " and ", option_word("rows")));
     check_same_size(measured_, c_.used);
     start();
     drop_outliers();
@@ -123,7 +125,8 @@ const char* to_string(LensModel model) {
 
 void CalibrateOptions::validate(std::size_t views) const {
   if (angles.empty()) return;
-  if (!turntable) throw UsageError("angles are stated, but --turntable is not");
+  if (!turntable)
+    throw UsageError(concat("angles are stated, but ", option_word("turntable"), " is not"));
   if (angles.size() != views)
     throw UsageError(concat(angles.size(), " angles are stated for ", views,
                             " pictures; give one for each, in the order of their names"));

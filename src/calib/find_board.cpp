@@ -4,6 +4,7 @@
 
 #include "calib/find_board_parts.h"
 #include "core/error.h"
+#include "core/option_word.h"
 
 namespace photohull {
 namespace {
@@ -93,13 +94,14 @@ const char* to_string(BoardKind kind) {
 
 void BoardSpec::validate() const {
   if (columns < 3 || rows < 3 || columns > 1000 || rows > 1000)
-    throw UsageError(concat("--columns ", columns, " --rows ", rows, ": expected 3 to 1000 each"));
+    throw UsageError(concat(option_word("columns", columns), " ", option_word("rows", rows),
+                            ": expected 3 to 1000 each"));
   if (!(square > 0) || !(square < 1e9))
-    throw UsageError(concat("--square ", square, ": expected a positive length"));
+    throw UsageError(concat(option_word("square", square), ": expected a positive length"));
   if (!(marker > 0 && marker < 1))
-    throw UsageError(concat("--marker ", marker, ": expected a share between 0 and 1"));
+    throw UsageError(concat(option_word("marker", marker), ": expected a share between 0 and 1"));
   if (dictionary < 0 || dictionary > 20)
-    throw UsageError(concat("--dictionary ", dictionary, ": expected 0 to 20"));
+    throw UsageError(concat(option_word("dictionary", dictionary), ": expected 0 to 20"));
 }
 
 bool BoardSpec::looks_same_turned() const {

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "core/option_word.h"
 
 namespace photohull {
 namespace {
@@ -89,7 +90,7 @@ std::string obligation(const Option& option) {
 }
 
 [[noreturn]] void refuse(const Option& option, const std::string& text) {
-  throw UsageError(concat(flag_of(option.name), " ", text, ": ", expectation(option)));
+  throw UsageError(concat(option_word(option.name, text), ": ", expectation(option)));
 }
 
 template <typename Number>
@@ -111,8 +112,9 @@ Number parsed(const Option& option, const std::string& text) {
   }
   if (whole) return value;
   if (!option.absent.empty() || !option.expects.empty()) refuse(option, text);
-  throw UsageError(concat(flag_of(option.name), " ", text, ": expected a ",
-                          std::is_integral_v<Number> ? "whole " : "", "number; see --help"));
+  throw UsageError(concat(option_word(option.name, text), ": expected a ",
+                          std::is_integral_v<Number> ? "whole " : "", "number",
+                          where_to_read_more()));
 }
 
 }  // namespace
@@ -185,12 +187,6 @@ void Described::check() const {
   if (!broken_.empty()) throw UsageError(broken_.front());
 }
 
-std::string flag_of(const std::string& name) {
-  std::string flag = "--" + name;
-  std::replace(flag.begin(), flag.end(), '_', '-');
-  return flag;
-}
-
 std::string text_of(const Option& option, int digits) {
   if (const auto value = number_of(option))
     return is_whole(option) ? concat(std::int64_t(*value)) : written(*value, digits);
@@ -205,7 +201,7 @@ std::string text_of(const Option& option, int digits) {
 
 void read_option(const Option& option, const std::string& text) {
   if (text.empty() && !option.if_empty.empty())
-    throw UsageError(concat(flag_of(option.name), " is empty: ", option.if_empty));
+    throw UsageError(concat(option_word(option.name), " is empty: ", option.if_empty));
   const bool absent = !option.absent.empty() && text == option.absent;
   const auto optional_number = [&]<typename Number>(std::optional<Number>* v) {
     if (absent)

@@ -116,14 +116,11 @@ void check_described(Options options) {
   to.check();
 }
 
-/// How the command line calls an option: "--mask-offset".
-std::string flag_of(const std::string& name);
-
 /// The value, as read_option takes it; empty where there is none.
 std::string text_of(const Option& option, int digits = 9);
 
-/// Sets the value, or adds to a list. Throws UsageError, which names the option's flag and what is
-/// legal.
+/// Sets the value, or adds to a list. Throws UsageError, which names the option (option_word.h) and
+/// what is legal.
 void read_option(const Option& option, const std::string& text);
 
 /// Throws UsageError, worded as read_option does, where a number is out of its range.

@@ -9,6 +9,7 @@
 
 #include "core/box.h"
 #include "core/error.h"
+#include "core/option_word.h"
 #include "eval/nearest_sample.h"
 #include "eval/surface_samples.h"
 #include "eval/topology.h"
@@ -138,7 +139,7 @@ std::vector<glm::dvec3> wanted_samples(const Truth& truth, const EvaluateOptions
     if (truth.views()[i] >= options.min_views) wanted.push_back(truth.samples()[i]);
   if (wanted.empty())
     throw Error(concat("no sample of the truth is seen by ", options.min_views,
-                       " or more cameras; lower --min-views"));
+                       " or more cameras; lower ", option_word("min_views")));
   return wanted;
 }
 
@@ -226,11 +227,11 @@ void compare_frames(const std::vector<glm::dvec3>& result, const std::vector<glm
     return part("(%.4g %.4g %.4g) to (%.4g %.4g %.4g)", x.min.x, x.min.y, x.min.z, x.max.x, x.max.y,
                 x.max.z);
   };
-  e.warnings.push_back(concat(least > kMeet
-                                  ? part("the result is %.4g times as large as the truth", ratio)
-                                  : "the result lies elsewhere than the truth",
-                              " (most of it in ", corners(a), ", of the truth in ", corners(b),
-                              "): are they in one frame and unit? --align aligns them"));
+  e.warnings.push_back(
+      concat(least > kMeet ? part("the result is %.4g times as large as the truth", ratio)
+                           : "the result lies elsewhere than the truth",
+             " (most of it in ", corners(a), ", of the truth in ", corners(b),
+             "): are they in one frame and unit? ", option_word("align"), " aligns them"));
 }
 
 void check_volume(const TriMesh& result, const Truth& truth, Evaluation& e) {
@@ -253,22 +254,25 @@ void check_volume(const TriMesh& result, const Truth& truth, Evaluation& e) {
 }  // namespace
 
 void EvaluateOptions::validate() const {
-  const auto fraction = [](const char* name, double value) {
+  const auto fraction = [](const std::string& name, double value) {
     if (!(value > 0 && value <= 1))
       throw UsageError(concat(name, " must be above 0 and at most 1, not ", value));
   };
   if (thresholds.empty() || thresholds.size() > 1000 || absolute.size() > 1000)
-    throw UsageError("--thresholds and --absolute take up to 1000 values, the former at least one");
-  for (const double t : thresholds) fraction("--thresholds (fractions of the diagonal)", t);
+    throw UsageError(concat(option_word("thresholds"), " and ", option_word("absolute"),
+                            " take up to 1000 values, the former at least one"));
+  for (const double t : thresholds)
+    fraction(concat(option_word("thresholds"), " (fractions of the diagonal)"), t);
   for (const double d : absolute)
     if (!(d > 0 && std::isfinite(d)))
-      throw UsageError(concat("--absolute (world units) must be above 0, not ", d));
+      throw UsageError(concat(option_word("absolute"), " (world units) must be above 0, not ", d));
   fraction("the accuracy's share", accuracy_share);
   fraction("the completeness threshold", completeness_threshold);
   if (samples < 1000 || samples > 20000000)
-    throw UsageError(concat("--samples must be from 1000 to 20000000, not ", samples));
+    throw UsageError(
+        concat(option_word("samples"), " must be from 1000 to 20000000, not ", samples));
   if (min_views < 1 || min_views > 255)
-    throw UsageError(concat("--min-views must be from 1 to 255, not ", min_views));
+    throw UsageError(concat(option_word("min_views"), " must be from 1 to 255, not ", min_views));
   if (columns < 16 || columns > 4096)
     throw UsageError(concat("the columns must be from 16 to 4096, not ", columns));
 }

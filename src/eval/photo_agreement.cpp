@@ -9,6 +9,7 @@
 #include <mutex>
 
 #include "core/error.h"
+#include "core/option_word.h"
 #include "eval/window_agreement.h"
 #include "photo/noise.h"
 
@@ -160,7 +161,7 @@ void add_warnings(PhotoAgreement& result) {
 void PhotoOptions::validate() const {
   predict.validate();
   if (window < 3 || window > 63 || window % 2 == 0)
-    throw UsageError(concat("--window must be odd, from 3 to 63, not ", window));
+    throw UsageError(concat(option_word("window"), " must be odd, from 3 to 63, not ", window));
 }
 
 std::optional<double> PhotoScore::zncc() const { return ratio(score_sum, double(judged)); }

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "core/error.h"
+#include "core/option_word.h"
 
 namespace photohull::eval {
 namespace {
@@ -164,8 +165,8 @@ void PredictOptions::validate() const {
   if (!(most_angle > 0 && most_angle <= 90))
     throw UsageError(concat("the most angle must be above 0 and at most 90, not ", most_angle));
   if (!(least_angle >= 0 && least_angle < most_angle))
-    throw UsageError(
-        concat("--least-angle must be from 0 to below ", most_angle, ", not ", least_angle));
+    throw UsageError(concat(option_word("least_angle"), " must be from 0 to below ", most_angle,
+                            ", not ", least_angle));
 }
 
 Prediction predict_photo(const TriMesh& mesh, const RayScene& rays, const Camera& camera,

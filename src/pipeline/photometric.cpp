@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/option_word.h"
 #include "views/photometric_check.h"
 #include "views/photometric_samples.h"
 
@@ -143,9 +144,9 @@ PhotometricOutcome correct_photometric(Photometric photometric, const Scene& sce
   out.json = to_json(c, scene, lenses, out.used);
   out.line = to_line(c, out.used);
   if (photometric == Photometric::kOn && !c.solved)
-    out.warning =
-        "--photometric on: too few surface points are seen by several views to measure gains; "
-        "colours stay as photographed";
+    out.warning = concat(option_word("photometric", "on"),
+                         ": too few surface points are seen by several views to measure gains; "
+                         "colours stay as photographed");
   else if (out.used) {
     std::string names;
     int count = 0;

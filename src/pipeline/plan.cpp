@@ -6,6 +6,7 @@
 #include "carving/fit_grid.h"
 #include "core/error.h"
 #include "core/image_scale.h"
+#include "core/option_word.h"
 #include "pipeline/image_scale.h"
 
 namespace photohull::pipeline {
@@ -45,7 +46,7 @@ double voxel_size_of(const ReconstructOptions& options, const Box& box,
   const double largest = carving::voxel_size_for(box, 2);
   if (options.voxel_size) {
     if (*options.voxel_size > largest)
-      throw UsageError(concat("--voxel-size ", *options.voxel_size, ": at most ", largest,
+      throw UsageError(concat(option_word("voxel_size", *options.voxel_size), ": at most ", largest,
                               ", half of the box's longest side"));
     return *options.voxel_size;
   }
@@ -56,7 +57,8 @@ double voxel_size_of(const ReconstructOptions& options, const Box& box,
     throw Error(concat("a pixel is ", footprint,
                        " world units large at the box's centre, too much for a box whose longest "
                        "side is ",
-                       2 * largest, "; check the box's units, or give --voxel-size"));
+                       2 * largest, "; check the box's units, or give ",
+                       option_word("voxel_size")));
   return size;
 }
 

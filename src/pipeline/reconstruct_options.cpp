@@ -7,6 +7,7 @@
 #include "carving/photo.h"
 #include "carving/search_disc.h"
 #include "core/error.h"
+#include "core/option_word.h"
 #include "pipeline/image_scale.h"
 #include "pipeline/memory.h"
 #include "pipeline/reconstruct.h"
@@ -29,28 +30,29 @@ void check_sweep_options(const ReconstructOptions& o) {
                       : o.r_consistency ? "r_consistency"
                                         : nullptr;
   if (given)
-    throw UsageError(concat(flag_of(given), ": ", flag_of("method"), " ", to_string(method),
-                            " has no plane sweep; give ", flag_of("method"),
-                            " space-carving or voxel-coloring"));
+    throw UsageError(concat(option_word(given), ": ", option_word("method", to_string(method)),
+                            " has no plane sweep; give ", option_word("method", "space-carving"),
+                            " or voxel-coloring"));
 }
 
 /// Throws UsageError for options that exclude each other.
 void check_combinations(const ReconstructOptions& o) {
-  const std::string resolution = flag_of("resolution"), voxel_size = flag_of("voxel_size"),
-                    fixed = flag_of("lattice") + " fixed", box = flag_of("box");
+  const std::string resolution = option_word("resolution"), voxel_size = option_word("voxel_size"),
+                    fixed = option_word("lattice", "fixed");
   if (o.resolution && o.voxel_size)
     throw UsageError(concat(resolution, " and ", voxel_size, " exclude each other: give one"));
   if (o.lattice == Lattice::kFixed && !o.resolution && !o.voxel_size)
     throw UsageError(concat(fixed, ": give ", voxel_size, " or ", resolution,
-                            ", for the voxels of ", flag_of("quality"), " follow the photographs"));
+                            ", for the voxels of ", option_word("quality"),
+                            " follow the photographs"));
   if (o.lattice == Lattice::kFixed && o.box.find)
-    throw UsageError(concat(fixed, ": ", box,
-                            " auto follows the photographs; give the box's corners, or leave ", box,
-                            " out where the scene has one"));
+    throw UsageError(concat(fixed, ": ", option_word("box", "auto"),
+                            " follows the photographs; give the box's corners, or leave ",
+                            option_word("box"), " out where the scene has one"));
   if (o.surroundings == Surroundings::kOn && o.effective_method() != Method::kRefine)
-    throw UsageError(concat(flag_of("surroundings"), " on: ", flag_of("method"), " ",
-                            to_string(o.effective_method()), " has none; they are made by ",
-                            flag_of("method"), " refine"));
+    throw UsageError(concat(option_word("surroundings", "on"), ": ",
+                            option_word("method", to_string(o.effective_method())),
+                            " has none; they are made by ", option_word("method", "refine")));
   check_sweep_options(o);
 }
 
@@ -303,14 +305,14 @@ void ReconstructOptions::validate() const {
   for (const Option& option : described.options()) check_option(option);
   load.validate();
   if (output.empty())
-    throw UsageError(concat(flag_of("out"), " is empty: give a folder for the results"));
+    throw UsageError(concat(option_word("out"), " is empty: give a folder for the results"));
   const bool index = !device.empty() && device.find_first_not_of("0123456789") == std::string::npos;
   if (device != "auto" && device != "software" && !index)
-    throw UsageError(concat(flag_of("device"), " ", device,
+    throw UsageError(concat(option_word("device", device),
                             ": expected auto, software or an index of 'photohull devices'"));
   if (!(std::isfinite(mesh_error.value) && mesh_error.value >= 0))
     throw UsageError(
-        concat(flag_of("mesh_error"), " ", mesh_error.value, ": must be finite, 0 or more"));
+        concat(option_word("mesh_error", mesh_error.value), ": must be finite, 0 or more"));
   check_combinations(*this);
   tuned(*this);
 }

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/option_word.h"
 
 namespace photohull::pipeline {
 namespace {
@@ -16,7 +17,7 @@ std::string name_in(const std::string& assignment) {
 }
 
 [[noreturn]] void refuse(const std::string& assignment, const std::string& why) {
-  throw UsageError(concat(flag_of("tune"), " ", assignment, ": ", why));
+  throw UsageError(concat(option_word("tune", assignment), ": ", why));
 }
 
 std::string known_names(const Described& parameters) {
@@ -56,9 +57,9 @@ void assign(const std::string& assignment, const Option& option) {
 }  // namespace
 
 void describe(Described& to, Method method, Parameters& parameters) {
-  if (method == Method::kHull) return;
   to.group("missing", parameters.missing);
   to.group("stems", parameters.stems);
+  if (method == Method::kHull) return;
   if (method == Method::kRefine) {
     describe(to, parameters.refine);
     to.group("sharpen", parameters.sharpen);
@@ -74,8 +75,6 @@ void tune(const std::vector<std::string>& assignments, Method method, Parameters
     const std::string name = name_in(assignment);
     if (const Option* option = known.find(name))
       assign(assignment, *option);
-    else if (known.options().empty())
-      refuse(assignment, concat("the ", to_string(method), " has no parameters"));
     else
       refuse(assignment, concat("this method has no '", name, "'; it has ", known_names(known)));
   }

@@ -10,6 +10,7 @@
 
 #include "carving/fit_grid.h"
 #include "core/error.h"
+#include "core/option_word.h"
 #include "refine/bounding_hull.h"
 #include "refine/checkpoint.h"
 #include "refine/settle.h"
@@ -112,9 +113,8 @@ class Refiner {
     report.resumed = int(report.levels.size());
     if (report.resumed > 0)
       progress.note(concat("an interrupted run of this job had done ", report.resumed, " of ",
-                           grids.size(),
-                           " levels of the refinement: going on from there (--fresh "
-                           "starts anew)"));
+                           grids.size(), " levels of the refinement: going on from there (",
+                           option_word("fresh"), " starts anew)"));
     for (std::size_t level = report.levels.size(); level < grids.size(); ++level) {
       const auto start = std::chrono::steady_clock::now();
       LevelReport counts;

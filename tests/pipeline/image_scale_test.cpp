@@ -252,7 +252,7 @@ TEST(MaxMemory, RefusesBeforeDecoding) {
     reconstruct(options, silent);
     ADD_FAILURE() << "it was taken";
   } catch (const Error& e) {
-    EXPECT_NE(std::string(e.what()).find("may take 100 MiB (--max-memory)"), std::string::npos)
+    EXPECT_NE(std::string(e.what()).find("may take 100 MiB (max_memory)"), std::string::npos)
         << e.what();
   }
 }

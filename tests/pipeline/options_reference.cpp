@@ -2,6 +2,7 @@
 
 #include <sstream>
 
+#include "cli/front/flag_words.h"
 #include "core/error.h"
 #include "pipeline/tuning.h"
 
@@ -26,7 +27,7 @@ void write_table(const Described& described, bool flags, std::ostream& out) {
                 : "| parameter | default | values | changes from | what it is |\n")
       << "|---|---|---|---|---|\n";
   for (const Option& option : described.options())
-    out << "| " << code(flags ? flag_of(option.name) : option.name) << " | "
+    out << "| " << code(flags ? cli::flag_of(option.name) : option.name) << " | "
         << code(default_of(option)) << " | " << legal_of(option) << " | " << to_string(option.from)
         << " | " << option.help << " |\n";
 }
@@ -47,6 +48,7 @@ void write_parameters(const std::string& title, const std::string& group, std::o
 }  // namespace
 
 std::string options_reference() {
+  const OptionWording before = set_option_wording(cli::flag_wording());
   std::ostringstream out;
   out << "# Options of `photohull reconstruct`\n\n"
          "Written by `build/release/tests/pipeline/write_options_reference > "
@@ -62,17 +64,18 @@ std::string options_reference() {
   write_table(described, true, out);
   out << "\n## Parameters\n\n"
          "For experiments: `--tune NAME=VALUE` changes one, with 0 and 1 for off and on. A method "
-         "has those of its own and those\nof the stages that methods share; `--method hull` has "
-         "none. The\nunit of lengths of sharp edges is what the surface resolves: a voxel, or 1.5 "
+         "has those of its own and those\nof the stages that methods share. The\nunit of lengths "
+         "of sharp edges is what the surface resolves: a voxel, or 1.5 "
          "pixels "
          "where these are larger.\n";
-  write_parameters<carving::MissingOptions>(
-      "What masks show and the hull lacks (all methods but `hull`)", "missing", out);
-  write_parameters<carving::StemOptions>("Stems (all methods but `hull`)", "stems", out);
+  write_parameters<carving::MissingOptions>("What masks show and the hull lacks (all methods)",
+                                            "missing", out);
+  write_parameters<carving::StemOptions>("Stems (all methods)", "stems", out);
   write_parameters<refine::RefineOptions>("Refinement (`--method refine`)", "", out);
   write_parameters<SharpenOptions>("Sharp edges (`--method refine`)", "sharpen", out);
   write_parameters<carving::PhotoOptions>(
       "Plane sweeps (`--method space-carving` and `voxel-coloring`)", "", out);
+  set_option_wording(before);
   return out.str();
 }
 
