@@ -10,6 +10,7 @@
 #include "commands.h"
 #include "core/error.h"
 #include "io/image_file.h"
+#include "option_flags.h"
 #include "pipeline/mask_policy.h"
 #include "scene_arguments.h"
 #include "terminal_progress.h"
@@ -23,7 +24,8 @@ namespace fs = std::filesystem;
 struct Arguments {
   SceneArguments scene;
   std::optional<std::string> out, compare;
-  bool cut = false, json = false;
+  PrepareOptions prepare;
+  bool json = false;
 };
 
 /// Intersection over union, and the share of the true object that the mask leaves out.
@@ -51,7 +53,7 @@ std::vector<fs::path> mask_files(const fs::path& folder, std::span<const View> v
   std::vector<fs::path> files;
   for (const View& view : views) {
     const bool alone = count[stem_of(view)] == 1;
-    const fs::path name = alone ? stem_of(view) : fs::path(view.name).relative_path();
+    const fs::path name = alone ? fs::path(stem_of(view)) : fs::path(view.name).relative_path();
     files.push_back(folder / (name.string() + ".png"));
   }
   return files;
@@ -146,9 +148,8 @@ void run(const Arguments& a) {
   if (a.out) check_folder(*a.out, scene);
   const ViewLoader loader{[](const fs::path& path) { return io::read_image(path); },
                           [](const fs::path& path) { return io::read_mask(path); }};
-  PrepareOptions options;
+  PrepareOptions options = a.prepare;
   options.masks = pipeline::mask_policy(load.masks);
-  options.cut_masks = a.cut;
   options.strict = load.strict;
   TerminalProgress progress(1);
   progress.stage("masks", 1);
@@ -174,7 +175,7 @@ void add_masks(CLI::App& app) {
                 "folder to write the masks to, called as the photographs, to touch them up");
   c->add_option("--compare", a->compare,
                 "folder of masks that are known: print how far they agree");
-  c->add_flag("--grabcut", a->cut, "let GrabCut place the contours");
+  add_flags_of(*c, a->prepare, {"grabcut"});
   c->add_flag("--json", a->json, "print JSON");
   c->footer(
       "Masks are of the undistorted photographs. Confidence is from 0 to 1; masks that were given "

@@ -1,6 +1,7 @@
 #include "calib/calibrate_board.h"
 
 #include <algorithm>
+#include <array>
 
 #include "calib/board_model.h"
 #include "calib/object_error.h"
@@ -121,6 +122,15 @@ const char* to_string(LensModel model) {
       return "fisheye";
   }
   return "?";
+}
+
+void describe(Described& to, CalibrateOptions& o) {
+  to.choice(
+      "lens", &o.lens,
+      std::array{LensModel::kPinhole, LensModel::kBrown, LensModel::kRational, LensModel::kFisheye},
+      "which distortion is found");
+  to.flag("turntable", &o.turntable,
+          "a fixed camera and a board that turns: find their common axis and the angles");
 }
 
 void CalibrateOptions::validate(std::size_t views) const {

@@ -302,7 +302,7 @@ void ReconstructOptions::validate() const {
   ReconstructOptions copy = *this;
   Described described;
   describe(described, copy);
-  for (const Option& option : described.options()) check_option(option);
+  described.check_given();
   load.validate();
   if (output.empty())
     throw UsageError(concat(option_word("out"), " is empty: give a folder for the results"));

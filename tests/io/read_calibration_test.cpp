@@ -234,7 +234,8 @@ TEST_F(BoardImages, PatternsOfNames) {
   EXPECT_THAT(rig.moments, ElementsAre("7", "8"));
   put_image("shot7_camA.jpg.png");
   for (const char* bad : {"{camera}", "{camera}{moment}", "{camera}/{moment}/{camera}", ""})
-    EXPECT_THAT(error_of([&] { list_rig_images(folder_, bad); }), HasSubstr("rig=" + bad)) << bad;
+    EXPECT_THAT(error_of([&] { list_rig_images(folder_, bad); }), HasSubstr(concat("rig=", bad)))
+        << bad;
   EXPECT_THAT(error_of([&] { list_rig_images(folder_, "x{camera}/{moment}"); }),
               HasSubstr("none of 5 pictures"));
   fs::copy(folder_ / "shot8_camA.png", folder_ / "shot8_camA.PNG");
