@@ -79,8 +79,10 @@ TEST_F(MasksCommand, PhotographsThatShareANameKeepTheirFolders) {
   }
   write_scene_file();
   succeed(masks({"--masks", "background", "--out", out()}));
-  EXPECT_THAT(listing(out()), testing::IsSupersetOf({"left/same.png.png", "right/same.png.png"}));
-  EXPECT_EQ(json::parse(succeed(masks({"--masks", out(), "--json"})).out)["source"], "mask files");
+  EXPECT_THAT(listing(out()),
+              testing::IsSupersetOf({"images/left/same.png.png", "images/right/same.png.png"}));
+  EXPECT_EQ(json::parse(succeed(masks({"--masks", out(), "--strict", "--json"})).out)["source"],
+            "mask files");
 }
 
 TEST_F(MasksCommand, ReportsSayHowSureTheMasksAre) {
