@@ -16,9 +16,10 @@ namespace {
 
 using glm::ivec3;
 
-constexpr float kFreed = 0.5f;  // distance of a voxel that was freed, voxels
-constexpr int kLeastViews = 3;  // that a surfel was matched in
-constexpr int kPasses = 3;      // of freeing what freed voxels outnumber
+constexpr float kFreed = 0.5f;        // distance of a voxel that was freed, voxels
+constexpr double kLeastWeight = 0.5;  // of a surfel's peak: smooth shading agrees anywhere
+constexpr int kLeastViews = 3;        // that a surfel was matched in
+constexpr int kPasses = 3;            // of freeing what freed voxels outnumber
 
 std::vector<projtex::GridCamera> on_grid(std::span<const Camera> cameras, const GridSpec& grid) {
   std::vector<projtex::GridCamera> out;
@@ -110,7 +111,7 @@ std::vector<Sightline> find_sightlines(gpu::Context& context, const GridSpec& gr
   std::vector<shaders::MatchChoice> pairs;
   for (std::size_t i = 0; i < known.positions.size(); ++i) {
     const shaders::MatchChoice& choice = known.choices[i];
-    if (choice.second.w < kLeastViews || known.weights[i] < options.least_weight) continue;
+    if (choice.second.w < kLeastViews || known.weights[i] < kLeastWeight) continue;
     for (int k = 0; k < shaders::kHiddenViews && choice.hidden[k] >= 0; ++k) {
       const int view = choice.hidden[k];
       const int witness =

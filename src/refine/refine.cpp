@@ -28,6 +28,10 @@ namespace {
 constexpr double kLeastPixels = 3;  // that a voxel of the first level is wide, without silhouettes
 constexpr double kNearReach = kStillReach;  // voxels of exact distance that a step needs
 constexpr double kAnglePerSpacing = 2.0;  // reach of a view's partners, in spacings of the cameras
+constexpr double kSparseAngle = 75;       // degrees, to which the farthest partners' is widened
+constexpr int kMiddleIterations = 2;      // of matching and moving, at the levels between
+// What membrane and fairing are for offsets that were fitted: these know more than peaks do.
+constexpr double kFitMembrane = 30, kFitFairing = 3;
 constexpr double kFullReach = SparseVolume::kBand;
 constexpr std::size_t kPart = std::size_t(1) << 19;  // surfels that are matched at once
 constexpr std::size_t kManySurfels = std::size_t(1) << 18;
@@ -67,7 +71,7 @@ MatchOptions fit_angles(std::span<const Camera> cameras, const glm::dvec3& middl
   }
   std::nth_element(nearest.begin(), nearest.begin() + long(nearest.size() / 2), nearest.end());
   const double wanted = kAnglePerSpacing * nearest[nearest.size() / 2];
-  options.farthest_angle = std::max(options.farthest_angle, std::min(wanted, options.sparse_angle));
+  options.farthest_angle = std::max(options.farthest_angle, std::min(wanted, kSparseAngle));
   return options;
 }
 
@@ -134,7 +138,7 @@ class Refiner {
       malloc_trim(0);
       const int iterations = last    ? options_.fine_iterations
                              : first ? options_.coarse_iterations
-                                     : options_.middle_iterations;
+                                     : kMiddleIterations;
       for (int i = 0; i < iterations; ++i) {
         progress.check_cancelled();
         const bool is_final = last && i + 1 == iterations;
@@ -387,7 +391,7 @@ class Refiner {
                                         : 0;
       for (float& t : tight_at) t *= float(tight);
       RegularizeOptions smooth = options_.regularize;
-      smooth.membrane = options_.fit.membrane, smooth.fairing = options_.fit.fairing;
+      smooth.membrane = kFitMembrane, smooth.fairing = kFitFairing;
       std::vector<float> moves = regularize(graph, peaks, positions, mesh.normals, trust, smooth);
       if (last && silhouettes)
         seat_outlines(hull, cameras_, silhouettes_, mesh, graph, positions, told, tight_at,
