@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -13,11 +12,11 @@
 #include "commands.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
-#include "core/parse_name.h"
 #include "io/board_images.h"
 #include "io/image_file.h"
 #include "io/read_lens.h"
 #include "number_list.h"
+#include "option_flags.h"
 #include "other_board.h"
 #include "terminal_progress.h"
 
@@ -28,11 +27,12 @@ namespace fs = std::filesystem;
 
 struct Arguments {
   std::vector<std::string> images;
-  std::string board = "chess", lens = "brown", out, coverage;
+  std::string out, coverage;
   std::optional<std::string> rig, angles, lens_from;
   std::optional<double> step;
   BoardSpec spec;
-  bool turntable = false, json = false;
+  CalibrateOptions options;
+  bool json = false;
 };
 
 /// Reads pictures one by one and looks for the board, with progress.
@@ -57,7 +57,7 @@ class BoardFinder {
 /// Degrees of each picture; none where they are to be found.
 std::vector<double> angles_of(const Arguments& a, std::size_t pictures) {
   if (a.step && a.angles) throw UsageError("--step and --angles: give one of them");
-  if ((a.step || a.angles) && !a.turntable)
+  if ((a.step || a.angles) && !a.options.turntable)
     throw UsageError("--step and --angles are for --turntable");
   if (a.angles) return parse_numbers("--angles", *a.angles);
   std::vector<double> angles;
@@ -114,8 +114,9 @@ std::vector<std::string> check(const Arguments& a, const std::vector<fs::path>& 
   return doubts;
 }
 
-void run_rig(const Arguments& a, LensModel lens) {
-  if (a.turntable) throw UsageError("--rig and --turntable: calibrate one at a time");
+void run_rig(const Arguments& a) {
+  const LensModel lens = a.options.lens;
+  if (a.options.turntable) throw UsageError("--rig and --turntable: calibrate one at a time");
   if (!a.coverage.empty()) throw UsageError("--coverage is for one camera, not for --rig");
   if (a.images.size() != 1)
     throw UsageError("--rig: give one folder, in which the pictures are found by their names");
@@ -142,11 +143,10 @@ void run_rig(const Arguments& a, LensModel lens) {
   write_result(a, rig_json(views, images.moments, rig, doubts));
 }
 
-void run_camera(const Arguments& a, LensModel lens) {
+void run_camera(const Arguments& a) {
   const std::vector<fs::path> images = io::list_images(a.images);
-  CalibrateOptions options;
-  options.lens = lens;
-  options.turntable = a.turntable;
+  CalibrateOptions options = a.options;
+  const LensModel lens = options.lens;
   options.angles = angles_of(a, images.size());
   options.validate(images.size());
   BoardFinder boards(a.spec, images.size());
@@ -167,23 +167,18 @@ void run_camera(const Arguments& a, LensModel lens) {
   }
 }
 
-void run(Arguments a) {
-  a.spec.kind = parse_name("--board", a.board,
-                           std::array{BoardKind::kChess, BoardKind::kCharuco, BoardKind::kCircles});
+void run(const Arguments& a) {
   a.spec.validate();
-  const LensModel lens = parse_name("--lens", a.lens,
-                                    std::array{LensModel::kPinhole, LensModel::kBrown,
-                                               LensModel::kRational, LensModel::kFisheye});
   if (a.out.empty()) throw UsageError("--out is empty: give the JSON file for the calibration");
-  if ((a.rig || a.turntable) && a.spec.looks_same_turned())
+  if ((a.rig || a.options.turntable) && a.spec.looks_same_turned())
     throw UsageError(
         "this board looks the same after half a turn, so that its corners cannot be told apart "
         "between pictures: for --rig and --turntable use charuco, or a chessboard with an odd "
         "number of inner corners one way and an even one the other");
   if (a.rig)
-    run_rig(a, lens);
+    run_rig(a);
   else
-    run_camera(a, lens);
+    run_camera(a);
 }
 
 }  // namespace
@@ -193,24 +188,13 @@ void add_calibrate(CLI::App& app) {
   CLI::App* c = add_command(app, "calibrate");
   c->add_option("images", a->images, "photographs, or folders of them")->required();
   c->add_option("--out", a->out, "JSON file for the calibration")->required();
-  c->add_option("--board", a->board, "chess, charuco or circles")->capture_default_str();
-  c->add_option("--columns", a->spec.columns, "inner corners, charuco: squares, circles: dots")
-      ->capture_default_str();
-  c->add_option("--rows", a->spec.rows, "the same downwards")->capture_default_str();
-  c->add_option("--square", a->spec.square, "distance of neighbouring corners or dots")
-      ->capture_default_str();
-  c->add_option("--marker", a->spec.marker, "charuco: a marker's side as a share of a square's")
-      ->capture_default_str();
-  c->add_option("--dictionary", a->spec.dictionary, "charuco: number of OpenCV's dictionary")
-      ->capture_default_str();
-  CLI::Option* lens = c->add_option("--lens", a->lens, "pinhole, brown, rational or fisheye");
-  lens->capture_default_str();
+  add_flags_of(*c, a->spec);
+  CLI::Option* lens = add_flags_of(*c, a->options, {"lens"}).front();
   c->add_option("--lens-from", a->lens_from,
                 "the lens is known, and poses alone are found: a file of photohull calibrate, or a "
                 "scene of one lens in any format")
       ->excludes(lens);
-  c->add_flag("--turntable", a->turntable,
-              "a fixed camera and a board that turns: find their common axis and the angles");
+  add_flags_of(*c, a->options, {"turntable"});
   c->add_option("--step", a->step,
                 "turntable: degrees from each picture to the next (in natural order of names), "
                 "where they are known");

@@ -17,6 +17,7 @@
 #include "evaluate_photos.h"
 #include "io/image_file.h"
 #include "io/mesh/read_mesh.h"
+#include "option_flags.h"
 #include "terminal_progress.h"
 
 namespace photohull::cli {
@@ -96,7 +97,7 @@ void print_text(const eval::Evaluation& e) {
       "samples     %zu of the result, %.2f %% over seen surface; %zu of %zu of the truth\n\n",
       e.result_samples, 100 * e.seen.share, e.truth_samples_seen, e.truth_samples);
   std::printf("%-24s %22s %22s\n", "distance (of diagonal)", "over seen surface", "whole result");
-  const std::string accuracy = concat("accuracy (", 100 * e.options.accuracy_share, " %)");
+  const std::string accuracy = concat("accuracy (", 100 * eval::kAccuracyShare, " %)");
   row(accuracy.c_str(), e.seen.accuracy, e.all.accuracy);
   row("result to truth, mean", e.seen.to_truth.mean, e.all.to_truth.mean);
   row("                 median", e.seen.to_truth.median, e.all.to_truth.median);
@@ -109,7 +110,7 @@ void print_text(const eval::Evaluation& e) {
   one("Hausdorff 95 %", e.hausdorff95);
   one("chamfer", e.chamfer);
   std::printf("%-24s %11.2f %% of the truth within %g %% of the diagonal\n\n", "completeness",
-              100 * e.completeness, 100 * e.options.completeness_threshold);
+              100 * e.completeness, 100 * eval::kCompletenessThreshold);
   std::printf("%-12s %-10s %9s %9s %9s %9s %9s\n", "threshold", "distance", "precision", "recall",
               "F", "precision", "F, whole");
   print_scores(e.all.scores, e.seen.scores);
@@ -256,17 +257,7 @@ void add_evaluate(CLI::App& app, DrawReliability draw) {
                     "which count");
   c->add_flag("--align", a->align,
               "first move, turn and scale the result onto the truth, and say how");
-  c->add_option("--thresholds", a->options.thresholds,
-                "distances to count within, fractions of the truth's diagonal")
-      ->delimiter(',')
-      ->capture_default_str();
-  c->add_option("--absolute", a->options.absolute, "further ones in world units")->delimiter(',');
-  c->add_option("--samples", a->options.samples, "points to measure the result at")
-      ->capture_default_str();
-  c->add_option("--seed", a->options.seed, "of the points")->capture_default_str();
-  c->add_option("--min-views", a->options.min_views,
-                "cameras that must see a part of the truth for it to count")
-      ->capture_default_str();
+  add_flags_of(*c, a->options, {"thresholds", "absolute", "samples", "seed", "min_views"});
   c->add_option("--error-mesh", a->error_mesh,
                 "write the result as a PLY coloured by its signed distance");
   c->add_option("--error-image", a->error_image, "write a PNG of that from six sides");

@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <memory>
 
 #include "cameras/diagnose.h"
@@ -75,8 +76,8 @@ PreparedViews prepare(std::span<const double> scales, const SceneArguments& argu
   progress.stage("views", 1);
   Scene read = scene;
   pipeline::scale_scene(scales, read);
-  PreparedViews prepared =
-      prepare_views(read, pipeline::reduced_loader(pipeline::file_reader(), scene, scales), options, progress);
+  PreparedViews prepared = prepare_views(
+      read, pipeline::reduced_loader(pipeline::file_reader(), scene, scales), options, progress);
   std::vector<bool> keep;
   std::size_t next = 0;  // of those that were decoded, in the same order
   for (const SourceView& view : scene.views) {
@@ -98,6 +99,7 @@ void write_picture(const std::string& path, const pipeline::Inspection& info,
   const pipeline::BoxPicture picture =
       pipeline::draw_box(info.scene, info.scales, info.grid.voxel_size,
                          points.empty() ? std::span<const ScenePoint>(listed) : points);
+  make_folder(std::filesystem::path(path).parent_path(), "--picture");
   io::write_png(path, picture.width, picture.height, 3, picture.rgb);
 }
 

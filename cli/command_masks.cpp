@@ -1,13 +1,16 @@
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 
 #include "cli/front/command_table.h"
 #include "commands.h"
 #include "core/error.h"
 #include "io/image_file.h"
+#include "option_flags.h"
 #include "pipeline/mask_policy.h"
 #include "scene_arguments.h"
 #include "terminal_progress.h"
@@ -21,7 +24,8 @@ namespace fs = std::filesystem;
 struct Arguments {
   SceneArguments scene;
   std::optional<std::string> out, compare;
-  bool cut = false, json = false;
+  PrepareOptions prepare;
+  bool json = false;
 };
 
 /// Intersection over union, and the share of the true object that the mask leaves out.
@@ -38,7 +42,22 @@ Overlap overlap(const Mask& mask, const Mask& truth) {
   return {either > 0 ? both / either : 1, object > 0 ? 1 - both / object : 0};
 }
 
-fs::path file_name(const std::string& view) { return fs::path(view).filename().string() + ".png"; }
+/// A view's name without its ending: masks of a folder are found by it (docs/guide/masks.md).
+std::string stem_of(const View& view) { return fs::path(view.name).stem().string(); }
+
+/// The file of each view's mask: called as the photograph, or where several photographs would share
+/// that name, with their folders and endings before .png.
+std::vector<fs::path> mask_files(const fs::path& folder, std::span<const View> views) {
+  std::map<std::string, int> count;
+  for (const View& view : views) ++count[stem_of(view)];
+  std::vector<fs::path> files;
+  for (const View& view : views) {
+    const bool alone = count[stem_of(view)] == 1;
+    const fs::path name = alone ? fs::path(stem_of(view)) : fs::path(view.name).relative_path();
+    files.push_back(folder / (name.string() + ".png"));
+  }
+  return files;
+}
 
 /// Masks that are known, by the names that masks have.
 std::vector<Overlap> compare(const Arguments& a, const PreparedViews& prepared) {
@@ -65,16 +84,25 @@ std::vector<Overlap> compare(const Arguments& a, const PreparedViews& prepared) 
   return out;
 }
 
+/// Masks are called as the photographs, and would take their places.
+void check_folder(const std::string& out, const Scene& scene) {
+  std::error_code ignored;
+  for (const SourceView& view : scene.views)
+    if (fs::equivalent(out, view.image.parent_path(), ignored))
+      throw UsageError(concat("--out ", out,
+                              " is the folder of the scene's photographs; give a folder of its own "
+                              "for the masks"));
+}
+
 void write_masks(const fs::path& folder, const PreparedViews& prepared) {
-  std::error_code failure;
-  fs::create_directories(folder, failure);
-  if (failure)
-    throw Error(concat(folder.string(), ": the folder cannot be made (", failure.message(),
-                       "); choose another with --out"));
-  for (const View& view : prepared.views)
-    if (!view.mask.empty())
-      io::write_png(folder / file_name(view.name), view.mask.width, view.mask.height, 1,
-                    view.mask.coverage);
+  make_folder(folder, "--out");
+  const std::vector<fs::path> files = mask_files(folder, prepared.views);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const Mask& mask = prepared.views[i].mask;
+    if (mask.empty()) continue;
+    make_folder(files[i].parent_path(), "--out");
+    io::write_png(files[i], mask.width, mask.height, 1, mask.coverage);
+  }
 }
 
 void print(const Arguments& a, const PreparedViews& prepared, const std::vector<Overlap>& known) {
@@ -117,11 +145,11 @@ void run(const Arguments& a) {
   a.scene.check();
   const io::LoadSceneOptions& load = a.scene.load;
   Scene scene = io::load_scene(a.scene.scene, load);
+  if (a.out) check_folder(*a.out, scene);
   const ViewLoader loader{[](const fs::path& path) { return io::read_image(path); },
                           [](const fs::path& path) { return io::read_mask(path); }};
-  PrepareOptions options;
+  PrepareOptions options = a.prepare;
   options.masks = pipeline::mask_policy(load.masks);
-  options.cut_masks = a.cut;
   options.strict = load.strict;
   TerminalProgress progress(1);
   progress.stage("masks", 1);
@@ -143,10 +171,11 @@ void add_masks(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
   CLI::App* c = add_command(app, "masks");
   a->scene.add_to(*c);
-  c->add_option("--out", a->out, "folder to write the masks to (VIEW.png), to touch them up");
+  c->add_option("--out", a->out,
+                "folder to write the masks to, called as the photographs, to touch them up");
   c->add_option("--compare", a->compare,
                 "folder of masks that are known: print how far they agree");
-  c->add_flag("--grabcut", a->cut, "let GrabCut place the contours");
+  add_flags_of(*c, a->prepare, {"grabcut"});
   c->add_flag("--json", a->json, "print JSON");
   c->footer(
       "Masks are of the undistorted photographs. Confidence is from 0 to 1; masks that were given "

@@ -32,8 +32,8 @@ void check(const Arguments& a) {
 
 void print_summary(const pipeline::Report& report, const std::string& out) {
   const glm::ivec3 n = report.grid.voxels();
-  std::printf("%d views, %d x %d x %d voxels of %g, %lld triangles\n", report.photographs.views, n.x, n.y, n.z,
-              report.grid.voxel_size, static_cast<long long>(report.mesh.triangles));
+  std::printf("%d views, %d x %d x %d voxels of %g, %lld triangles\n", report.photographs.views,
+              n.x, n.y, n.z, report.grid.voxel_size, static_cast<long long>(report.mesh.triangles));
   if (report.photographs.smallest_scale < 1)
     std::printf("photographs read at %s of their size\n",
                 pipeline::image_scale_text(report.photographs.smallest_scale).c_str());
@@ -56,8 +56,7 @@ void print_summary(const pipeline::Report& report, const std::string& out) {
 /// The files are there all the same, to look at.
 void throw_if_failed(const assess::Verdict& verdict) {
   if (verdict.level != assess::Level::kFailed) return;
-  throw Error("the result failed its own checks: " + verdict.reasons.front(),
-              ErrorKind::kDoubted);
+  throw Error("the result failed its own checks: " + verdict.reasons.front(), ErrorKind::kDoubted);
 }
 
 void run(const Arguments& a) {

@@ -1,4 +1,3 @@
-#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -7,9 +6,9 @@
 #include "commands.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
-#include "core/parse_name.h"
 #include "io/image_file.h"
 #include "io/write_scene.h"
+#include "option_flags.h"
 #include "pipeline/mask_policy.h"
 #include "pipeline/refine_cameras.h"
 #include "scene_arguments.h"
@@ -25,7 +24,7 @@ struct Arguments {
   SceneArguments scene;
   std::string out;
   std::optional<std::string> to;
-  std::string tracks = "both";
+  RefineCamerasOptions options;
   bool intrinsics = false, centre_offset = false, poses = false, json = false;
 };
 
@@ -70,14 +69,11 @@ void run(const Arguments& a) {
   const PreparedViews prepared = prepare_views(scene, loader, prepare, progress);
   for (const std::string& text : prepared.warnings) progress.warn(text);
   progress.stage("refine", 3);
-  RefineCamerasOptions options;
+  RefineCamerasOptions options = a.options;
   options.intrinsics = a.intrinsics      ? SharedIntrinsics::kAll
                        : a.centre_offset ? SharedIntrinsics::kPixelCentre
                        : a.poses         ? SharedIntrinsics::kNone
                                          : SharedIntrinsics::kWhereAlike;
-  options.source =
-      parse_name("--tracks", a.tracks,
-                 std::array{TrackSource::kBoth, TrackSource::kGiven, TrackSource::kFound});
   options.given = undistorted_tracks(scene, prepared.views);
   if (options.source == TrackSource::kGiven && options.given.empty())
     throw Error(concat(a.scene.scene, ": lists no tracks of features, which --tracks given needs"));
@@ -112,9 +108,7 @@ void add_refine_cameras(CLI::App& app) {
   CLI::Option* poses = c->add_flag("--poses", a->poses, "refine poses alone");
   all->excludes(centre, poses);
   centre->excludes(poses);
-  c->add_option("--tracks", a->tracks,
-                "features: given (that the scene's file lists), found, or both")
-      ->capture_default_str();
+  add_flags_of(*c, a->options);
   c->add_flag("--json", a->json, "print refinement.json on standard output instead of a summary");
   c->footer(
       "Needs cameras that are right to about ten pixels. Features of the photographs and tangents "

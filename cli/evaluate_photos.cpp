@@ -12,6 +12,7 @@
 #include "io/load_scene.h"
 #include "io/select_views.h"
 #include "mesh/simplify_mesh.h"
+#include "option_flags.h"
 #include "photo/noise.h"
 #include "pipeline/mask_policy.h"
 #include "pipeline/photometric.h"
@@ -123,13 +124,8 @@ void PhotoArguments::add_to(CLI::App& command) {
       "photographs that were not used to make the mesh, e.g. \"0,8,16\" (reconstruct --hold-out)"));
   with_photos(command.add_option("--lenders", lenders,
                                  "photographs that lend colour (default: all others)"));
-  with_photos(command
-                  .add_option("--least-angle", options.predict.least_angle,
-                              "degrees between a ray that is predicted and one that lends colour")
-                  ->capture_default_str());
-  with_photos(
-      command.add_option("--window", options.window, "edge of the windows compared, pixels")
-          ->capture_default_str());
+  for (CLI::Option* option : add_flags_of(command, options, {"least_angle", "window"}))
+    with_photos(option);
   with_photos(command.add_option(
       "--picture", picture,
       "write a PNG of the worst view: photograph, prediction, difference, agreement"));

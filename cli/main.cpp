@@ -1,9 +1,11 @@
 // photohull-main: the commands but those of the lab.
 #include <glog/logging.h>
 
+#include "cli/front/flag_words.h"
 #include "commands.h"
 
 int main(int argc, char** argv) {
+  photohull::set_option_wording(photohull::cli::flag_wording());
   // Ceres notes there what its summaries tell as well; users get a sentence instead.
   FLAGS_minloglevel = google::GLOG_FATAL;
   photohull::cli::handle_signals();

@@ -1,5 +1,6 @@
 #include "option_flags.h"
 
+#include "cli/front/flag_words.h"
 #include "core/error.h"
 
 namespace photohull::cli {
@@ -15,6 +16,19 @@ CLI::Option* add_flag(CLI::App& command, const Option& option) {
   if (std::holds_alternative<bool*>(option.place))
     return command.add_flag_callback(
         flag, [option] { read_option(option, "true"); }, option.help);
+  if (option.list) {
+    CLI::Option* added = command.add_option_function<std::vector<std::string>>(
+        flag,
+        [option](const std::vector<std::string>& items) {
+          std::string list;
+          for (const std::string& item : items) list += (list.empty() ? "" : ",") + item;
+          read_option(option, list);
+        },
+        help_of(option));
+    added->delimiter(',')->type_name("LIST");
+    if (const std::string text = text_of(option); !text.empty()) added->default_str(text);
+    return added;
+  }
   if (std::holds_alternative<std::vector<std::string>*>(option.place))
     return command.add_option_function<std::vector<std::string>>(
         flag,

@@ -15,4 +15,13 @@ namespace photohull::cli {
 std::vector<CLI::Option*> add_flags(CLI::App& command, const Described& described,
                                     const std::vector<std::string>& names = {});
 
+/// The same for a struct that describe() describes, which must outlive the command.
+template <typename Options>
+std::vector<CLI::Option*> add_flags_of(CLI::App& command, Options& options,
+                                       const std::vector<std::string>& names = {}) {
+  Described described;
+  describe(described, options);
+  return add_flags(command, described, names);
+}
+
 }  // namespace photohull::cli

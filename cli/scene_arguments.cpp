@@ -43,6 +43,14 @@ void check_output(const std::string& scene, const io::LoadSceneOptions& load,
                               "of its own for the results"));
 }
 
+void make_folder(const std::filesystem::path& folder, const std::string& option) {
+  std::error_code failure;
+  if (!folder.empty()) std::filesystem::create_directories(folder, failure);
+  if (failure)
+    throw Error(concat(folder.string(), ": the folder cannot be made (", failure.message(),
+                       "); choose another with ", option));
+}
+
 std::vector<CLI::Option*> SceneArguments::add_reading_options(CLI::App& command) {
   Described described;
   io::describe_reading(described, load);

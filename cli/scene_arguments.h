@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,10 @@ void check_scene(const std::string& scene);
 /// Throws UsageError where the folder for results is that of the scene's photographs or masks.
 void check_output(const std::string& scene, const io::LoadSceneOptions& load,
                   const std::string& out);
+
+/// Makes the folder, and those that it is in, where they are not there; "" is where the program
+/// runs. Throws Error, which names the option that asks for it.
+void make_folder(const std::filesystem::path& folder, const std::string& option);
 
 struct SceneArguments {
   std::string scene;

@@ -1,7 +1,7 @@
 // Photographs that a program has in memory become a volume that it looks into; nothing is written.
+#include <photohull/photohull.h>
 #include <cmath>
 #include <cstdio>
-#include <photohull/photohull.h>
 #include <utility>
 #include <vector>
 

@@ -6,6 +6,7 @@
 
 #include "cli/front/command_line.h"
 #include "cli/front/command_table.h"
+#include "cli/front/flag_words.h"
 #include "cli/front/programs.h"
 
 namespace {
@@ -36,6 +37,7 @@ void add_names(CLI::App& app) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  photohull::set_option_wording(cli::flag_wording());
   const std::string_view program = program_for({argv + std::min(argc, 1), argv + argc});
   if (!program.empty()) return cli::report_failures([&] { cli::become_program(program, argv); });
   cli::handle_signals();

@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "cli/option_flags.h"
 #include "cli/terminal_progress.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -199,15 +200,7 @@ void add_bench_visibility(CLI::App& bench) {
       "visibility", "errors against exact rays, and costs, of the ways to tell who sees what");
   s->add_option("--json", a->json, "file for all figures");
   s->add_option("--out", a->out, "folder for visibility.json, a plot and crops of pictures");
-  s->add_option("--scenes", a->options.scenes, "some of the scenes, separated by commas")
-      ->delimiter(',');
-  s->add_option("--resolutions", a->options.resolutions, "texels along a map's side")
-      ->delimiter(',')
-      ->capture_default_str();
-  s->add_option("--techniques", a->options.techniques, "some of the techniques (default: all)")
-      ->delimiter(',');
-  s->add_option("--repeats", a->options.repeats, "of each timing, of which the quickest counts")
-      ->capture_default_str();
+  add_flags_of(*s, a->options, {"scenes", "resolutions", "techniques", "repeats"});
   s->add_flag("--quick", a->quick, "one small scene and map: shows that all works, no more");
   s->add_option("--device", a->device, "auto, software, or an index from 'photohull devices'")
       ->capture_default_str();

@@ -9,6 +9,7 @@
 #include "cli/front/command_table.h"
 #include "cli/lab/bench_visibility.h"
 #include "cli/lab/lab_commands.h"
+#include "cli/option_flags.h"
 #include "cli/terminal_progress.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -27,7 +28,8 @@ using projtex::SweepRate;
 
 struct Arguments {
   std::string json, out, device = "auto";
-  int squares = 256, threads = 0;
+  projtex::StudyOptions options;
+  int threads = 0;
 };
 
 struct Results {
@@ -132,7 +134,7 @@ void draw(const Results& results, const std::filesystem::path& folder) {
 
 void run_sampling(const Arguments& a) {
   Results results;
-  results.options.squares = a.squares;
+  results.options = a.options;
   results.options.validate();
   const auto context = gpu::Context::create(a.device, a.threads);
   results.device = context->device().renderer;
@@ -162,8 +164,7 @@ void add_bench(CLI::App& app) {
       c->add_subcommand("sampling", "errors and times of the ways to resample photographs");
   s->add_option("--json", a->json, "file for all figures");
   s->add_option("--out", a->out, "folder for sampling.json and a plot as SVG and PNG");
-  s->add_option("--squares", a->squares, "squares a footprint in each of two images")
-      ->capture_default_str();
+  add_flags_of(*s, a->options);
   s->add_option("--device", a->device, "auto, software, or an index from 'photohull devices'")
       ->capture_default_str();
   s->add_option("--threads", a->threads, "threads to use (0: one a core)")->capture_default_str();

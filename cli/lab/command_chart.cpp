@@ -5,6 +5,7 @@
 #include "cli/front/command_table.h"
 #include "cli/front/programs.h"
 #include "cli/lab/lab_commands.h"
+#include "cli/option_flags.h"
 #include "cli/terminal_progress.h"
 #include "core/error.h"
 #include "lab/chart/chart_job.h"
@@ -15,7 +16,8 @@ namespace {
 
 struct Arguments {
   std::string plan, out;
-  bool force = false, retry = false, dry_run = false, draw_only = false;
+  chart::ChartOptions options;
+  bool dry_run = false;
 };
 
 void print_notes(const chart::Plan& plan) {
@@ -64,17 +66,14 @@ void check_arguments(const chart::ChartJob& job) {
 }
 
 void run(const Arguments& a) {
-  if (a.draw_only && (a.force || a.retry || a.dry_run))
+  chart::ChartOptions options = a.options;
+  if (options.draw_only && (options.force || options.retry || a.dry_run))
     throw UsageError("--draw-only makes no runs: leave out --force, --retry and --dry-run");
-  chart::ChartOptions options;
   options.plan = a.plan;
   options.output = a.out;
   options.program = program_beside(kMainProgram);
-  options.force = a.force;
-  options.retry = a.retry;
-  options.draw_only = a.draw_only;
   chart::ChartJob job(options);
-  if (!a.draw_only) check_arguments(job);
+  if (!options.draw_only) check_arguments(job);
   print_notes(job.plan());
   TerminalProgress progress(job.total_weight());
   for (const std::string& warning : job.warnings()) progress.warn(warning);
@@ -96,10 +95,8 @@ void add_chart(CLI::App& app) {
       ->required();
   c->add_option("--out", a->out, "folder for results and charts; made when it does not exist")
       ->required();
-  c->add_flag("--force", a->force, "repeat runs and synthetic scenes that are there already");
-  c->add_flag("--retry", a->retry, "repeat runs that failed");
+  add_flags_of(*c, a->options);
   c->add_flag("--dry-run", a->dry_run, "list the runs and what is left of them; do nothing");
-  c->add_flag("--draw-only", a->draw_only, "draw the results that are there again");
   c->footer(
       "Every run is a process of its own, then judged by 'photohull evaluate'. Runs that are done\n"
       "are skipped, so the same command goes on where it was stopped; a run is repeated when its\n"

@@ -5,6 +5,7 @@
 #include "cli/front/command_table.h"
 #include "cli/front/programs.h"
 #include "cli/lab/lab_commands.h"
+#include "cli/option_flags.h"
 #include "cli/terminal_progress.h"
 #include "core/error.h"
 #include "lab/chart/stress_job.h"
@@ -15,10 +16,9 @@ namespace photohull::cli {
 namespace {
 
 struct Arguments {
-  std::string plan, out, before;
-  std::vector<std::string> axes;
-  std::vector<std::uint64_t> seeds;
-  bool force = false, retry = false, dry_run = false, draw_only = false;
+  std::string plan, out;
+  chart::StressOptions options;
+  bool dry_run = false;
 };
 
 void print_plan(const chart::StressJob& job) {
@@ -70,22 +70,17 @@ void check_arguments(const chart::StressJob& job) {
 }
 
 void run(const Arguments& a) {
-  if (a.draw_only && (a.force || a.retry || a.dry_run))
+  chart::StressOptions options = a.options;
+  if (options.draw_only && (options.force || options.retry || a.dry_run))
     throw UsageError("--draw-only makes no runs: leave out --force, --retry and --dry-run");
-  chart::StressOptions options;
   options.plan = a.plan;
   options.output = a.out;
   options.program = program_beside(kMainProgram);
-  options.before = a.before;
-  options.selection = {a.axes, a.seeds};
-  options.force = a.force;
-  options.retry = a.retry;
-  options.draw_only = a.draw_only;
   options.normalize = [](const std::string& text, const std::string& source) {
     return synth::spec_text(synth::parse_spec(text, source, ""));
   };
   chart::StressJob job(options);
-  if (!a.draw_only) check_arguments(job);
+  if (!options.draw_only) check_arguments(job);
   TerminalProgress progress(job.total_weight());
   for (const std::string& warning : job.warnings()) progress.warn(warning);
   if (a.dry_run) return print_plan(job);
@@ -105,18 +100,10 @@ void add_stress(CLI::App& app) {
       ->required();
   c->add_option("--out", a->out, "folder for results and charts; made when it does not exist")
       ->required();
-  c->add_option("--axes", a->axes, "names of the plan's axes to run, with commas (default: all)")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  c->add_option("--seeds", a->seeds, "seeds of the scenes in place of the plan's, with commas")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  c->add_option("--before", a->before,
-                "folder of an earlier run, whose curves are drawn beside the new ones");
-  c->add_flag("--force", a->force, "repeat runs that are there already");
-  c->add_flag("--retry", a->retry, "repeat runs that failed");
+  for (CLI::Option* list : add_flags_of(*c, a->options, {"axes", "seeds"}))
+    list->allow_extra_args(false);
+  add_flags_of(*c, a->options, {"before", "force", "retry", "draw_only"});
   c->add_flag("--dry-run", a->dry_run, "list the runs and what is left of them; do nothing");
-  c->add_flag("--draw-only", a->draw_only, "draw the results that are there again");
   c->footer(
       "Every reconstruction is a process of its own, then judged by 'photohull evaluate'. Runs "
       "that\n"

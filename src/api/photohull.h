@@ -8,7 +8,8 @@
 //   photohull::write(result, "out/scan", progress);
 //
 // Frames and units are said in core/camera.h. Failures are thrown as Error, whose kind() programs
-// may act on. Derive from Progress to be told what is done, and give it a CancellationToken to stop.
+// may act on. Derive from Progress to be told what is done, and give it a CancellationToken to
+// stop.
 #pragma once
 
 #include "core/error.h"

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "assess/judge.h"
+#include "core/option_word.h"
 
 namespace photohull::assess {
 namespace {
@@ -26,11 +27,11 @@ void Judge::box() {
   const std::string beyond =
       concat(percent(s_.beyond_box), " of what the masks show lies beyond the box");
   if (lacking || s_.contradiction > kContradiction.doubtful)
-    name_cause(concat(beyond,
-                      ": the box cuts the object off; make it larger (--box-scale) or let it "
-                      "be found (--box auto)"));
+    name_cause(concat(beyond, ": the box cuts the object off; make it larger (",
+                      option_word("box_scale"), ") or let it be found (",
+                      option_word("box", "auto"), ")"));
   else
-    verdict_.notes.push_back(beyond + " (--box-scale makes it larger)");
+    verdict_.notes.push_back(concat(beyond, " (", option_word("box_scale"), " makes it larger)"));
 }
 
 double Judge::cut_share() const {
@@ -39,9 +40,10 @@ double Judge::cut_share() const {
 }
 
 std::string Judge::cut_off() const {
-  return concat(percent(cut_share()),
-                " of what the photographs show there stands just outside the box: make the box "
-                "larger (--box-scale) if it belongs to the object");
+  return concat(
+      percent(cut_share()),
+      " of what the photographs show there stands just outside the box: make the box larger (",
+      option_word("box_scale"), ") if it belongs to the object");
 }
 
 void Judge::stems() {
@@ -55,8 +57,8 @@ void Judge::stems() {
 }
 
 std::string Judge::too_coarse() const {
-  return concat("voxels are wider than one percent of its diagonal: use --resolution ",
-                std::lround(s_.resolution * s_.voxel_size / s_.far));
+  return concat("voxels are wider than one percent of its diagonal: use ",
+                option_word("resolution", std::lround(s_.resolution * s_.voxel_size / s_.far)));
 }
 
 void Judge::few_views() {
@@ -74,9 +76,8 @@ void Judge::thin_parts() {
   const double voxel = std::max(width / kThinVoxels, kFinestPixels * s_.pixel_size);
   if (voxel >= s_.voxel_size) return;
   name_cause(concat("parts that the masks show about ", pixels(s_.missed_width),
-                    " wide are missing, for they are thinner than ", kThinVoxels,
-                    " voxels: use --resolution ",
-                    std::lround(s_.resolution * s_.voxel_size / voxel)));
+                    " wide are missing, for they are thinner than ", kThinVoxels, " voxels: use ",
+                    option_word("resolution", std::lround(s_.resolution * s_.voxel_size / voxel))));
 }
 
 void Judge::common_errors() {
@@ -86,8 +87,8 @@ void Judge::common_errors() {
   if (c.focal_counts())
     name_cause(concat(agree, "all focal lengths times ", std::round(1000 * c.focal_factor) / 1000,
                       ": they are too ", c.focal_factor < 1 ? "long" : "short",
-                      ", and size and shape are off; calibrate again, or try --refine-cameras "
-                      "poses+intrinsics"));
+                      ", and size and shape are off; calibrate again, or try ",
+                      option_word("refine_cameras", "poses+intrinsics")));
   if (c.shift_counts())
     name_cause(concat(agree, "all masks moved by (", std::round(-10 * c.shift.x) / 10 + 0.0, ", ",
                       std::round(-10 * c.shift.y) / 10 + 0.0,

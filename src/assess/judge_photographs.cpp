@@ -5,6 +5,7 @@
 
 #include "assess/judge.h"
 #include "core/median.h"
+#include "core/option_word.h"
 
 namespace photohull::assess {
 namespace {
@@ -67,8 +68,9 @@ std::string Judge::misfits(const Explained& e) const {
 std::string Judge::other_photograph(const std::string& list) {
   return concat(list,
                 ": other views show something else at most of what is seen there; is the "
-                "photograph another view's, upside down or mirrored? Look at it, and at "
-                "photohull info --cameras; --hold-out leaves views out");
+                "photograph another view's, upside down or mirrored? Look at it, and at ",
+                command_word("info", "cameras"), "; ", option_word("hold_out"),
+                " leaves views out");
 }
 
 std::string Judge::why_unexplained() const {
@@ -77,12 +79,13 @@ std::string Judge::why_unexplained() const {
             alone = e.count(Place::kAlone);
   if (missed >= std::max(differs, alone))
     return concat("on ", percent(e.share_told(Place::kMissed)),
-                  " there is surface that the model lacks: raise --resolution, add views between "
-                  "the present ones, or give masks");
+                  " there is surface that the model lacks: raise ", option_word("resolution"),
+                  ", add views between the present ones, or give masks");
   if (differs >= alone)
     return concat("on ", percent(e.share_told(Place::kDisagreeing)),
-                  " other views show something else at the surface: check the cameras (photohull "
-                  "info --cameras, --refine-cameras auto); gloss and what moved do the same");
+                  " other views show something else at the surface: check the cameras (",
+                  command_word("info", "cameras"), ", ", option_word("refine_cameras", "auto"),
+                  "); gloss and what moved do the same");
   return concat("on ", percent(e.share_told(Place::kAlone)),
                 " no second view sees the same: add views beside these");
 }
@@ -125,8 +128,9 @@ void Judge::photographs() {
       e.told() < kFewestPlaces
           ? concat(
                 "the model is nearly empty: it explains hardly any of the texture that the "
-                "photographs show in the box; check the box (photohull info --picture) and "
-                "the cameras (photohull info --cameras)")
+                "photographs show in the box; check the box (",
+                command_word("info", "picture"), ") and the cameras (",
+                command_word("info", "cameras"), ")")
           : concat("the model explains ", percent(e.explained()),
                    " of the texture that the photographs show in the box, as far as they tell: ",
                    why_unexplained(), where);
@@ -135,11 +139,12 @@ void Judge::photographs() {
   else if (unexplained > kUnexplained.doubtful)
     name_cause(reason);
   lacking();
-  weigh(bare, kBare,
-        concat("on ", percent(bare),
-               " of the photographs' texture in the box no views agree on any depth: the box may "
-               "be in the wrong place (photohull info --picture), the cameras wrong, or the views "
-               "too far apart"));
+  weigh(
+      bare, kBare,
+      concat("on ", percent(bare),
+             " of the photographs' texture in the box no views agree on any depth: the box may be "
+             "in the wrong place (",
+             command_word("info", "picture"), "), the cameras wrong, or the views too far apart"));
   if (unexplained <= kUnexplained.doubtful)
     verdict_.notes.push_back(
         concat("the model explains ", percent(e.explained()),

@@ -6,6 +6,7 @@
 
 #include "assess/judge.h"
 #include "core/median.h"
+#include "core/option_word.h"
 
 namespace photohull::assess {
 namespace {
@@ -108,13 +109,13 @@ void Judge::cameras() {
     }
     weigh(off / s_.far, {kResidual.doubtful, INFINITY},
           concat("the views ", list, " disagree with the rest by up to ", pixels(worst),
-                 ": calibrate them again, leave them out (--views), or try --refine-cameras "
-                 "auto"));
+                 ": calibrate them again, leave them out (", option_word("views"), "), or try ",
+                 option_word("refine_cameras", "auto")));
   }
   if (matches >= 2 * kFewestOfAll)
     weigh(s_.match.residual * s_.match.pixel_size / s_.far, kResidual,
           concat("the cameras disagree by ", pixels(s_.match.residual),
-                 " (median): calibrate again, or try --refine-cameras auto"));
+                 " (median): calibrate again, or try ", option_word("refine_cameras", "auto")));
   // Errors of single views are nearly gone from the mean of all, which is where the world lies.
   const double place =
       std::max(s_.cameras_moved_alike, s_.cameras_moved / std::sqrt(double(std::max(1, s_.views))));
@@ -123,9 +124,10 @@ void Judge::cameras() {
   const std::string moved =
       concat("the cameras had to be moved by ", pixels(s_.cameras_moved),
              " to agree: shape is right, but place and size may be off by ", pixels(place),
-             alike ? "; all were off alike, so that focal length, principal point or pixel "
-                     "centre may be wrong (photohull info --cameras, --refine-cameras "
-                     "poses+intrinsics)"
+             alike ? concat("; all were off alike, so that focal length, principal point or pixel "
+                            "centre may be wrong (",
+                            command_word("info", "cameras"), ", ",
+                            option_word("refine_cameras", "poses+intrinsics"), ")")
                    : "");
   if (off > kMoved.failed) causes_ = 0;  // before all others, whatever these are
   weigh(off, kMoved, moved);
@@ -177,8 +179,9 @@ void Judge::hull() {
   if (!s_.masks) {
     causes_ = 0;  // before all others, whatever these are
     weigh(1, {0, 0},
-          "no view has a mask: the hull is the box clipped by what the views see; give masks, or "
-          "use --method refine");
+          concat("no view has a mask: the hull is the box clipped by what the views see; give "
+                 "masks, or use ",
+                 option_word("method", "refine")));
     return;
   }
   std::string note =
@@ -196,7 +199,8 @@ void Judge::hull() {
           {1, INFINITY},
           concat("on ", percent(1 - confirmed),
                  " of its texture the photographs do not confirm the hull: the object is concave "
-                 "there, or too few views show its outline; add views, or use --method refine"));
+                 "there, or too few views show its outline; add views, or use ",
+                 option_word("method", "refine")));
   }
   verdict_.notes.push_back(note);
 }
@@ -219,20 +223,21 @@ void Judge::coverage() {
   verdict_.coverage = concat(percent(1 - s_.unseen), " of the surface is seen, ",
                              percent(1 - s_.few_views), " by three views or more");
   if (s_.unseen > kGuessed)
-    verdict_.coverage +=
-        "; the rest is a guess: add views there, or leave it out with --unseen open";
+    verdict_.coverage += concat("; the rest is a guess: add views there, or leave it out with ",
+                                option_word("unseen", "open"));
   weigh(s_.unseen, kUnseen,
-        concat("no view sees ", percent(s_.unseen),
-               " of the surface: add views there, or use --unseen open"));
+        concat("no view sees ", percent(s_.unseen), " of the surface: add views there, or use ",
+               option_word("unseen", "open")));
   if (s_.match.matched < kEnoughMatched)  // else colours differ, and the surface is right
     weigh(s_.unsure, kUnsure,
           concat("confidence is below one half on ", percent(s_.unsure),
                  " of the surface: other photographs do not show the same there, or it is plain; "
-                 "look at them, and at photohull info --cameras"));
+                 "look at them, and at ",
+                 command_word("info", "cameras")));
   weigh(cut_by_box() ? s_.at_box : 0, kAtBox,
         concat(percent(s_.at_box),
-               " of the surface lies on the box's sides: the box cuts the object off (make --box "
-               "larger), or nothing tells where it ends"));
+               " of the surface lies on the box's sides: the box cuts the object off (make ",
+               option_word("box"), " larger), or nothing tells where it ends"));
 }
 
 const char* to_string(Level level) {

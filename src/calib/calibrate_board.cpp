@@ -1,10 +1,12 @@
 #include "calib/calibrate_board.h"
 
 #include <algorithm>
+#include <array>
 
 #include "calib/board_model.h"
 #include "calib/object_error.h"
 #include "core/error.h"
+#include "core/option_word.h"
 
 namespace photohull {
 namespace {
@@ -27,7 +29,8 @@ class Calibrator {
     if (c_.used.size() < c_.fewest_views())
       throw Error(concat("the board was found in ", c_.used.size(), " of ", measured_.size(),
                          " pictures, but ", c_.lens_known ? "one is" : "three are",
-                         " needed; check --board, --columns and --rows"));
+                         " needed; check ", option_word("board"), ", ", option_word("columns"),
+                         " and ", option_word("rows")));
     check_same_size(measured_, c_.used);
     start();
     drop_outliers();
@@ -121,9 +124,19 @@ const char* to_string(LensModel model) {
   return "?";
 }
 
+void describe(Described& to, CalibrateOptions& o) {
+  to.choice(
+      "lens", &o.lens,
+      std::array{LensModel::kPinhole, LensModel::kBrown, LensModel::kRational, LensModel::kFisheye},
+      "which distortion is found");
+  to.flag("turntable", &o.turntable,
+          "a fixed camera and a board that turns: find their common axis and the angles");
+}
+
 void CalibrateOptions::validate(std::size_t views) const {
   if (angles.empty()) return;
-  if (!turntable) throw UsageError("angles are stated, but --turntable is not");
+  if (!turntable)
+    throw UsageError(concat("angles are stated, but ", option_word("turntable"), " is not"));
   if (angles.size() != views)
     throw UsageError(concat(angles.size(), " angles are stated for ", views,
                             " pictures; give one for each, in the order of their names"));

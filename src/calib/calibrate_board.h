@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/describe.h"
 #include "core/image.h"
 
 namespace photohull {
@@ -19,10 +20,10 @@ const char* to_string(BoardKind kind);
 
 struct BoardSpec {
   BoardKind kind = BoardKind::kChess;
-  int columns = 9, rows = 6;  ///< 3 or more each
-  double square = 1;          ///< distance of neighbouring points, world units, > 0
-  double marker = 0.75;       ///< charuco: the markers' side as a share of a square's, in (0, 1)
-  int dictionary = 0;         ///< charuco: number of OpenCV's predefined dictionary, 0 to 20
+  int columns = 9, rows = 6;
+  double square = 1;     ///< distance of neighbouring points, world units
+  double marker = 0.75;  ///< charuco: the markers' side as a share of a square's
+  int dictionary = 0;    ///< charuco: number of OpenCV's predefined dictionary
 
   /// Throws UsageError naming the option.
   void validate() const;
@@ -31,6 +32,8 @@ struct BoardSpec {
   /// camera alone does not mind; rigs and turntables do.
   bool looks_same_turned() const;
 };
+
+void describe(Described& to, BoardSpec& board);
 
 /// The board's points that a picture shows, in the board's plane z = 0 and in pixels.
 struct BoardView {
@@ -73,6 +76,9 @@ struct CalibrateOptions {
   /// Throws UsageError naming the option.
   void validate(std::size_t views) const;
 };
+
+/// Without the lens that is known and the angles.
+void describe(Described& to, CalibrateOptions& options);
 
 /// A turntable's axis in the camera's frame.
 struct TurntableAxis {

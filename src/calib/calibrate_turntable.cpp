@@ -6,6 +6,7 @@
 #include "calib/object_error.h"
 #include "core/error.h"
 #include "core/median.h"
+#include "core/option_word.h"
 
 namespace photohull {
 namespace {
@@ -224,9 +225,9 @@ class Turntable {
     const double rms = median_rms();
     if (rms > std::max(1.0, kFarOff * free_rms_))
       throw Error(concat("the stated angles do not fit the pictures: ", rms,
-                         " px rms (median view), and ", free_rms_,
-                         " px without them; check --step or --angles and the order of the "
-                         "pictures, or let the angles be found"));
+                         " px rms (median view), and ", free_rms_, " px without them; check ",
+                         option_word("step"), " or ", option_word("angles"),
+                         " and the order of the pictures, or let the angles be found"));
   }
 
   SingleCamera& c_;

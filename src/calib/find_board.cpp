@@ -2,11 +2,15 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include <array>
+
 #include "calib/find_board_parts.h"
 #include "core/error.h"
 
 namespace photohull {
 namespace {
+
+constexpr double kMostRows = 1000, kLargestSquare = 1e9;
 
 /// Linear light, in which blurred edges lie where sharp ones would.
 cv::Mat linear_grey(const ColourImage& image, double blur = 0.8) {
@@ -91,16 +95,24 @@ const char* to_string(BoardKind kind) {
   return "?";
 }
 
-void BoardSpec::validate() const {
-  if (columns < 3 || rows < 3 || columns > 1000 || rows > 1000)
-    throw UsageError(concat("--columns ", columns, " --rows ", rows, ": expected 3 to 1000 each"));
-  if (!(square > 0) || !(square < 1e9))
-    throw UsageError(concat("--square ", square, ": expected a positive length"));
-  if (!(marker > 0 && marker < 1))
-    throw UsageError(concat("--marker ", marker, ": expected a share between 0 and 1"));
-  if (dictionary < 0 || dictionary > 20)
-    throw UsageError(concat("--dictionary ", dictionary, ": expected 0 to 20"));
+void describe(Described& to, BoardSpec& o) {
+  to.choice("board", &o.kind,
+            std::array{BoardKind::kChess, BoardKind::kCharuco, BoardKind::kCircles},
+            "what is printed on the board");
+  to.number("columns", &o.columns, from_to(3, kMostRows), "",
+            "inner corners, charuco: squares, circles: dots");
+  to.number("rows", &o.rows, from_to(3, kMostRows), "", "the same downwards");
+  to.number("square", &o.square, above(0, kLargestSquare), "world units",
+            "distance of neighbouring corners or dots")
+      .expects = "a positive length";
+  to.number("marker", &o.marker, {0, 1, true, true}, "",
+            "charuco: a marker's side as a share of a square's")
+      .expects = "a share between 0 and 1";
+  to.number("dictionary", &o.dictionary, from_to(0, 20), "",
+            "charuco: number of OpenCV's dictionary");
 }
+
+void BoardSpec::validate() const { check_options(*this); }
 
 bool BoardSpec::looks_same_turned() const {
   return kind == BoardKind::kCircles || (kind == BoardKind::kChess && (columns + rows) % 2 == 0);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/option_word.h"
 
 namespace photohull {
 namespace {
@@ -15,13 +16,15 @@ constexpr double kShortestFocal = 0.1, kLongestFocal = 100;  // of the picture's
 constexpr double kMostStretched = 2, kStretched = 1.05;      // fx / fy, or its inverse
 constexpr double kOffMiddle = 0.2;                           // of the picture's width and height
 
-constexpr const char* kCheckBoard =
-    "check --board, --columns, --rows and --square, and photograph a flat, stiff board, sharp and "
-    "at "
-    "rest";
 constexpr const char* kTilt =
     "photograph the board tilted by 30 to 45 degrees to different sides, in all parts of the "
     "picture, ten times or more";
+
+std::string check_board() {
+  return concat("check ", option_word("board"), ", ", option_word("columns"), ", ",
+                option_word("rows"), " and ", option_word("square"),
+                ", and photograph a flat, stiff board, sharp and at rest");
+}
 
 double limit_of(const Intrinsics& k) {
   return std::max(kMostPixels, kMostOfDiagonal * std::hypot(k.width, k.height));
@@ -75,9 +78,9 @@ class Judge {
     if (rms > kDoubtful * limit) out_.misfits = true;
     const std::string what = concat("the boards fit to ", short_text(rms), " px rms only");
     if (!(rms <= limit))
-      refuse(what, kCheckBoard);
+      refuse(what, check_board());
     else if (rms > kDoubtful * limit)
-      doubt(what, kCheckBoard);
+      doubt(what, check_board());
   }
 
   /// `known_to`: the numbers behind it.
@@ -100,7 +103,7 @@ class Judge {
     if (2 * used < found)
       doubt(concat("only ", used, " of ", found,
                    " pictures of the board fit each other, and the rest was left out"),
-            kCheckBoard);
+            check_board());
   }
 
   CalibrationJudgement take() { return std::move(out_); }
@@ -126,10 +129,11 @@ std::string mend_of(const Calibration& c) {
   if (c.lens_known)
     return "turn the table further, in more pictures, with the board nearer and well off the view "
            "along its plane";
-  return "lean the board on the table so that it is tilted by 30 to 60 degrees against the axis, "
-         "and "
-         "turn the table further; or calibrate the lens by pictures of the board tilted to "
-         "different sides, and give that with --lens-from";
+  return concat(
+      "lean the board on the table so that it is tilted by 30 to 60 degrees against the axis, and "
+      "turn the table further; or calibrate the lens by pictures of the board tilted to different "
+      "sides, and give that with ",
+      option_word("lens_from"));
 }
 
 void add(const CalibrationJudgement& from, CalibrationJudgement& to) {

@@ -4,6 +4,7 @@
 
 #include "cameras/diagnose_parts.h"
 #include "core/error.h"
+#include "core/option_word.h"
 
 namespace photohull {
 
@@ -94,10 +95,11 @@ void describe_views(std::span<const View> views, CameraDiagnosis& d) {
 void describe_pixel_centre(CameraDiagnosis& d) {
   const PixelCentreFit& fit = *d.pixel_centre;
   if (fit.tells && fit.best != 0)
-    d.faults.push_back(concat(
-        "the principal points are half a pixel too ", fit.best > 0 ? "small" : "large",
-        " in x and y: shifted by ", number(fit.shift, 2), " +- ", number(fit.sigma, 2),
-        " px they fit best; give a --pixel-center that is 0.5 ", fit.best > 0 ? "less" : "more"));
+    d.faults.push_back(concat("the principal points are half a pixel too ",
+                              fit.best > 0 ? "small" : "large", " in x and y: shifted by ",
+                              number(fit.shift, 2), " +- ", number(fit.sigma, 2),
+                              " px they fit best; give a ", option_word("pixel_center"),
+                              " that is 0.5 ", fit.best > 0 ? "less" : "more"));
   else if (!fit.tells && std::isfinite(fit.sigma))
     d.notes.push_back(
         concat("no pixel centre clearly fits: the best shift of the principal points is ",

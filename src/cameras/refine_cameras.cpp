@@ -26,6 +26,8 @@ constexpr double kLeastSigma = 0.03;         // pixels: nothing is measured bett
 constexpr double kLeastTangentSigma = 0.15;  // pixels: contours err alike where they touch
 constexpr double kUsualError = 1;            // pixels, of given poses
 constexpr double kAlike = 1.5;    // times what independent errors of poses leave in their mean
+constexpr double kHeldOut = 0.2;  // share of the tracks and tangents that only judge
+constexpr int kRounds = 8;        // at most; each one finds outliers and tangents anew
 constexpr double kNoWorse = 1.2;  // times the residual without what views share
 
 using Cameras = std::vector<Camera>;
@@ -73,8 +75,8 @@ double robust_cost(const std::vector<double>& residuals, double sigma) {
 }
 
 /// Spread evenly over any list, the same every time.
-bool is_held_out(std::size_t index, double share) {
-  return std::fmod(double(index + 1) * 0.6180339887498949, 1.0) < share;
+bool is_held_out(std::size_t index) {
+  return std::fmod(double(index + 1) * 0.6180339887498949, 1.0) < kHeldOut;
 }
 
 /// So many of a list, spread evenly over it.
@@ -97,7 +99,7 @@ class CameraRefiner {
         start_(std::move(start)),
         outlines_(outlines_of(views)) {
     for (std::size_t i = 0; i < tracks.size(); ++i)
-      (is_held_out(i, options.held_out) ? judging_ : adjusting_).push_back(std::move(tracks[i]));
+      (is_held_out(i) ? judging_ : adjusting_).push_back(std::move(tracks[i]));
   }
 
   CameraRefinement run() {
@@ -129,9 +131,9 @@ class CameraRefiner {
       prior_sigma_ = 2 * spread(judge(cameras, nullptr));  // poses explain what is left
     const bool last = intrinsics != SharedIntrinsics::kAll;
     bool with_intrinsics = false;
-    for (int round = 0; round < options_.rounds; ++round) {
+    for (int round = 0; round < kRounds; ++round) {
       progress_.check_cancelled();
-      progress_.update(0.9 + 0.1 * round / options_.rounds);
+      progress_.update(0.9 + 0.1 * round / kRounds);
       const auto shared = with_intrinsics ? SharedIntrinsics::kAll : SharedIntrinsics::kNone;
       if (try_round(cameras, shared, false, result)) continue;
       // Poses come first; what all views share follows once they have settled.
@@ -196,7 +198,7 @@ class CameraRefiner {
     for (const FrontierPair& pair : frontier_pairs(cameras, outlines_)) {
       // By the pair of views, so that the choice stays when tangents are found anew.
       const std::size_t index = std::size_t(pair.view_a) * given_.size() + std::size_t(pair.view_b);
-      if (is_held_out(index, options_.held_out) == held_out) chosen.push_back(pair);
+      if (is_held_out(index) == held_out) chosen.push_back(pair);
     }
     return chosen;
   }
@@ -345,18 +347,6 @@ std::vector<Track> joined(std::vector<Track> a, const std::vector<Track>& b) {
 }
 
 }  // namespace
-
-const char* to_string(TrackSource source) {
-  switch (source) {
-    case TrackSource::kBoth:
-      return "both";
-    case TrackSource::kGiven:
-      return "given";
-    case TrackSource::kFound:
-      return "found";
-  }
-  return "unknown";
-}
 
 CameraRefinement refine_cameras(std::span<const View> views, const RefineCamerasOptions& options,
                                 Progress& progress) {

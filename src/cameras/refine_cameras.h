@@ -9,6 +9,7 @@
 #include "cameras/feature_tracks.h"
 #include "cameras/frontier.h"
 #include "core/box.h"
+#include "core/describe.h"
 
 namespace photohull {
 
@@ -41,9 +42,10 @@ struct RefineCamerasOptions {
   std::optional<Box> box;
   int few_features = 100;  ///< observations of a view, in the median
   TrackOptions tracks;
-  double held_out = 0.2;  ///< share of the tracks and tangents that only judge
-  int rounds = 8;         ///< at most; each one finds outliers and tangents anew
 };
+
+/// Those that are no matter of what is known of the scene.
+void describe(Described& to, RefineCamerasOptions& options);
 
 /// How well a view agrees with the others: root mean square distances in pixels over held-out
 /// observations, the same ones before and after; outliers are not among them.

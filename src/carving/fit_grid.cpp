@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/option_word.h"
 #include "core/viewing_depth.h"
 
 namespace photohull::carving {
@@ -23,8 +24,8 @@ glm::ivec3 bricks_for(const glm::dvec3& voxels, double voxel_size) {
     throw Error(concat("voxel size ", voxel_size, " makes a lattice of ", bricks.x * kBrickEdge,
                        " x ", bricks.y * kBrickEdge, " x ", bricks.z * kBrickEdge,
                        " voxels, whose index alone takes ", std::ceil(count * 4 / 1048576),
-                       " MiB; choose a lower --resolution, a larger "
-                       "--voxel-size or a smaller --box"));
+                       " MiB; choose a lower ", option_word("resolution"), ", a larger ",
+                       option_word("voxel_size"), " or a smaller ", option_word("box")));
   return glm::ivec3(bricks);
 }
 
@@ -52,7 +53,8 @@ double pixel_footprint(const Box& box, std::span<const Camera> cameras) {
 }
 
 double voxel_size_for(const Box& box, int resolution) {
-  if (resolution < 2) throw UsageError(concat("--resolution ", resolution, ": at least 2"));
+  if (resolution < 2)
+    throw UsageError(concat(option_word("resolution", resolution), ": at least 2"));
   const glm::dvec3 size = box.size();
   return std::max({size.x, size.y, size.z}) / resolution;
 }

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "core/option_word.h"
 
 namespace photohull {
 namespace {
@@ -25,28 +26,53 @@ std::string written(double value, int digits = 9) {
   return out.str();
 }
 
-/// The number, if the option is one and has one.
-std::optional<double> number_of(const Option& option) {
-  return std::visit(
-      Overloaded{[](int* v) -> std::optional<double> { return *v; },
-                 [](double* v) -> std::optional<double> { return *v; },
-                 [](std::optional<int>* v) -> std::optional<double> { return *v; },
-                 [](std::optional<double>* v) -> std::optional<double> { return *v; },
-                 [](std::optional<std::int64_t>* v) -> std::optional<double> { return *v; },
-                 [](const auto&) -> std::optional<double> { return std::nullopt; }},
-      option.place);
+/// What an option has one, at most one or several of.
+template <typename T>
+struct ItemOf {
+  using Type = T;
+};
+template <typename T>
+struct ItemOf<std::optional<T>> {
+  using Type = T;
+};
+template <typename T>
+struct ItemOf<std::vector<T>> {
+  using Type = T;
+};
+template <typename T>
+using Item = typename ItemOf<T>::Type;
+template <typename T>
+inline constexpr bool kIsNumber = std::is_arithmetic_v<Item<T>> && !std::is_same_v<T, bool>;
+
+/// Does `what` with each number that the option has now; with none where it is none.
+template <typename What>
+void for_numbers(const Option& option, const What& what) {
+  std::visit(Overloaded{[&]<typename T>(T* v) {
+                          if constexpr (kIsNumber<T>) {
+                            if constexpr (std::is_arithmetic_v<T>)
+                              what(*v);
+                            else if constexpr (std::is_same_v<T, std::vector<Item<T>>>)
+                              std::for_each(v->begin(), v->end(), what);
+                            else if (*v)
+                              what(**v);
+                          }
+                        },
+                        [](const Words&) {}},
+             option.place);
 }
 
 /// Also where there is no number.
 bool in_range(const Option& option) {
-  const auto value = number_of(option);
-  return !value || option.range.holds(*value);
+  bool all = true;
+  for_numbers(option, [&](auto value) { all = all && option.range.holds(double(value)); });
+  return all;
 }
 
 bool is_whole(const Option& option) {
-  return std::holds_alternative<int*>(option.place) ||
-         std::holds_alternative<std::optional<int>*>(option.place) ||
-         std::holds_alternative<std::optional<std::int64_t>*>(option.place);
+  return std::visit(
+      Overloaded{[]<typename T>(T*) { return kIsNumber<T> && std::is_integral_v<Item<T>>; },
+                 [](const Words&) { return false; }},
+      option.place);
 }
 
 std::string lowest(const Option& option) {
@@ -58,6 +84,13 @@ std::string joined(const std::vector<std::string>& texts, const char* between) {
   std::string all;
   for (const std::string& text : texts) all += (all.empty() ? "" : between) + text;
   return all;
+}
+
+std::vector<std::string> split(const std::string& list) {
+  std::vector<std::string> items;
+  std::istringstream in(list);
+  for (std::string item; std::getline(in, item, ',');) items.push_back(item);
+  return items;
 }
 
 /// What is legal, for a sentence after the value: "expected 1 to 8".
@@ -89,7 +122,7 @@ std::string obligation(const Option& option) {
 }
 
 [[noreturn]] void refuse(const Option& option, const std::string& text) {
-  throw UsageError(concat(flag_of(option.name), " ", text, ": ", expectation(option)));
+  throw UsageError(concat(option_word(option.name, text), ": ", expectation(option)));
 }
 
 template <typename Number>
@@ -111,8 +144,9 @@ Number parsed(const Option& option, const std::string& text) {
   }
   if (whole) return value;
   if (!option.absent.empty() || !option.expects.empty()) refuse(option, text);
-  throw UsageError(concat(flag_of(option.name), " ", text, ": expected a ",
-                          std::is_integral_v<Number> ? "whole " : "", "number; see --help"));
+  throw UsageError(concat(option_word(option.name, text), ": expected a ",
+                          std::is_integral_v<Number> ? "whole " : "", "number",
+                          where_to_read_more()));
 }
 
 }  // namespace
@@ -152,6 +186,15 @@ Option& Described::flag(const std::string& name, bool* place, const std::string&
   return add(name, place, help);
 }
 
+Option& Described::list(const std::string& name, Place place, const Range& range,
+                        const std::string& what, const std::string& help) {
+  Option& option = add(name, std::move(place), help);
+  option.range = range;
+  option.expects = what + ", with commas between them";
+  option.list = true;
+  return option;
+}
+
 Option& Described::text(const std::string& name, Place place, const std::string& help) {
   return add(name, std::move(place), help);
 }
@@ -185,47 +228,56 @@ void Described::check() const {
   if (!broken_.empty()) throw UsageError(broken_.front());
 }
 
-std::string flag_of(const std::string& name) {
-  std::string flag = "--" + name;
-  std::replace(flag.begin(), flag.end(), '_', '-');
-  return flag;
+void Described::check_given() const {
+  for (const Option& option : options_) check_option(option);
+  if (!broken_.empty()) throw UsageError(broken_.front());
 }
 
 std::string text_of(const Option& option, int digits) {
-  if (const auto value = number_of(option))
-    return is_whole(option) ? concat(std::int64_t(*value)) : written(*value, digits);
-  return std::visit(Overloaded{[](bool* v) -> std::string { return *v ? "true" : ""; },
-                               [](std::string* v) { return *v; },
-                               [](std::filesystem::path* v) { return v->string(); },
-                               [](std::vector<std::string>* v) { return joined(*v, " "); },
-                               [](const Words& v) { return v.text(); },
-                               [&](const auto&) { return option.absent; }},
-                    option.place);
+  std::vector<std::string> numbers;
+  for_numbers(option, [&](auto value) {
+    if constexpr (std::is_integral_v<decltype(value)>)
+      numbers.push_back(concat(value));
+    else
+      numbers.push_back(written(value, digits));
+  });
+  if (!numbers.empty()) return joined(numbers, ",");
+  return std::visit(
+      Overloaded{
+          [](bool* v) -> std::string { return *v ? "true" : ""; },
+          [](std::string* v) { return *v; }, [](std::filesystem::path* v) { return v->string(); },
+          [&](std::vector<std::string>* v) { return joined(*v, option.list ? "," : " "); },
+          [](const Words& v) { return v.text(); }, [&](const auto&) { return option.absent; }},
+      option.place);
 }
 
 void read_option(const Option& option, const std::string& text) {
   if (text.empty() && !option.if_empty.empty())
-    throw UsageError(concat(flag_of(option.name), " is empty: ", option.if_empty));
+    throw UsageError(concat(option_word(option.name), " is empty: ", option.if_empty));
   const bool absent = !option.absent.empty() && text == option.absent;
-  const auto optional_number = [&]<typename Number>(std::optional<Number>* v) {
-    if (absent)
-      v->reset();
-    else
-      *v = parsed<Number>(option, text);
+  const auto read_number = [&]<typename T>(T* v) {
+    if constexpr (std::is_same_v<T, std::vector<Item<T>>>) {
+      v->clear();
+      for (const std::string& item : split(text)) v->push_back(parsed<Item<T>>(option, item));
+    } else if (absent) {
+      *v = T();
+    } else {
+      *v = parsed<Item<T>>(option, text);
+    }
   };
-  std::visit(
-      Overloaded{[&](bool* v) { *v = text == "true"; },
-                 [&](int* v) { *v = parsed<int>(option, text); },
-                 [&](double* v) { *v = parsed<double>(option, text); },
-                 [&](std::optional<int>* v) { optional_number(v); },
-                 [&](std::optional<double>* v) { optional_number(v); },
-                 [&](std::optional<std::int64_t>* v) { optional_number(v); },
-                 [&](std::string* v) { *v = text; }, [&](std::filesystem::path* v) { *v = text; },
-                 [&](std::vector<std::string>* v) { v->push_back(text); },
-                 [&](const Words& v) {
-                   if (!v.read(text)) refuse(option, text);
-                 }},
-      option.place);
+  std::visit(Overloaded{[&](bool* v) { *v = text == "true"; }, [&](std::string* v) { *v = text; },
+                        [&](std::filesystem::path* v) { *v = text; },
+                        [&](std::vector<std::string>* v) {
+                          if (option.list)
+                            *v = split(text);
+                          else
+                            v->push_back(text);
+                        },
+                        [&](const Words& v) {
+                          if (!v.read(text)) refuse(option, text);
+                        },
+                        [&](auto* v) { read_number(v); }},
+             option.place);
   if (!in_range(option)) refuse(option, text);
 }
 
@@ -234,8 +286,9 @@ void check_option(const Option& option) {
 }
 
 bool is_number(const Option& option) {
-  return is_whole(option) || std::holds_alternative<double*>(option.place) ||
-         std::holds_alternative<std::optional<double>*>(option.place);
+  return std::visit(
+      Overloaded{[]<typename T>(T*) { return kIsNumber<T>; }, [](const Words&) { return false; }},
+      option.place);
 }
 
 std::string legal_values(const Option& option) {

@@ -45,9 +45,10 @@ struct Words {
 };
 
 /// Where the value is. Nothing, in an optional one: decided by the job.
-using Place = std::variant<bool*, int*, double*, std::optional<int>*, std::optional<double>*,
-                           std::optional<std::int64_t>*, std::string*, std::filesystem::path*,
-                           std::vector<std::string>*, Words>;
+using Place = std::variant<bool*, int*, std::uint64_t*, double*, std::optional<int>*,
+                           std::optional<double>*, std::optional<std::int64_t>*, std::vector<int>*,
+                           std::vector<std::uint64_t>*, std::vector<double>*, std::string*,
+                           std::filesystem::path*, std::vector<std::string>*, Words>;
 
 /// One field of a struct of options, which must outlive it.
 struct Option {
@@ -65,6 +66,7 @@ struct Option {
   std::string expects{};   ///< legal values for a sentence, where the above does not say it all
   std::string if_empty{};  ///< of text that may not be empty: what to write
   bool always = false;     ///< the report has it also where it is the default
+  bool list = false;       ///< several values with commas between them, which replace the default
 };
 
 /// Collects what the functions describe() tell.
@@ -75,6 +77,10 @@ class Described {
                  const std::string& help);
   /// On or off.
   Option& flag(const std::string& name, bool* place, const std::string& help);
+  /// Numbers or texts with commas between them, each within the range; `what` they are stands in
+  /// sentences about them.
+  Option& list(const std::string& name, Place place, const Range& range, const std::string& what,
+               const std::string& help);
   /// Text of any kind, or a value by its words.
   Option& text(const std::string& name, Place place, const std::string& help);
   /// One of an enumeration's `values`, by the names that its to_string gives; or an optional one.
@@ -97,6 +103,8 @@ class Described {
   /// Throws UsageError naming the first number out of its range, or the first rule that is broken
   /// (as the values were when they were described).
   void check() const;
+  /// The same for options that programs are given by their names: worded as read_option does.
+  void check_given() const;
 
  private:
   Option& add(const std::string& name, Place place, const std::string& help);
@@ -116,14 +124,19 @@ void check_described(Options options) {
   to.check();
 }
 
-/// How the command line calls an option: "--mask-offset".
-std::string flag_of(const std::string& name);
-
 /// The value, as read_option takes it; empty where there is none.
 std::string text_of(const Option& option, int digits = 9);
 
-/// Sets the value, or adds to a list. Throws UsageError, which names the option's flag and what is
-/// legal.
+/// Throws UsageError as Described::check_given does.
+template <typename Options>
+void check_options(Options options) {
+  Described to;
+  describe(to, options);
+  to.check_given();
+}
+
+/// Sets the value; of texts that are no list, adds one. Throws UsageError, which names the option
+/// (option_word.h) and what is legal.
 void read_option(const Option& option, const std::string& text);
 
 /// Throws UsageError, worded as read_option does, where a number is out of its range.

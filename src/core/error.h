@@ -7,8 +7,8 @@
 
 namespace photohull {
 
-/// What kind of failure it is: for programs, which act on it. The command line makes its exit code of
-/// it (cli/front/exit_code.h).
+/// What kind of failure it is: for programs, which act on it. The command line makes its exit code
+/// of it (cli/front/exit_code.h).
 enum class ErrorKind {
   kFailed,    ///< the job cannot be done with this input or on this machine
   kUsage,     ///< options that are wrong, or do not go together

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 namespace photohull {
 
@@ -9,8 +10,8 @@ namespace photohull {
 /// and nothing is left in the folder. Where the file system has no such locks, nothing is held.
 class FolderLock {
  public:
-  /// Throws Error, which names `option`, when another job holds the folder.
-  FolderLock(const std::filesystem::path& folder, const char* option);
+  /// Throws Error when another job holds the folder, which is the value of `option`.
+  FolderLock(const std::filesystem::path& folder, const std::string& option);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;

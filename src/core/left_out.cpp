@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/option_word.h"
 
 namespace photohull {
 namespace {
@@ -73,14 +74,14 @@ std::vector<std::string> note_left_out(Scene& scene, const std::vector<LeftOutVi
     const bool one = these.size() == 1;
     const std::string said = concat(these.size(), " of ", all, " photographs", verb(reason, one));
     warnings.push_back(concat(said, one ? " and is" : " and are", " left out (", names_of(these),
-                              "); --strict refuses"));
+                              "); ", option_word("strict"), " refuses"));
     problem += concat(problem.empty() ? "" : ", ", said, " (", names_of(these), ")");
   }
   if (strict || !enough)
     throw Error(concat(unusable.front().where, ": ", problem, "; ",
-                       strict ? "--strict asks for all of them"
+                       strict ? concat(option_word("strict"), " asks for all of them")
                               : "at least two of three, and three views, must remain",
-                       ": put them right, or choose others with --views"));
+                       ": put them right, or choose others with ", option_word("views")));
   scene.left_out.insert(scene.left_out.end(), unusable.begin(), unusable.end());
   return warnings;
 }

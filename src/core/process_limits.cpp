@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "core/error.h"
+#include "core/option_word.h"
 
 namespace photohull {
 namespace {
@@ -58,11 +59,12 @@ void check_process_limits(int threads) {
     const double each = stack + (limit.addresses ? kArena : 0);
     const double needs = bytes_in_use(limit.field) + kDevice + 2 * threads * each;
     if (may < needs)
-      throw Error(concat(
-          "this process may take ", std::int64_t(may / kMebibyte), " MiB of memory (ulimit ",
-          limit.option, "), and with the graphics device's ", threads,
-          threads == 1 ? " thread" : " threads", " it needs ", std::int64_t(needs / kMebibyte),
-          " MiB at least: raise the limit", threads == 1 ? "" : ", or give fewer --threads"));
+      throw Error(concat("this process may take ", std::int64_t(may / kMebibyte),
+                         " MiB of memory (ulimit ", limit.option,
+                         "), and with the graphics device's ", threads,
+                         threads == 1 ? " thread" : " threads", " it needs ",
+                         std::int64_t(needs / kMebibyte), " MiB at least: raise the limit",
+                         threads == 1 ? "" : concat(", or give fewer ", option_word("threads"))));
   }
 }
 

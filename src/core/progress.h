@@ -8,8 +8,8 @@
 
 namespace photohull {
 
-/// Asks jobs to stop. Copies are the same token. Safe to use from several threads and, once made, in
-/// signal handlers.
+/// Asks jobs to stop. Copies are the same token. Safe to use from several threads and, once made,
+/// in signal handlers.
 class CancellationToken {
  public:
   void cancel() const { flag_->store(true); }

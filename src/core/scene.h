@@ -79,7 +79,7 @@ struct Scene {
   std::vector<glm::dvec3> points;  ///< sparse points, world; may be empty
   std::vector<SceneTrack> tracks;  ///< features that the file lists, as another program found them
   std::optional<Box> box;          ///< region of interest, world
-  std::string box_source;          ///< e.g. "bbox.txt", "README.txt", "--box", "sparse points"
+  std::string box_source;  ///< e.g. "bbox.txt", "README.txt", option_word("box"), "sparse points"
   /// Names of all views that the file lists, in its order, used or not: what indices count in.
   std::vector<std::string> listed;
   std::vector<LeftOutView> left_out;  ///< chosen and not usable

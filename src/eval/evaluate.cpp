@@ -9,6 +9,7 @@
 
 #include "core/box.h"
 #include "core/error.h"
+#include "core/option_word.h"
 #include "eval/nearest_sample.h"
 #include "eval/surface_samples.h"
 #include "eval/topology.h"
@@ -19,6 +20,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kPointCell = 0.0005;  ///< of the diagonal: what point clouds are thinned to
+constexpr std::size_t kMostThresholds = 1000;
 constexpr double kUnseenReach = 0.05;  ///< of the diagonal: farther results count as seen
 
 /// Calls function(i, hint) for all i < count in parallel, in blocks between which a user can
@@ -111,7 +113,7 @@ Part sum_up(const Measured& m, const std::vector<char>& wanted,
   const std::vector<double> distance = pick(m.distance, wanted);
   Part part;
   part.share = double(distance.size()) / double(m.distance.size());
-  part.accuracy = quantile(distance, options.accuracy_share);
+  part.accuracy = quantile(distance, kAccuracyShare);
   part.to_truth = distance_stats(distance);
   if (!m.signed_distance.empty()) part.mean_signed = mean_of(pick(m.signed_distance, wanted));
   for (const double t : options.thresholds) {
@@ -138,7 +140,7 @@ std::vector<glm::dvec3> wanted_samples(const Truth& truth, const EvaluateOptions
     if (truth.views()[i] >= options.min_views) wanted.push_back(truth.samples()[i]);
   if (wanted.empty())
     throw Error(concat("no sample of the truth is seen by ", options.min_views,
-                       " or more cameras; lower --min-views"));
+                       " or more cameras; lower ", option_word("min_views")));
   return wanted;
 }
 
@@ -226,11 +228,11 @@ void compare_frames(const std::vector<glm::dvec3>& result, const std::vector<glm
     return part("(%.4g %.4g %.4g) to (%.4g %.4g %.4g)", x.min.x, x.min.y, x.min.z, x.max.x, x.max.y,
                 x.max.z);
   };
-  e.warnings.push_back(concat(least > kMeet
-                                  ? part("the result is %.4g times as large as the truth", ratio)
-                                  : "the result lies elsewhere than the truth",
-                              " (most of it in ", corners(a), ", of the truth in ", corners(b),
-                              "): are they in one frame and unit? --align aligns them"));
+  e.warnings.push_back(
+      concat(least > kMeet ? part("the result is %.4g times as large as the truth", ratio)
+                           : "the result lies elsewhere than the truth",
+             " (most of it in ", corners(a), ", of the truth in ", corners(b),
+             "): are they in one frame and unit? ", option_word("align"), " aligns them"));
 }
 
 void check_volume(const TriMesh& result, const Truth& truth, Evaluation& e) {
@@ -252,25 +254,24 @@ void check_volume(const TriMesh& result, const Truth& truth, Evaluation& e) {
 
 }  // namespace
 
+void describe(Described& to, EvaluateOptions& o) {
+  to.list("thresholds", &o.thresholds, above(0, 1), "fractions above 0 and up to 1",
+          "distances to count within, fractions of the truth's diagonal");
+  to.list("absolute", &o.absolute, above(0), "distances above 0", "further ones in world units");
+  to.number("samples", &o.samples, from_to(1000, 20000000), "", "points to measure the result at");
+  to.number("seed", &o.seed, at_least(0), "", "of the points");
+  to.number("min_views", &o.min_views, from_to(1, 255), "",
+            "cameras that must see a part of the truth for it to count");
+  to.number("columns", &o.columns, from_to(16, 4096), "",
+            "columns of rays along a side of the box, by which volumes are compared");
+}
+
 void EvaluateOptions::validate() const {
-  const auto fraction = [](const char* name, double value) {
-    if (!(value > 0 && value <= 1))
-      throw UsageError(concat(name, " must be above 0 and at most 1, not ", value));
-  };
-  if (thresholds.empty() || thresholds.size() > 1000 || absolute.size() > 1000)
-    throw UsageError("--thresholds and --absolute take up to 1000 values, the former at least one");
-  for (const double t : thresholds) fraction("--thresholds (fractions of the diagonal)", t);
-  for (const double d : absolute)
-    if (!(d > 0 && std::isfinite(d)))
-      throw UsageError(concat("--absolute (world units) must be above 0, not ", d));
-  fraction("the accuracy's share", accuracy_share);
-  fraction("the completeness threshold", completeness_threshold);
-  if (samples < 1000 || samples > 20000000)
-    throw UsageError(concat("--samples must be from 1000 to 20000000, not ", samples));
-  if (min_views < 1 || min_views > 255)
-    throw UsageError(concat("--min-views must be from 1 to 255, not ", min_views));
-  if (columns < 16 || columns > 4096)
-    throw UsageError(concat("the columns must be from 16 to 4096, not ", columns));
+  check_options(*this);
+  if (thresholds.empty() || thresholds.size() > kMostThresholds ||
+      absolute.size() > kMostThresholds)
+    throw UsageError(concat(option_word("thresholds"), " and ", option_word("absolute"),
+                            " take up to ", kMostThresholds, " values, the former at least one"));
 }
 
 Evaluation evaluate(const TriMesh& result, const Truth& truth, const EvaluateOptions& options,
@@ -314,7 +315,7 @@ Evaluation evaluate(const TriMesh& result, const Truth& truth, const EvaluateOpt
   e.seen = sum_up(measured, measured.seen, to_result, truth.diagonal(), options);
   if (none_seen) e.seen.share = 0;
   e.to_result = distance_stats(to_result);
-  e.completeness = share_within(to_result, options.completeness_threshold * truth.diagonal());
+  e.completeness = share_within(to_result, kCompletenessThreshold * truth.diagonal());
   e.hausdorff95 = std::max(e.all.to_truth.q95, e.to_result.q95);
   e.chamfer = 0.5 * (e.all.to_truth.mean + e.to_result.mean);
   check_volume(result, truth, e);

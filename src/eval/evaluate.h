@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/describe.h"
 #include "core/mesh.h"
 #include "core/progress.h"
 #include "eval/align.h"
@@ -16,20 +17,24 @@
 
 namespace photohull::eval {
 
+/// Share of the result that accuracy looks at, as [Seitz06] has it.
+inline constexpr double kAccuracyShare = 0.9;
+/// Distance within which a part of the truth counts as there, of the truth's diagonal.
+inline constexpr double kCompletenessThreshold = 0.005;
+
 struct EvaluateOptions {
-  std::vector<double> thresholds = {0.001, 0.0025, 0.005,
-                                    0.01};  ///< of the truth's diagonal; (0, 1]
-  std::vector<double> absolute;             ///< further thresholds, world units; > 0
-  double accuracy_share = 0.9;              ///< of the result that accuracy looks at; (0, 1]
-  double completeness_threshold = 0.005;    ///< of the truth's diagonal; (0, 1]
-  int samples = 200000;                     ///< on the result; [1000, 20000000]
-  std::uint64_t seed = 1;                   ///< of the samples
-  int min_views = 1;  ///< cameras that must see a sample of the truth; [1, 255]
-  int columns = 256;  ///< of measure_overlap; [16, 4096]
+  std::vector<double> thresholds = {0.001, 0.0025, 0.005, 0.01};  ///< of the truth's diagonal
+  std::vector<double> absolute;                                   ///< further ones, world units
+  int samples = 200000;                                           ///< on the result
+  std::uint64_t seed = 1;                                         ///< of the samples
+  int min_views = 1;  ///< cameras that must see a sample of the truth
+  int columns = 256;  ///< of measure_overlap
 
   /// Throws UsageError naming the option.
   void validate() const;
 };
+
+void describe(Described& to, EvaluateOptions& options);
 
 /// Shares within one threshold, in [0, 1].
 struct Score {

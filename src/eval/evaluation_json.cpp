@@ -111,11 +111,11 @@ std::string to_json(const Evaluation& e) {
   j["gt_faces"] = e.truth_faces;
   j["gt_points_total"] = e.truth_samples;
   j["gt_points_visible"] = e.truth_samples_seen;
-  j["accuracy_q"] = e.options.accuracy_share;
+  j["accuracy_q"] = kAccuracyShare;
   put_part(e.all, e.truth_diagonal, j);
   j.erase("share");
   j.erase("median");
-  j["completeness_t"] = e.options.completeness_threshold;
+  j["completeness_t"] = kCompletenessThreshold;
   j["completeness"] = e.completeness;
   j["gt_to_recon"] = stats(e.to_result);
   j["hausdorff95"] = e.hausdorff95;

@@ -9,6 +9,7 @@
 #include <mutex>
 
 #include "core/error.h"
+#include "core/option_word.h"
 #include "eval/window_agreement.h"
 #include "photo/noise.h"
 
@@ -17,6 +18,7 @@ namespace {
 
 constexpr double kTexture = 3;  // standard deviations of noise
 constexpr int kForeground = 128;
+constexpr const char* kWindows = "an odd number of pixels from 3 to 63";
 constexpr float kKnown = 0.999f;  // alpha
 
 std::optional<double> ratio(double part, double whole) {
@@ -157,10 +159,17 @@ void add_warnings(PhotoAgreement& result) {
 
 }  // namespace
 
+void describe(Described& to, PhotoOptions& o) {
+  describe(to, o.predict);
+  to.number("window", &o.window, from_to(3, 63), "pixels", "edge of the windows compared, pixels")
+      .expects = kWindows;
+}
+
 void PhotoOptions::validate() const {
   predict.validate();
-  if (window < 3 || window > 63 || window % 2 == 0)
-    throw UsageError(concat("--window must be odd, from 3 to 63, not ", window));
+  check_options(*this);
+  if (window % 2 == 0)
+    throw UsageError(concat(option_word("window", window), ": expected ", kWindows));
 }
 
 std::optional<double> PhotoScore::zncc() const { return ratio(score_sum, double(judged)); }

@@ -17,11 +17,13 @@ namespace photohull::eval {
 
 struct PhotoOptions {
   PredictOptions predict;
-  int window = 7;  ///< edge of the windows compared, pixels; odd, in [3, 63]
+  int window = 7;  ///< edge of the windows compared, pixels; odd
 
   /// Throws UsageError naming the option.
   void validate() const;
 };
+
+void describe(Described& to, PhotoOptions& options);
 
 /// One held-out photograph, or all of them together. The foreground is what the mask covers by half
 /// or more, all of the photograph where there is none; pixels that were not photographed (alpha 0)

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "core/error.h"
+#include "core/option_word.h"
 
 namespace photohull::eval {
 namespace {
@@ -158,14 +159,19 @@ class Predictor {
 
 }  // namespace
 
+void describe(Described& to, PredictOptions& o) {
+  to.number("blend", &o.blend, from_to(1, 16), "", "photographs blended at a point");
+  to.number("least_angle", &o.least_angle, below(0, 90), "degrees",
+            "degrees between a ray that is predicted and one that lends colour");
+  to.number("most_angle", &o.most_angle, above(0, 90), "degrees",
+            "the greatest such angle at which colour is lent");
+}
+
 void PredictOptions::validate() const {
-  if (blend < 1 || blend > 16)
-    throw UsageError(concat("the photographs to blend must be from 1 to 16, not ", blend));
-  if (!(most_angle > 0 && most_angle <= 90))
-    throw UsageError(concat("the most angle must be above 0 and at most 90, not ", most_angle));
-  if (!(least_angle >= 0 && least_angle < most_angle))
-    throw UsageError(
-        concat("--least-angle must be from 0 to below ", most_angle, ", not ", least_angle));
+  check_options(*this);
+  if (least_angle >= most_angle)
+    throw UsageError(concat(option_word("least_angle"), " must be from 0 to below ", most_angle,
+                            ", not ", least_angle));
 }
 
 Prediction predict_photo(const TriMesh& mesh, const RayScene& rays, const Camera& camera,

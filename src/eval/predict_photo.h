@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/describe.h"
 #include "core/image.h"
 #include "core/mesh.h"
 #include "raycast/ray_scene.h"
@@ -13,8 +14,7 @@
 namespace photohull::eval {
 
 struct PredictOptions {
-  /// Photographs blended at a point; [1, 16].
-  int blend = 4;
+  int blend = 4;  ///< photographs blended at a point
   /// Angle at the point between the ray predicted and one that lends colour, degrees; from
   /// `least_angle` to `most_angle`, 0 <= least < most <= 90. Colours from nearby views hide errors
   /// of depth, those from far away show them.
@@ -24,6 +24,8 @@ struct PredictOptions {
   /// Throws UsageError naming the option.
   void validate() const;
 };
+
+void describe(Described& to, PredictOptions& options);
 
 enum class PixelState : unsigned char {
   kMiss,   ///< the mesh is not there

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "core/option_word.h"
 #include "eval/error_mesh.h"
 
 namespace photohull::eval {
@@ -74,7 +75,8 @@ Reliability reliability_of(const std::vector<float>& confidence,
                            const std::vector<double>& distances, double distance) {
   PHOTOHULL_CHECK_OP(confidence.size(), ==, distances.size());
   if (!(distance > 0 && std::isfinite(distance)))
-    throw UsageError(concat("--reliability (world units) must be above 0, not ", distance));
+    throw UsageError(
+        concat(option_word("reliability"), " (world units) must be above 0, not ", distance));
   std::vector<double> seen, errors;
   for (std::size_t i = 0; i < confidence.size(); ++i) {
     if (!(confidence[i] >= 0 && confidence[i] <= 1))
@@ -120,9 +122,9 @@ std::vector<double> distances_from(const TriMesh& result, const Truth& truth, Pr
 Reliability measure_reliability(const TriMesh& result, const Truth& truth, double distance,
                                 Progress& progress) {
   if (result.confidence.empty())
-    throw Error(
-        "the result has no confidence to judge: --reliability needs a PLY with the vertex "
-        "property 'confidence', such as the mesh.ply of photohull reconstruct");
+    throw Error(concat("the result has no confidence to judge: ", option_word("reliability"),
+                       " needs a PLY with the vertex property 'confidence', such as the mesh.ply "
+                       "of photohull reconstruct"));
   PHOTOHULL_CHECK_OP(result.confidence.size(), ==, result.positions.size());
   return reliability_of(result.confidence, distances_from(result, truth, progress), distance);
 }

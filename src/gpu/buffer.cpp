@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/option_word.h"
 #include "gpu/gl.h"
 #include "gpu/gl_error.h"
 #include "gpu/limits.h"
@@ -30,8 +31,9 @@ void Buffer::bind_storage(unsigned binding) const {
   const std::size_t most = std::size_t(current_limits().ssbo_bytes);
   if (bytes_ > most)
     throw Error(concat("a list of ", (bytes_ >> 20) + 1, " MiB is more than the ", most >> 20,
-                       " MiB that this graphics device gives a kernel in one block; lower "
-                       "--resolution, use fewer --views or give another --device"));
+                       " MiB that this graphics device gives a kernel in one block; lower ",
+                       option_word("resolution"), ", use fewer ", option_word("views"),
+                       " or give another ", option_word("device")));
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, id_);
 }
 

@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "core/error.h"
+#include "core/option_word.h"
 #include "core/process_limits.h"
 #include "gpu/egl_devices.h"
 #include "gpu/gl.h"
@@ -115,14 +116,15 @@ DeviceInfo choose_device(const std::vector<DeviceInfo>& devices, const std::stri
     const char* end = selection.data() + selection.size();
     const auto parsed = std::from_chars(selection.data(), end, index);
     if (parsed.ec != std::errc() || parsed.ptr != end)
-      throw UsageError("--device: expected auto, software or an index, found '" + selection + "'");
+      throw UsageError(concat(option_word("device"),
+                              ": expected auto, software or an index, found '", selection, "'"));
     for (const DeviceInfo& d : devices) {
       if (d.index != index) continue;
-      if (!d.problem.empty()) throw Error(concat("--device ", index, ": ", d.problem));
+      if (!d.problem.empty()) throw Error(concat(option_word("device", index), ": ", d.problem));
       return d;
     }
-    throw UsageError(concat("--device ", index, ": there are devices 0 to ", devices.size() - 1,
-                            "; see 'photohull devices'"));
+    throw UsageError(concat(option_word("device", index), ": there are devices 0 to ",
+                            devices.size() - 1, "; see 'photohull devices'"));
   }
   for (const bool software : {false, true}) {
     if (selection == "software" && !software) continue;

@@ -1,5 +1,6 @@
 #include "gpu/gl_error.h"
 
+#include "core/option_word.h"
 #include "gpu/gl.h"
 
 namespace photohull::gpu {
@@ -31,15 +32,16 @@ unsigned pending_error() {
 void throw_gl_error(unsigned error, const std::string& what, const std::string& mend) {
   if (error == GL_OUT_OF_MEMORY)
     throw Error(concat("the graphics device is out of memory at ", what, "; ", mend,
-                       ", or give another --device"),
+                       ", or give another ", option_word("device")),
                 ErrorKind::kDevice);
   if (error == GL_CONTEXT_LOST)
     throw Error(concat("the graphics device was lost at ", what,
                        ": its driver was reset, or it was removed; run the same command again, or "
-                       "give another --device"),
+                       "give another ",
+                       option_word("device")),
                 ErrorKind::kDevice);
-  throw Error(concat("OpenGL failed at ", what, ": ", name_of(error),
-                     "; give another --device, such as software"));
+  throw Error(concat("OpenGL failed at ", what, ": ", name_of(error), "; give another ",
+                     option_word("device"), ", such as software"));
 }
 
 void check_gl(const std::string& what) {

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "core/option_word.h"
 #include "gpu/gl.h"
 #include "gpu/gl_error.h"
 #include "gpu/limits.h"
@@ -47,12 +48,12 @@ void check_size(int width, int height, int layers) {
   if (std::max(width, height) > limits.texture_size)
     throw Error(concat("this graphics device has no images of ", width, "x", height,
                        " pixels, only up to ", limits.texture_size,
-                       " a side; read the photographs smaller (--image-scale), or give another "
-                       "--device"));
+                       " a side; read the photographs smaller (", option_word("image_scale"),
+                       "), or give another ", option_word("device")));
   if (layers > limits.texture_layers)
     throw Error(concat("this graphics device takes ", limits.texture_layers,
-                       " images at once, and ", layers,
-                       " were given; use fewer views (--views), or give another --device"));
+                       " images at once, and ", layers, " were given; use fewer views (",
+                       option_word("views"), "), or give another ", option_word("device")));
 }
 
 }  // namespace
@@ -68,7 +69,7 @@ TextureArray::TextureArray(TextureFormat format, int width, int height, int laye
   if (error != GL_NO_ERROR) {
     glDeleteTextures(1, &id_);
     throw_gl_error(error, concat(layers, " images of ", width, "x", height),
-                   "use fewer views (--views) or smaller images");
+                   concat("use fewer views (", option_word("views"), ") or smaller images"));
   }
   glTextureParameteri(id_, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   glTextureParameteri(id_, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
@@ -140,8 +141,8 @@ void TextureArray::set_anisotropy(float most) {
                              reinterpret_cast<const char*>(glGetStringi(GL_EXTENSIONS, GLuint(i))))
                              .ends_with("_texture_filter_anisotropic");
   if (!offered)
-    throw Error(
-        "this device has no anisotropic texture filter of its own; use --sampler anisotropic");
+    throw Error(concat("this device has no anisotropic texture filter of its own; use ",
+                       option_word("sampler", "anisotropic")));
   GLfloat limit = 1;
   glGetFloatv(GL_MAX_TEXTURE_MAX_ANISOTROPY, &limit);
   glTextureParameterf(id_, GL_TEXTURE_MAX_ANISOTROPY, std::min(most, limit));

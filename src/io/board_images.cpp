@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "core/option_word.h"
 #include "io/find_files.h"
 #include "io/natural_less.h"
 #include "io/text_file.h"
@@ -29,7 +30,7 @@ struct Pattern {
   explicit Pattern(const std::string& text) {
     const std::size_t camera = text.find(kCamera), moment = text.find(kMoment);
     const std::string wanted =
-        concat("--rig ", text, ": expected a pattern with ", kCamera, " and ", kMoment,
+        concat(option_word("rig", text), ": expected a pattern with ", kCamera, " and ", kMoment,
                " once each and something between them, such as ", kCamera, "/", kMoment);
     if (camera == std::string::npos || moment == std::string::npos ||
         text.rfind(kCamera) != camera || text.rfind(kMoment) != moment)
@@ -110,8 +111,8 @@ RigImages list_rig_images(const fs::path& folder, const std::string& pattern) {
     moments.insert(match->second);
   }
   if (cameras.empty())
-    throw Error(concat(folder.string(), ": none of ", found.size(), " pictures is called as --rig ",
-                       pattern, " says"));
+    throw Error(concat(folder.string(), ": none of ", found.size(), " pictures is called as ",
+                       option_word("rig", pattern), " says"));
   RigImages rig;
   rig.moments.assign(moments.begin(), moments.end());
   for (const auto& [camera, images] : cameras) {

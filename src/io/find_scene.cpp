@@ -1,6 +1,7 @@
 #include "io/find_scene.h"
 
 #include "core/error.h"
+#include "core/option_word.h"
 #include "io/formats.h"
 #include "io/scene_readers.h"
 #include "io/text_file.h"
@@ -27,7 +28,7 @@ SceneLocation search_folder(const fs::path& folder, std::optional<SceneFormat> w
     else if (!is_colmap(found->format) || !is_colmap(format))  // one model saved twice is usual
       found->warnings.push_back(concat(folder.string(), " also holds a ", to_string(format),
                                        " scene, passed over for the ", to_string(found->format),
-                                       " one; use --format to choose"));
+                                       " one; use ", option_word("format"), " to choose"));
   }
   if (!found)
     throw Error(concat(folder.string(), ": no scene found here (looked for ", tried,
@@ -72,12 +73,14 @@ SceneLocation find_scene(const fs::path& path, std::optional<SceneFormat> format
     throw Error(concat(path.string(),
                        ": is a calibration, which lists no photographs of an object; make a scene "
                        "with photohull convert ",
-                       path.string(), " --images FOLDER --to FORMAT --out DIR"));
+                       path.string(), " ", option_word("images", "FOLDER"), " ",
+                       option_word("to", "FORMAT"), " ", option_word("out", "DIR")));
   if (!format) format = format_of_file(path);
   if (!format)
     throw Error(concat(path.string(),
                        ": this is no scene's file by its name and beginning; give the folder that "
-                       "it belongs to, or --format"));
+                       "it belongs to, or ",
+                       option_word("format")));
   // A bare file name has an empty parent, which is no folder that can be opened.
   const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
   return {*format, format_entry(*format).reads_folder ? parent : parent / path.filename(), {}};

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/left_out.h"
+#include "core/option_word.h"
 #include "io/find_scene.h"
 #include "io/formats.h"
 #include "io/raw_scene.h"
@@ -33,11 +34,11 @@ void choose_box(const LoadSceneOptions& options, const fs::path& given, const Ra
   };
   const fs::path folder = raw.file.parent_path();
   std::error_code ignored;
-  if (set(options.box, "--box")) {
+  if (set(options.box, option_word("box"))) {
     const std::string axes = sort_corners(*scene.box);
     if (!axes.empty())
-      scene.warnings.push_back(
-          concat("the corners of --box are swapped along ", axes, ": they were sorted"));
+      scene.warnings.push_back(concat("the corners of ", option_word("box"), " are swapped along ",
+                                      axes, ": they were sorted"));
     return;
   }
   if (set(read_bbox_file(folder), "bbox.txt")) return;
@@ -61,10 +62,10 @@ std::vector<std::size_t> chosen_views(const LoadSceneOptions& options,
   if (options.hold_out.empty()) return kept;
   const bool held_name = std::find(names.begin(), names.end(), options.hold_out) != names.end();
   if (!held_name && (options.hold_out == kAllViews || parse_spread(options.hold_out)))
-    throw UsageError(concat("--hold-out ", options.hold_out,
+    throw UsageError(concat(option_word("hold_out", options.hold_out),
                             ": name the views to leave out, e.g. 0,8,16, for at least ",
                             kFewestViews, " must be left"));
-  left_out = select_views(options.hold_out, names, "--hold-out");
+  left_out = select_views(options.hold_out, names, option_word("hold_out"));
   std::set_difference(kept.begin(), kept.end(), left_out.begin(), left_out.end(),
                       std::back_inserter(rest));
   return rest;
@@ -122,7 +123,7 @@ std::vector<std::size_t> fill_usable(const LoadSceneOptions& options, const RawS
   if (chosen.size() < kFewestViews)
     throw Error(concat(raw.file.string(), ": ", chosen.size(),
                        chosen.size() == 1 ? " view is" : " views are",
-                       !options.hold_out.empty() ? " left by --hold-out"
+                       !options.hold_out.empty() ? concat(" left by ", option_word("hold_out"))
                        : options.views.empty()   ? " listed"
                                                  : " selected",
                        ", but at least ", kFewestViews, " are needed"));
@@ -164,10 +165,11 @@ void thin_out(const LoadSceneOptions& options, std::vector<std::size_t>& usable,
   scene.views = std::move(views);
   usable = std::move(kept);
   if (unasked)
-    scene.warnings.push_back(concat(count, " of ", all,
-                                    " photographs are used, spread over all directions: more "
-                                    "would add little but time (--views all takes all, --views "
-                                    "spread:N another number)"));
+    scene.warnings.push_back(concat(
+        count, " of ", all,
+        " photographs are used, spread over all directions: more would add little but time (",
+        option_word("views", "all"), " takes all, ", option_word("views", "spread:N"),
+        " another number)"));
 }
 
 /// Views chosen by the options, with their photographs, cameras and tracks.
@@ -184,9 +186,9 @@ std::vector<RawView> fill_views(const LoadSceneOptions& options, const RawScene&
 
 RawScene read_calibrated(const fs::path& path, const CalibratedImages& images) {
   if (!is_file(path) || !is_calibration(path))
-    throw Error(concat(path.string(),
-                       ": is no file of photohull calibrate, which is what --step, --angles and "
-                       "--moment are for"));
+    throw Error(concat(path.string(), ": is no file of photohull calibrate, which is what ",
+                       option_word("step"), ", ", option_word("angles"), " and ",
+                       option_word("moment"), " are for"));
   return read_calibration(path, images);
 }
 
@@ -216,15 +218,16 @@ Words mask_words(LoadSceneOptions& o) {
 
 void LoadSceneOptions::validate() const {
   parse_spread(views);
-  const std::string pixel = flag_of("pixel_center"), given = flag_of("masks"),
-                    plates = flag_of("background");
+  const std::string given = option_word("masks"), plates = option_word("background");
   if (pixel_center && *pixel_center != 0.0 && *pixel_center != 0.5 && *pixel_center != 1.0)
-    throw UsageError(concat(pixel, " ", *pixel_center, ": expected ", kPixelCenters));
+    throw UsageError(
+        concat(option_word("pixel_center", *pixel_center), ": expected ", kPixelCenters));
   if (masks == MaskSource::kDirectory && mask_directory.empty())
     throw UsageError(concat(
         given, " is empty: expected auto, background, none or the folder that holds the masks"));
   if (!background.empty() && masks == MaskSource::kNone)
-    throw UsageError(concat(plates, " and ", given, " none exclude each other: give one"));
+    throw UsageError(
+        concat(plates, " and ", option_word("masks", "none"), " exclude each other: give one"));
   if (!background.empty() && masks == MaskSource::kDirectory)
     throw UsageError(concat(plates, " and a folder of ", given, " exclude each other: give one"));
   if (!images.empty() && calibrated)
@@ -233,7 +236,7 @@ void LoadSceneOptions::validate() const {
   try {
     Box sorted = *box;
     sort_corners(sorted);
-    check_box(sorted, flag_of("box"));
+    check_box(sorted, option_word("box"));
   } catch (const Error& failure) {
     throw UsageError(failure.what());
   }
@@ -246,8 +249,8 @@ void describe_views(Described& to, LoadSceneOptions& o) {
                  kEnoughViews, " where there are more)"))
       .if_empty = "write e.g. 0-10,15";
   to.text("hold_out", &o.hold_out,
-          "views to leave out of these, a list of the same kind; 'photohull evaluate --photos' "
-          "judges by them")
+          concat("views to leave out of these, a list of the same kind; '",
+                 command_word("evaluate", "photos"), "' judges by them"))
       .if_empty = "write e.g. 0,8,16";
 }
 
@@ -277,7 +280,8 @@ Scene load_scene(const fs::path& path, const LoadSceneOptions& options) {
   options.validate();
   std::error_code ignored;
   if (!options.images.empty() && !fs::is_directory(options.images, ignored))
-    throw Error(concat(options.images.string(), ": is no folder of photographs (--images)"));
+    throw Error(concat(options.images.string(), ": is no folder of photographs (",
+                       option_word("images"), ")"));
   std::optional<CalibratedImages> calibrated = options.calibrated;
   if (!options.images.empty() && is_file(path) && is_calibration(path))
     calibrated = CalibratedImages{options.images, {}, {}, {}};

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "core/error.h"
+#include "core/option_word.h"
 #include "io/camera_checks.h"
 #include "io/find_files.h"
 #include "io/json_file.h"
@@ -80,7 +81,8 @@ std::string image_of_camera(const CalibratedImages& images, const std::string& c
     throw Error(concat("the rig's camera ", camera, " has no picture (looked for ", there,
                        ".* and ", there, "/",
                        images.moment.empty() ? std::string("*") : images.moment + ".*", ")"));
-  throw Error(concat(there, " holds ", inside.size(), " pictures; say with --moment which one"));
+  throw Error(concat(there, " holds ", inside.size(), " pictures; say with ", option_word("moment"),
+                     " which one"));
 }
 
 void read_rig(const JsonNode& root, const CalibratedImages& images, RawScene& scene) {
@@ -192,7 +194,8 @@ CameraLens calibrated_lens(const fs::path& file, const std::string& camera) {
   }
   throw Error(concat(file.string(), ": is a rig's calibration with the cameras ",
                      names.substr(0, 200),
-                     camera.empty() ? "; --lens-from takes one camera's, or give --rig"
+                     camera.empty() ? concat("; ", option_word("lens_from"),
+                                             " takes one camera's, or give ", option_word("rig"))
                                     : ", and none is called " + camera));
 }
 
@@ -201,7 +204,8 @@ RawScene read_calibration(const fs::path& file, const CalibratedImages& images) 
   const JsonNode root(json, file.string());
   std::error_code failure;
   if (!fs::is_directory(images.folder, failure))
-    throw Error(concat(images.folder.string(), ": is no folder of photographs (--images)"));
+    throw Error(concat(images.folder.string(), ": is no folder of photographs (",
+                       option_word("images"), ")"));
   RawScene scene;
   scene.format = SceneFormat::kOpenCv;
   scene.file = file;
@@ -209,11 +213,12 @@ RawScene read_calibration(const fs::path& file, const CalibratedImages& images) 
   const std::string kind = root[kMark].text();
   const bool stepped = images.step || !images.angles.empty();
   if (stepped && kind != "turntable")
-    throw UsageError(concat("--step and --angles are for turntables; ", file.string(), " is a ",
-                            kind, "'s calibration"));
+    throw UsageError(concat(option_word("step"), " and ", option_word("angles"),
+                            " are for turntables; ", file.string(), " is a ", kind,
+                            "'s calibration"));
   if (!images.moment.empty() && kind != "rig")
-    throw UsageError(
-        concat("--moment is for rigs; ", file.string(), " is a ", kind, "'s calibration"));
+    throw UsageError(concat(option_word("moment"), " is for rigs; ", file.string(), " is a ", kind,
+                            "'s calibration"));
   if (kind == "rig")
     read_rig(root, images, scene);
   else if (kind == "turntable")
@@ -224,8 +229,10 @@ RawScene read_calibration(const fs::path& file, const CalibratedImages& images) 
     throw Error(concat(root[kMark].where(), ": '", kind.substr(0, 40),
                        "' is not known (camera, rig, turntable)"));
   if (scene.views.empty())
-    throw Error(concat(images.folder.string(), ": none of its pictures is called as one of ",
-                       file.string(), kind == "turntable" ? "; give --step or --angles" : ""));
+    throw Error(concat(
+        images.folder.string(), ": none of its pictures is called as one of ", file.string(),
+        kind == "turntable" ? concat("; give ", option_word("step"), " or ", option_word("angles"))
+                            : ""));
   return scene;
 }
 

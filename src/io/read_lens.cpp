@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/option_word.h"
 #include "core/scaled_size.h"
 #include "io/find_scene.h"
 #include "io/formats.h"
@@ -49,8 +50,8 @@ CameraLens lens_of_scene(const fs::path& path, int width, int height) {
       first = lens;
     else if (!alike(first, lens))
       throw Error(concat(path.string(), ": lists several lenses (that of ", view.listed,
-                         " is another than that of ", raw.views[0].listed,
-                         "); --lens-from takes a file of one lens"));
+                         " is another than that of ", raw.views[0].listed, "); ",
+                         option_word("lens_from"), " takes a file of one lens"));
   }
   return first;
 }

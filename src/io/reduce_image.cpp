@@ -30,8 +30,7 @@ Mask reduced(const Mask& mask, const glm::dvec2& scale) {
   if (mask.empty() || scale == glm::dvec2(1)) return mask;
   Mask out;
   AreaAverage average(mask.width, mask.height, 1.0 / scale, 1, [&](const float* row) {
-    for (int x = 0; x < average.width(); ++x)
-      out.coverage.push_back(std::uint8_t(row[x] + 0.5f));
+    for (int x = 0; x < average.width(); ++x) out.coverage.push_back(std::uint8_t(row[x] + 0.5f));
   });
   out.width = average.width(), out.height = average.height();
   std::vector<float> row(std::size_t(mask.width));

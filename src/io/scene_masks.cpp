@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/option_word.h"
 #include "io/find_files.h"
 #include "io/image_file.h"
 #include "io/text_file.h"
@@ -70,7 +71,7 @@ void check_mask_size(const RawView& raw, const SourceView& view) {
   if (size.width != k.width || size.height != k.height)
     throw Error(concat(view.mask.string(), ": the mask is ", size.width, " x ", size.height,
                        " but its image ", view.image.string(), " is ", k.width, " x ", k.height,
-                       "; use a mask of the image's size or --masks none"));
+                       "; use a mask of the image's size or ", option_word("masks", "none")));
 }
 
 /// Views that a folder holds no mask for.
@@ -101,13 +102,12 @@ void note_unmasked(const Unmasked& without, bool strict, Scene& scene) {
   if (without.names.empty()) return;
   const std::string said = counted(without, scene.views.size());
   if (strict)
-    throw Error(concat(said, "; --strict asks for all of them: add them (for ",
+    throw Error(concat(said, "; ", option_word("strict"), " asks for all of them: add them (for ",
                        without.names.front(), ", ", looked_for(without.names.front()),
-                       " were looked for) or leave these views out with --views"));
+                       " were looked for) or leave these views out with ", option_word("views")));
   scene.warnings.push_back(
-      concat(said,
-             ": these are used without (or with what their alpha or background tells); "
-             "--strict refuses"));
+      concat(said, ": these are used without (or with what their alpha or background tells); ",
+             option_word("strict"), " refuses"));
 }
 
 void attach_from_directory(const LoadSceneOptions& options, const std::vector<RawView>& raw,
@@ -135,7 +135,8 @@ void attach_stated(const fs::path& scene_folder, const RawView& raw, SourceView&
       view.mask = scene_folder / path;
   if (!is_file(view.mask))
     throw Error(concat(raw.where, ": mask_path names ", view.mask.string(),
-                       ", but there is no such file; add it or use --masks none"));
+                       ", but there is no such file; add it or use ",
+                       option_word("masks", "none")));
 }
 
 void attach_automatically(const LoadSceneOptions& options, const fs::path& scene_folder,
@@ -185,16 +186,16 @@ void attach_plates(const LoadSceneOptions& options, const std::vector<RawView>& 
   if (given.empty()) return;
   const bool folder = is_folder(given);
   if (!folder && !is_file(given))
-    throw Error(concat(given.string(),
-                       ": there is no such background; --background takes a photograph without the "
-                       "object, or a folder with one for every view"));
+    throw Error(
+        concat(given.string(), ": there is no such background; ", option_word("background"),
+               " takes a photograph without the object, or a folder with one for every view"));
   for (std::size_t i = 0; i < scene.views.size(); ++i) {
     SourceView& view = scene.views[i];
     view.plate = folder ? find_mask(given, view.image, raw[i].listed) : given;
     if (view.plate.empty())
       throw Error(concat(given.string(), ": there is no background for ", view.name,
                          " (looked for ", looked_for(view.name),
-                         "); add it or leave the view out with --views"));
+                         "); add it or leave the view out with ", option_word("views")));
     const ImageSize size = read_image_size(view.plate);
     const Intrinsics& k = view.camera.intrinsics;
     if (size.width != k.width || size.height != k.height)

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "core/option_word.h"
+
 namespace photohull::io {
 
 /// Indices, ascending and unique, of the names that a selection like "0-10,15,left_*" means; all
@@ -11,6 +13,6 @@ namespace photohull::io {
 /// or matches nothing.
 std::vector<std::size_t> select_views(const std::string& selection,
                                       const std::vector<std::string>& names,
-                                      const std::string& option = "--views");
+                                      const std::string& option = option_word("views"));
 
 }  // namespace photohull::io

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "core/option_word.h"
 #include "io/natural_less.h"
 #include "io/text_file.h"
 
@@ -88,7 +89,7 @@ std::optional<std::size_t> parse_spread(const std::string& selection) {
   if (!selection.starts_with(kPrefix)) return std::nullopt;
   const auto count = parse_integer(std::string_view(selection).substr(kPrefix.size()));
   if (!count || *count < kFewest)
-    throw UsageError(concat("--views ", selection, ": expected ", kPrefix,
+    throw UsageError(concat(option_word("views", selection), ": expected ", kPrefix,
                             "N with a number of views N of ", kFewest, " or more"));
   return std::size_t(*count);
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/option_word.h"
 #include "core/scaled_size.h"
 #include "io/camera_checks.h"
 #include "io/find_files.h"
@@ -56,7 +57,7 @@ std::string looked_in(const RawScene& raw, const std::string& listed) {
   }
   for (const fs::path& folder : raw.image_folders)
     folders += (folders.empty() ? "" : ", ") + (folder / "").lexically_normal().string();
-  return "looked in " + folders + "; --images says where else they are";
+  return concat("looked in ", folders, "; ", option_word("images"), " says where else they are");
 }
 
 /// What the decoder said, without the path that it opens with.

@@ -8,6 +8,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/option_word.h"
 
 namespace photohull::io {
 namespace fs = std::filesystem;
@@ -46,7 +47,8 @@ void require_no_skew(const SourceView& view, const char* format) {
   const double shift = std::abs(k.skew / k.fy) * k.height;
   if (shift > 1e-6)
     throw Error(concat(view.name, ": its camera has a skew of ", k.skew, " pixels, which ", format,
-                       " cannot express; write the Middlebury format, or with --undistort"));
+                       " cannot express; write the Middlebury format, or with ",
+                       option_word("undistort")));
 }
 
 namespace {
@@ -56,7 +58,7 @@ constexpr double kSlack = 1e-6;
 
 [[noreturn]] void refuse(const SourceView& view, const char* format, const std::string& what) {
   throw Error(concat(view.name, ": its camera has ", what, ", which ", format,
-                     " cannot express; write it with --undistort"));
+                     " cannot express; write it with ", option_word("undistort")));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/option_word.h"
 #include "masks/background.h"
 #include "masks/mask_evidence.h"
 
@@ -58,8 +59,8 @@ void warn_of_doubtful(const PreparedViews& prepared, const std::vector<MaskOrigi
   if (count > 0)
     warnings.push_back(concat("the masks of ", count, " views are doubtful (", names,
                               count > 5 ? ", ..." : "",
-                              "): look at them with 'photohull masks', give a --background or "
-                              "masks of your own"));
+                              "): look at them with 'photohull masks', give a ",
+                              option_word("background"), " or masks of your own"));
 }
 
 }  // namespace

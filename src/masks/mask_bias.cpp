@@ -120,8 +120,7 @@ MaskBias measure_mask_bias(std::span<const View> views,
   const auto profiles_of = [&](const auto& brightness) {
     std::vector<Profile> profiles(views.size(), Profile(reach));
     tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
-      if (silhouettes[i])
-        profiles[i] = profile_of(smoothed(brightness(i)), *silhouettes[i], reach);
+      if (silhouettes[i]) profiles[i] = profile_of(smoothed(brightness(i)), *silhouettes[i], reach);
     });
     return profiles;
   };

@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/error.h"
+#include "core/option_word.h"
 #include "core/scaled_size.h"
 #include "masks/mask_lines.h"
 
@@ -189,8 +190,9 @@ void check_masks(PreparedViews& views) {
                        "white must be the object"));
   if (double(closed_in) > kNearlyAll * double(masks))
     throw Error(concat("masks look inverted: in ", closed_in, " of ", masks,
-                       " foreground runs along the whole frame and closes the background in; "
-                       "white must be the object (--masks none goes without them)"));
+                       " foreground runs along the whole frame and closes the background in; white "
+                       "must be the object (",
+                       option_word("masks", "none"), " goes without them)"));
 }
 
 }  // namespace photohull

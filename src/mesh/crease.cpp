@@ -19,6 +19,7 @@ constexpr double kNoise = 0.02;            // lengths: least standard deviation 
 /// many vertices err alike. Smoothing rings beside creases, and curvature would follow that.
 constexpr double kCurvature = 0.007, kAlike = 5;
 constexpr double kRoughness = 0.01;      // radians: least of a flank
+constexpr double kMostTurn = 120;        // degrees between flanks
 constexpr double kSlack = 0.1;           // lengths, of the distance from the flanks
 constexpr double kCornerRounding = 1.5;  // corners are farther from their flanks than edges
 
@@ -199,7 +200,7 @@ Crease find_crease(const CreaseMesh& mesh, Index centre, const SharpenOptions& o
     }
   }
   out.finding = Crease::Finding::kNone;
-  if (least < std::cos(glm::radians(options.most_turn))) return out;
+  if (least < std::cos(glm::radians(kMostTurn))) return out;
   out.flanks = parts;
   std::array<const Flank*, 3> flanks{};
   for (int k = 0; k < parts; ++k) flanks[k] = &out.flank[k];

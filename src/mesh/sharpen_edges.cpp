@@ -28,6 +28,7 @@ constexpr double kMargin = 1;   // voxels around what bends, which is rounded to
 constexpr double kSpacing = 2;  // voxels between the vertices at which creases are looked for
 constexpr double kPool = 8;     // rounds of sharing what was found, times the detail in voxels
 constexpr double kLeastKnown = 0.02;  // weight of the findings that reach a vertex
+constexpr double kShare = 0.6;        // of an edge's places that must show it
 constexpr double kTurned = 0.25;      // square of the distance that counts as much as a right angle
 constexpr double kSameFlank = 0.95;   // cosine
 constexpr double kMostMove = 1.75, kMostCornerMove = 3;  // lengths
@@ -161,7 +162,7 @@ class Sharpener {
     }
     sharp_.resize(n);
     for (std::size_t k = 0; k < n; ++k)
-      sharp_[k] = pool[k].y > kLeastKnown && pool[k].x >= options_.share * pool[k].y;
+      sharp_[k] = pool[k].y > kLeastKnown && pool[k].x >= kShare * pool[k].y;
   }
 
   void drop_short() {

@@ -11,8 +11,7 @@ namespace photohull {
 /// Lengths are in units of the surface's detail, see sharpen_edges.
 struct SharpenOptions {
   bool on = true;
-  double bend = 0.15, reach = 10, most_turn = 120, distinct = 25, rounding = 3, share = 0.6,
-         shortest = 16;
+  double bend = 0.15, reach = 10, distinct = 25, rounding = 3, shortest = 16;
 
   /// Throws UsageError naming the option.
   void validate() const;
@@ -25,12 +24,10 @@ inline void describe(Described& to, SharpenOptions& o) {
             "turn of the normals over a length from which surface may be a rounded edge");
   to.number("reach", &o.reach, from_to(3, 30), "lengths",
             "distance from a vertex within which the flanks of an edge are fitted");
-  to.number("most_turn", &o.most_turn, above(0, 120), "degrees", "greatest turn between flanks");
   to.number("distinct", &o.distinct, at_least(0), "",
             "least turn between flanks over the flanks' own roughness");
   to.number("rounding", &o.rounding, at_least(0), "lengths",
             "largest radius by which an edge may be rounded");
-  to.number("share", &o.share, from_to(0, 1), "", "share of an edge's places that must show it");
   to.number("shortest", &o.shortest, at_least(0), "lengths", "least length of an edge");
 }
 

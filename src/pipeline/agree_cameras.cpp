@@ -12,6 +12,7 @@
 #include "carving/missing_parts.h"
 #include "carving/object_box.h"
 #include "core/error.h"
+#include "core/option_word.h"
 #include "masks/mask_bias.h"
 #include "masks/mask_lines.h"
 #include "masks/silhouette.h"
@@ -37,7 +38,7 @@ double sum(const std::vector<double>& values) {
 }
 
 std::string how_to_refuse() {
-  return concat(" (", flag_of("refine_cameras"), " off takes them as they are)");
+  return concat(" (", option_word("refine_cameras", "off"), " takes them as they are)");
 }
 
 RefineCamerasOptions refine_options(const Scene& scene, std::span<const View> views) {
@@ -87,8 +88,8 @@ bool masks_are_eaten(std::span<const View> views) {
 }
 
 /// Do the silhouettes leave no more of their foreground unexplained with these cameras? Tips below
-/// the masks' sampling end too early, each view's elsewhere: outlines that are made to agree at them
-/// leave the rest contradicting each other.
+/// the masks' sampling end too early, each view's elsewhere: outlines that are made to agree at
+/// them leave the rest contradicting each other.
 bool fill_no_less(std::span<const Camera> refined, const Box& given, const std::vector<View>& views,
                   Progress& progress) {
   const Box box =
@@ -145,9 +146,9 @@ void refine_all(const ReconstructOptions& options, const Scene& scene, AgreeingC
   const CameraRefinement found = photohull::refine_cameras(out.views, o, progress);
   const bool always = asked && *asked != RefineCameras::kAuto;
   // Outlines alone say nothing of cameras where the masks' maker took the tips of thin parts.
-  const bool trusted = asked || found.all.observations > 0 ||
-                       (!masks_are_eaten(out.views) &&
-                        fill_no_less(found.cameras, *scene.box, out.views, progress));
+  const bool trusted =
+      asked || found.all.observations > 0 ||
+      (!masks_are_eaten(out.views) && fill_no_less(found.cameras, *scene.box, out.views, progress));
   const bool use = found.changed && (always || (pays(found) && trusted));
   out.findings.refinement = to_json(found, scene, use);
   out.right = confirmed_by_features(found, use, out.views);

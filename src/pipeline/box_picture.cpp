@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/image_scale.h"
+#include "core/option_word.h"
 #include "core/scaled_size.h"
 #include "io/image_file.h"
 #include "masks/masks.h"
@@ -290,8 +291,9 @@ BoxPicture draw_box(const Scene& scene, std::span<const double> scales, double v
                        kPanelWidth, kPanelHeight)));
   const Box& b = *scene.box;
   put_text(sheet,
-           concat("--box \"", number(b.min.x), " ", number(b.min.y), " ", number(b.min.z), " ",
-                  number(b.max.x), " ", number(b.max.y), " ", number(b.max.z), "\""),
+           option_word(
+               "box", concat("\"", number(b.min.x), " ", number(b.min.y), " ", number(b.min.z), " ",
+                             number(b.max.x), " ", number(b.max.y), " ", number(b.max.z), "\"")),
            {8, 16}, 0.65);
   put_text(sheet, scene.box_source, {8, 44}, 0.5, kDim);
   int x = out.width - 330;

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/median.h"
+#include "core/option_word.h"
 #include "masks/silhouette.h"
 #include "pipeline/memory.h"
 
@@ -67,7 +68,8 @@ std::vector<std::string> check_box(const Box& box, const std::string& source,
   const glm::dvec3 size = box.size();
   if (!(size.x > 0 && size.y > 0 && size.z > 0))
     throw Error(concat("the box from ", source, " has no volume: its sides are ", size.x, ", ",
-                       size.y, ", ", size.z, "; give --box \"x0 y0 z0 x1 y1 z1\""));
+                       size.y, ", ", size.z, "; give ",
+                       option_word("box", "\"x0 y0 z0 x1 y1 z1\"")));
   std::vector<std::string> blind;
   for (const SourceView& view : views)
     if (!sees(view.camera, box)) blind.push_back(view.name);
@@ -97,13 +99,15 @@ std::optional<std::string> hopeless_setup(const Box& box, const std::string& sou
                   " cameras stand in one place: depth shows only from different ones; check the "
                   "translations of the poses (photohull info shows them)");
   if (pixels >= kLeastPixels) return {};
-  const bool given = source == "--box";
-  return concat("the box from ", source, " is ", rounded(box.diagonal()),
-                " across, the cameras stand ", rounded(distance), " away from it, and it covers ",
-                rounded(pixels), " pixels of any photograph at most: ",
-                given ? "make --box larger, or give it in the cameras' units"
-                      : "are its units other than the cameras' (millimetres and metres)? Give "
-                        "--box in the cameras' units, or let it be found (--box auto)");
+  const bool given = source == option_word("box");
+  return concat(
+      "the box from ", source, " is ", rounded(box.diagonal()), " across, the cameras stand ",
+      rounded(distance), " away from it, and it covers ", rounded(pixels),
+      " pixels of any photograph at most: ",
+      given ? concat("make ", option_word("box"), " larger, or give it in the cameras' units")
+            : concat("are its units other than the cameras' (millimetres and metres)? Give ",
+                     option_word("box"), " in the cameras' units, or let it be found (",
+                     option_word("box", "auto"), ")"));
 }
 
 std::size_t cameras_within(const Box& box, std::span<const SourceView> views) {
@@ -117,8 +121,8 @@ std::string told_of_cameras_within(const Box& box, const std::string& source,
   const std::size_t within = cameras_within(box, views);
   if (within == 0) return "";
   return concat("; ", within, " of ", views.size(), " cameras stand inside the box from ", source,
-                ": unless it is a room, make --box smaller, or check that the poses are "
-                "world-to-camera");
+                ": unless it is a room, make ", option_word("box"),
+                " smaller, or check that the poses are world-to-camera");
 }
 
 void check_cameras_outside(const Box& box, const std::string& source,
@@ -126,16 +130,18 @@ void check_cameras_outside(const Box& box, const std::string& source,
   for (const SourceView& view : views)
     if (box.contains(view.camera.center()))
       throw Error(concat("camera ", view.name, " stands inside the box from ", source,
-                         ", where silhouettes tell nothing: make --box smaller, check that the "
-                         "poses are world-to-camera, or, for a room photographed from within, "
-                         "give --masks none and --method refine"));
+                         ", where silhouettes tell nothing: make ", option_word("box"),
+                         " smaller, check that the poses are world-to-camera, or, for a room "
+                         "photographed from within, give ",
+                         option_word("masks", "none"), " and ", option_word("method", "refine")));
 }
 
 void check_memory(std::int64_t bytes, std::int64_t limit) {
   if (bytes <= limit) return;
   throw Error(concat("this job would take about ", memory_text(bytes), " of memory, but may take ",
-                     memory_text(limit),
-                     " (--max-memory); lower --resolution or --image-scale, or use fewer --views"));
+                     memory_text(limit), " (", option_word("max_memory"), "); lower ",
+                     option_word("resolution"), " or ", option_word("image_scale"),
+                     ", or use fewer ", option_word("views")));
 }
 
 std::string explain_empty_hull(const Box& box, std::span<const View> views,
@@ -154,7 +160,8 @@ std::string explain_empty_hull(const Box& box, std::span<const View> views,
   });
   if (left > 0)
     return concat("nothing is left of the box: voxels of ", voxel_size,
-                  " are too large for what the silhouettes leave; raise --resolution");
+                  " are too large for what the silhouettes leave; raise ",
+                  option_word("resolution"));
   std::vector<std::size_t> order(views.size());
   std::iota(order.begin(), order.end(), std::size_t(0));
   std::stable_sort(order.begin(), order.end(),

@@ -7,6 +7,7 @@
 #include "cameras/feature_tracks.h"
 #include "cameras/triangulate.h"
 #include "core/error.h"
+#include "core/option_word.h"
 #include "io/spread_views.h"
 #include "pipeline/find_box.h"
 #include "pipeline/image_scale.h"
@@ -97,12 +98,12 @@ Box parse_box(const std::string& text) {
   double v[6];
   for (double& x : v)
     if (!(in >> x))
-      throw UsageError(concat(flag_of("box"),
+      throw UsageError(concat(option_word("box"),
                               ": expected auto or six numbers \"x0 y0 z0 x1 y1 z1\", found '", text,
                               "'"));
   std::string rest;
   if (in >> rest)
-    throw UsageError(concat(flag_of("box"), ": '", rest, "' follows the six numbers"));
+    throw UsageError(concat(option_word("box"), ": '", rest, "' follows the six numbers"));
   return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};  // swapped corners are told with the scene
 }
 

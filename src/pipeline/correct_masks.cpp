@@ -6,6 +6,7 @@
 
 #include "carving/confirm_lines.h"
 #include "core/error.h"
+#include "core/option_word.h"
 #include "masks/mask_bias.h"
 #include "masks/mask_lines.h"
 #include "masks/photo_lines.h"
@@ -21,7 +22,7 @@ constexpr double kPartialPixel = 1;   // eaten together with the whole ones
 constexpr std::size_t kRestored = 6;  // pixels a view: a line, as photo_lines.h counts them
 
 std::string how_to_refuse() {
-  return concat(" (", flag_of("mask_offset"), " 0 takes the masks as they are)");
+  return concat(" (", option_word("mask_offset", "0"), " takes the masks as they are)");
 }
 
 std::vector<std::vector<LinePoint>> lines_in_photographs(const std::vector<View>& views,
@@ -76,8 +77,8 @@ double measured_offset(const std::vector<View>& views) {
 
 }  // namespace
 
-bool correct_masks(const SilhouetteJob& job, std::vector<View>& views,
-                   SilhouetteFindings& findings, Progress& progress) {
+bool correct_masks(const SilhouetteJob& job, std::vector<View>& views, SilhouetteFindings& findings,
+                   Progress& progress) {
   const std::optional<double>& given = job.options.mask_offset;
   // The user counts in the files' pixels.
   const double scale = job.photographs.largest_scale;
@@ -85,11 +86,10 @@ bool correct_masks(const SilhouetteJob& job, std::vector<View>& views,
   findings.mask_offset = offset / scale;
   if (offset == 0) return false;
   if (!given)
-    progress.warn(concat("the masks are about ",
-                         std::round(10 * std::abs(findings.mask_offset)) / 10, " px too ",
-                         offset > 0 ? "small" : "large",
-                         ": outlines are taken from where the photographs' edges are",
-                         how_to_refuse()));
+    progress.warn(
+        concat("the masks are about ", std::round(10 * std::abs(findings.mask_offset)) / 10,
+               " px too ", offset > 0 ? "small" : "large",
+               ": outlines are taken from where the photographs' edges are", how_to_refuse()));
   for (View& view : views)
     if (!view.mask.empty()) move_outline(offset, view.mask, view.silhouette.distance);
   return offset > 0 && restore_eaten(offset, job, views, findings, progress);

@@ -12,6 +12,7 @@
 #include "carving/object_box.h"
 #include "core/error.h"
 #include "core/median.h"
+#include "core/option_word.h"
 
 namespace photohull::pipeline {
 namespace {
@@ -284,9 +285,9 @@ std::optional<FoundBox> box_of_points(std::span<const Camera> cameras,
       1 - weight_within(found.box, points) / std::max(weight_within(around, points), 1e-300);
   if (lost > kCutWarning)
     found.warnings.push_back(concat("cameras stand among what they show: the box found leaves out ",
-                                    std::lround(100 * lost),
-                                    " % of it; look at it (photohull info --picture) and give "
-                                    "--box where another part is wanted"));
+                                    std::lround(100 * lost), " % of it; look at it (",
+                                    command_word("info", "picture"), ") and give ",
+                                    option_word("box"), " where another part is wanted"));
   for (const Weighed& p : points)
     if (found.box.contains(p.point.position)) found.points.push_back(p.point);
   found.source = concat("found: ", given.size(), " ", what, ", ", found.points.size(),
@@ -299,18 +300,18 @@ std::optional<FoundBox> box_of_points(std::span<const Camera> cameras,
                                         bool masks) {
   const AxesMeeting axes = meeting_of_axes(cameras);
   if (2 * axes.in_front < cameras.size())
-    throw Error(
-        concat("no box can be found: the cameras look away from each other (the point "
-               "nearest to their optical axes is behind ",
-               cameras.size() - axes.in_front, " of ", cameras.size(),
-               " cameras); check whether the poses are world-to-camera (photohull info "
-               "--cameras), or give --box \"x0 y0 z0 x1 y1 z1\""));
+    throw Error(concat(
+        "no box can be found: the cameras look away from each other (the point "
+        "nearest to their optical axes is behind ",
+        cameras.size() - axes.in_front, " of ", cameras.size(),
+        " cameras); check whether the poses are world-to-camera (", command_word("info", "cameras"),
+        "), or give ", option_word("box", "\"x0 y0 z0 x1 y1 z1\"")));
   throw Error(concat("no box can be found: ", points,
                      " features match between the photographs under these cameras (at least ",
                      kFewest, " are needed), and ",
-                     masks ? "the masks bound no common space" : "there are no masks",
-                     "; give --box \"x0 y0 z0 x1 y1 z1\" or masks, or check the cameras "
-                     "(photohull info --cameras)"));
+                     masks ? "the masks bound no common space" : "there are no masks", "; give ",
+                     option_word("box", "\"x0 y0 z0 x1 y1 z1\""),
+                     " or masks, or check the cameras (", command_word("info", "cameras"), ")"));
 }
 
 Box around_both(const Box& a, const Box& b) {
@@ -352,7 +353,8 @@ AxesMeeting meeting_of_axes(std::span<const Camera> cameras) {
 FoundBox find_box(const BoxEvidence& evidence, Progress& progress) {
   if (evidence.views.size() < 2)
     throw Error(concat("a box is found from two cameras or more, but there ",
-                       evidence.views.size() == 1 ? "is 1" : "are 0", "; give --box"));
+                       evidence.views.size() == 1 ? "is 1" : "are 0", "; give ",
+                       option_word("box")));
   const std::vector<Camera> cameras = cameras_of(evidence.views);
   const bool masks = std::any_of(evidence.views.begin(), evidence.views.end(),
                                  [](const View& v) { return !v.mask.empty(); });

@@ -1,5 +1,5 @@
-// The stage that turns masks into silhouettes to carve by: outlines where the photographs have them,
-// views that contradict all others left out, and room for what cannot be known better.
+// The stage that turns masks into silhouettes to carve by: outlines where the photographs have
+// them, views that contradict all others left out, and room for what cannot be known better.
 #pragma once
 
 #include <set>
@@ -15,7 +15,7 @@
 namespace photohull::pipeline {
 
 struct FoundSilhouettes {
-  std::vector<View> views;  ///< those that are left, with silhouettes
+  std::vector<View> views;   ///< those that are left, with silhouettes
   double full_evidence = 0;  ///< pixels (carving::HullOptions)
   SilhouetteFindings findings;
 };
@@ -29,9 +29,10 @@ struct SilhouetteJob {
 };
 
 /// In this order: distances to the masks' outlines; views that are strongly blurred go; masks that
-/// are all too small or too large are moved, and what they have lost of stems is put back; lines and
-/// outlines are traced; views that contradict all others go; outlines that are off get as much room;
-/// stems get the room that voxels need; what most masks show is put into those that leave it out.
+/// are all too small or too large are moved, and what they have lost of stems is put back; lines
+/// and outlines are traced; views that contradict all others go; outlines that are off get as much
+/// room; stems get the room that voxels need; what most masks show is put into those that leave it
+/// out.
 FoundSilhouettes find_silhouettes(const SilhouetteJob& job, std::vector<View> views,
                                   Progress& progress);
 

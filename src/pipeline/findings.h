@@ -31,10 +31,10 @@ struct MaskFinding {
 };
 
 struct ViewFindings {
-  int views = 0;                                  ///< that could be decoded
-  std::vector<LeftOutView> left_out;              ///< for they cannot be used
-  double smallest_scale = 1, largest_scale = 1;   ///< at which photographs were read
-  double noise_sigma = 0;                         ///< square-root-encoded units of full scale
+  int views = 0;                                 ///< that could be decoded
+  std::vector<LeftOutView> left_out;             ///< for they cannot be used
+  double smallest_scale = 1, largest_scale = 1;  ///< at which photographs were read
+  double noise_sigma = 0;                        ///< square-root-encoded units of full scale
   std::string mask_source;
   double mask_confidence = 0;
   std::vector<MaskFinding> masks;  ///< of each view
@@ -44,9 +44,9 @@ struct ViewFindings {
 struct CameraFindings {
   /// Pixels (cameras/refine_cameras.h, tangent_disagreement); NaN where it was not looked at.
   double mask_disagreement = NAN;
-  std::string refinement;   ///< JSON (pipeline/refine_cameras.h); empty: none was tried
-  double moved = 0;         ///< by a refinement that is used, pixels
-  double moved_alike = 0;   ///< of it what all views have in common
+  std::string refinement;  ///< JSON (pipeline/refine_cameras.h); empty: none was tried
+  double moved = 0;        ///< by a refinement that is used, pixels
+  double moved_alike = 0;  ///< of it what all views have in common
 };
 
 /// A view whose outline is off what the other views' say.

@@ -5,6 +5,7 @@
 
 #include "carving/fit_stems.h"
 #include "core/error.h"
+#include "core/option_word.h"
 #include "mesh/remove_islands.h"
 #include "mesh/remove_unseen.h"
 #include "mesh/simplify_mesh.h"
@@ -24,8 +25,8 @@ std::int64_t fit_stems(const SurfaceJob& job, TriMesh& mesh) {
   std::vector<carving::StemView> views;
   for (const View& view : job.subject.views)
     if (!view.mask.empty()) views.push_back({view.camera, &view.mask, &view.silhouette.lines});
-  return std::int64_t(carving::fit_stems(views, job.subject.grid.voxel_size, mesh,
-                                         tuned(job.options).stems));
+  return std::int64_t(
+      carving::fit_stems(views, job.subject.grid.voxel_size, mesh, tuned(job.options).stems));
 }
 
 }  // namespace
@@ -38,8 +39,7 @@ void remove_dust(const SurfaceJob& job, SparseVolume& volume) {
   });
 }
 
-TriMesh extract_surface(const SurfaceJob& job, const SparseVolume& volume,
-                        MeshFindings& findings) {
+TriMesh extract_surface(const SurfaceJob& job, const SparseVolume& volume, MeshFindings& findings) {
   TriMesh mesh = extract_mesh(volume);
   if (const auto sharpen = method_of(job.options).sharpen)
     findings.sharpened_vertices = sharpen(job, mesh);
@@ -52,7 +52,7 @@ std::vector<render::PooledEvidence> colour_surface(const SurfaceJob& job, TriMes
                                                    MeshFindings& findings) {
   if (mesh.triangles.empty())
     throw Error(concat("the volume holds no surface: every part is thinner than a voxel; raise ",
-                       flag_of("resolution")));
+                       option_word("resolution")));
   std::vector<render::PooledEvidence> evidence;
   bake_colour(job.context, job.subject.grid, job.images, projtex::cameras_of(job.subject.views),
               job.subject.noise_sigma,
@@ -87,7 +87,7 @@ TriMesh open_unseen(const SurfaceJob& job, const TriMesh& mesh, std::vector<floa
     throw Error(concat(
         "no surface was found that a camera sees and that is more likely right than wrong; check "
         "the cameras (photohull info), or look at all of it with ",
-        flag_of("unseen"), " closed",
+        option_word("unseen", "closed"),
         told_of_cameras_within(subject.box, subject.box_source, sources_of(subject.views))));
   return open;
 }

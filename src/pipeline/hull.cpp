@@ -7,6 +7,7 @@
 #include "carving/fit_grid.h"
 #include "carving/thin_parts.h"
 #include "core/error.h"
+#include "core/option_word.h"
 #include "pipeline/checks.h"
 #include "projtex/gpu_views.h"
 #include "refine/refine.h"
@@ -16,7 +17,7 @@ namespace {
 
 constexpr double kBoxSlack = 0.5;              // voxels that the surface may stand out of the box
 constexpr std::size_t kFewestThinVoxels = 32;  // a hull of fewer, all of them thin, is none
-constexpr int kBoundingMargin = 2;       // coarse voxels around the box
+constexpr int kBoundingMargin = 2;             // coarse voxels around the box
 
 }  // namespace
 
@@ -42,7 +43,8 @@ SparseVolume Hull::carve_box(const GridSpec& grid, const Box& inner) {
   findings_.nodes_tested += counts.nodes_tested;
   findings_.bricks_evaluated += counts.bricks_evaluated;
   findings_.samples += counts.samples;
-  const bool specks = grid.voxel_size == subject_.grid.voxel_size && volume.inside_voxels() == thin &&
+  const bool specks = grid.voxel_size == subject_.grid.voxel_size &&
+                      volume.inside_voxels() == thin &&
                       thin < kFewestThinVoxels;  // coarse grids may hold no more of it
   return specks ? SparseVolume() : volume;
 }
@@ -50,8 +52,8 @@ SparseVolume Hull::carve_box(const GridSpec& grid, const Box& inner) {
 SparseVolume Hull::carve(const GridSpec& grid) {
   SparseVolume volume = carve_box(grid, subject_.box);
   if (volume.inside_voxels() == 0)
-    throw Error(
-        explain_empty_hull(subject_.box, subject_.views, silhouettes_of(subject_.views), grid.voxel_size));
+    throw Error(explain_empty_hull(subject_.box, subject_.views, silhouettes_of(subject_.views),
+                                   grid.voxel_size));
   return volume;
 }
 
@@ -83,7 +85,8 @@ bool Hull::bounded() {
           ? concat("only ", masked, " of ", silhouettes.size(), " views have one")
           : concat("what they show goes on beyond the box on ",
                    std::lround(100 * bounds().share_beyond),
-                   " % of its surface; is the box too small (", flag_of("box"), " auto finds one), or do the "
+                   " % of its surface; is the box too small (", option_word("box", "auto"),
+                   " finds one), or do the "
                    "masks show more than the object, or the cameras not see it from around?"),
       "; what no photograph tells of is left open, as without masks"));
   return false;

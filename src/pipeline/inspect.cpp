@@ -5,6 +5,7 @@
 
 #include "carving/fit_grid.h"
 #include "core/error.h"
+#include "core/option_word.h"
 #include "pipeline/checks.h"
 #include "pipeline/memory.h"
 #include "pipeline/plan.h"
@@ -66,18 +67,16 @@ void look_ahead(const Scene& scene, const ReconstructOptions& options, io::MaskS
   out.cpu_seconds = plan.cost.cpu_seconds;
   if (out.memory_bytes > out.memory_limit)
     out.warnings.push_back(concat("a reconstruction would take more memory than it may (",
-                                  memory_text(out.memory_limit),
-                                  "; ", flag_of("max_memory"), "): lower ",
-                                  flag_of("resolution")));
+                                  memory_text(out.memory_limit), "; ", option_word("max_memory"),
+                                  "): lower ", option_word("resolution")));
   if (out.grid.voxel_size > carving::voxel_size_for(*scene.box, 2))
     out.warnings.push_back("the box is hardly larger than a pixel: check its units");
   if (out.nearest_angle < kSmallestBaseline && within == 0)
     out.warnings.push_back("neighbouring views are nearly the same: depth will be uncertain");
   if (out.nearest_angle > kLargestBaseline && within == 0)
-    out.warnings.push_back(
-        concat("neighbouring views are far apart: photo-consistency will find little; add views or "
-               "use ",
-               flag_of("method"), " hull"));
+    out.warnings.push_back(concat(
+        "neighbouring views are far apart: photo-consistency will find little; add views or use ",
+        option_word("method", "hull")));
 }
 
 }  // namespace

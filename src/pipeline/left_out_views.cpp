@@ -5,6 +5,7 @@
 #include "cameras/diagnose.h"
 #include "core/error.h"
 #include "core/left_out.h"
+#include "core/option_word.h"
 #include "pipeline/silhouette_steps.h"
 #include "pipeline/subject.h"
 #include "projtex/gpu_views.h"
@@ -96,7 +97,7 @@ void leave_out_blurred(const SilhouetteJob& job, std::vector<View>& views,
   progress.warn(concat(
       blurred.size(), blurred.size() == 1 ? " view is" : " views are", " blurred beside the others",
       enough ? ", and left out" : "", ": ", names_of(blurred, views),
-      enough ? " (" + flag_of("keep_views") + " keeps them)"
+      enough ? " (" + option_word("keep_views") + " keeps them)"
              : "; too few would remain without them, so they stay: photograph again"));
   if (!enough) return;
   for (auto i = blurred.rbegin(); i != blurred.rend(); ++i) drop_view(*i, views, findings);

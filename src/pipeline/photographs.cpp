@@ -49,9 +49,9 @@ void check_sizes(const MemoryPhotograph& p) {
   if (p.mask.empty()) return;
   if (p.mask.width != image.width || p.mask.height != image.height ||
       p.mask.coverage.size() != pixels)
-    refuse(p.name, concat("the mask has ", p.mask.width, "x", p.mask.height, " pixels and ",
-                          p.mask.coverage.size(), " values, the picture ", image.width, "x",
-                          image.height));
+    refuse(p.name,
+           concat("the mask has ", p.mask.width, "x", p.mask.height, " pixels and ",
+                  p.mask.coverage.size(), " values, the picture ", image.width, "x", image.height));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "core/describe.h"
 #include "core/error.h"
+#include "core/option_word.h"
 #include "views/photometric_check.h"
 #include "views/photometric_samples.h"
 
@@ -142,16 +143,14 @@ PhotometricOutcome correct_photometric(Photometric photometric, const TriMesh& m
   out.json = to_json(c, views, lenses, out.used);
   out.line = to_line(c, out.used);
   if (photometric == Photometric::kOn && !c.solved)
-    out.warning =
-        concat(flag_of("photometric"),
-               " on: too few surface points are seen by several views to measure gains; colours "
-               "stay as photographed");
+    out.warning = concat(option_word("photometric", "on"),
+                         ": too few surface points are seen by several views to measure gains; "
+                         "colours stay as photographed");
   else if (out.used) {
     std::string names;
     int count = 0;
     for (std::size_t i = 0; i < c.views.size(); ++i)
-      if (!c.views[i].solved && ++count <= 5)
-        names += (names.empty() ? "" : ", ") + views[i].name;
+      if (!c.views[i].solved && ++count <= 5) names += (names.empty() ? "" : ", ") + views[i].name;
     if (count > 0)
       out.warning = concat(count,
                            " views show too little of the surface to measure their gains, "

@@ -20,8 +20,7 @@ struct CoarseHull {
 
 CoarseHull coarse_hull(int voxels, Hull& hull, const Subject& subject) {
   const double coarse = carving::voxel_size_for(subject.box, voxels);
-  const GridSpec grid =
-      carving::fit_grid(subject.box, std::max(coarse, subject.grid.voxel_size));
+  const GridSpec grid = carving::fit_grid(subject.box, std::max(coarse, subject.grid.voxel_size));
   return {extract_mesh(hull.carve(grid)), grid.voxel_size};
 }
 

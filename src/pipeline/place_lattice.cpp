@@ -5,6 +5,7 @@
 
 #include "carving/object_box.h"
 #include "core/error.h"
+#include "core/option_word.h"
 #include "pipeline/checks.h"
 #include "pipeline/methods/method.h"
 #include "pipeline/plan.h"
@@ -42,7 +43,7 @@ SourcedBox tighten_box(const ReconstructOptions& options, const SourcedBox& give
   progress.warn(concat("the box from ", given.source, " is ", std::round(10 * factor) / 10,
                        " times larger than what the silhouettes leave: the object's own box is "
                        "taken, and ",
-                       flag_of("resolution"), " counts along that"));
+                       option_word("resolution"), " counts along that"));
   return {*object, given.source + ", made smaller by the silhouettes"};
 }
 
@@ -65,8 +66,7 @@ GridSpec place_lattice(const ReconstructOptions& options, const SourcedBox& box,
 bool has_surroundings(const ReconstructOptions& options, bool box_found,
                       const std::vector<View>& views) {
   if (!method_of(options).carve_around) return false;
-  if (options.surroundings != Surroundings::kAuto)
-    return options.surroundings == Surroundings::kOn;
+  if (options.surroundings != Surroundings::kAuto) return options.surroundings == Surroundings::kOn;
   const auto masked = std::count_if(views.begin(), views.end(),
                                     [](const View& view) { return !view.mask.empty(); });
   return box_found && 2 * std::size_t(masked) < views.size();

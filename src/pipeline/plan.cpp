@@ -6,6 +6,7 @@
 #include "carving/fit_grid.h"
 #include "core/error.h"
 #include "core/image_scale.h"
+#include "core/option_word.h"
 #include "pipeline/image_scale.h"
 
 namespace photohull::pipeline {
@@ -33,7 +34,8 @@ void count_cost(const Request& request, const Scene& scene, const Box& box, bool
   question.masks = silhouettes_of(request.masks, scene);
   plan.silhouettes = question.masks != Silhouettes::kNone;
   if (with_grid)
-    plan.grid = *(question.grid = lattice_of(request.options, box, question.cameras, plan.silhouettes));
+    plan.grid =
+        *(question.grid = lattice_of(request.options, box, question.cameras, plan.silhouettes));
   plan.cost = estimate_cost(question);
 }
 
@@ -45,7 +47,7 @@ double voxel_size_of(const ReconstructOptions& options, const Box& box,
   const double largest = carving::voxel_size_for(box, 2);
   if (options.voxel_size) {
     if (*options.voxel_size > largest)
-      throw UsageError(concat(flag_of("voxel_size"), " ", *options.voxel_size, ": at most ", largest,
+      throw UsageError(concat(option_word("voxel_size", *options.voxel_size), ": at most ", largest,
                               ", half of the box's longest side"));
     return *options.voxel_size;
   }
@@ -56,7 +58,8 @@ double voxel_size_of(const ReconstructOptions& options, const Box& box,
     throw Error(concat("a pixel is ", footprint,
                        " world units large at the box's centre, too much for a box whose longest "
                        "side is ",
-                       2 * largest, "; check the box's units, or give ", flag_of("voxel_size")));
+                       2 * largest, "; check the box's units, or give ",
+                       option_word("voxel_size")));
   return size;
 }
 

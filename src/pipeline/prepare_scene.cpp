@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/option_word.h"
 #include "masks/torn_masks.h"
 #include "photo/noise.h"
 #include "pipeline/checks.h"
@@ -42,14 +43,14 @@ Decoded decode(const Photographs& photographs, const Scene& full, std::span<cons
   options.strict = photographs.load.strict;
   Decoded out{full, {}};
   scale_scene(scales, out.scene);
-  out.prepared = prepare_views(out.scene, reduced_loader(photographs.reader, full, scales), options,
-                               progress);
+  out.prepared =
+      prepare_views(out.scene, reduced_loader(photographs.reader, full, scales), options, progress);
   return out;
 }
 
-/// The same, larger where the object turns out to be small in its box: --resolution will count along
-/// the object's own box, whose voxels need finer pixels; and there is more memory for those than in
-/// all of the box.
+/// The same, larger where the object turns out to be small in its box: --resolution will count
+/// along the object's own box, whose voxels need finer pixels; and there is more memory for those
+/// than in all of the box.
 Decoded decode_as_needed(const Photographs& photographs, ReadScene& read,
                          const ReconstructOptions& options, Progress& progress) {
   std::vector<double>& scales = read.reading.scales;
@@ -93,11 +94,12 @@ int mend_given_masks(std::span<const MaskJudgement> masks, std::vector<View>& vi
   const auto torn =
       std::count_if(mended.begin(), mended.end(), [](const auto& m) { return m.holes; });
   if (torn > 0)
-    progress.warn(concat(torn, torn == 1 ? " mask has" : " masks have",
-                         " holes or bites where the photographs show the object's colours (most in ",
-                         views[std::size_t(worst - mended.begin())].name, ", ",
-                         std::round(1000 * worst->share) / 10, " % of it): they were filled (",
-                         flag_of("mask_holes"), " keep takes the masks as they are)"));
+    progress.warn(
+        concat(torn, torn == 1 ? " mask has" : " masks have",
+               " holes or bites where the photographs show the object's colours (most in ",
+               views[std::size_t(worst - mended.begin())].name, ", ",
+               std::round(1000 * worst->share) / 10, " % of it): they were filled (",
+               option_word("mask_holes", "keep"), " takes the masks as they are)"));
   return int(torn);
 }
 

@@ -1,6 +1,7 @@
 #include "pipeline/read_scene.h"
 
 #include "core/error.h"
+#include "core/option_word.h"
 #include "pipeline/checks.h"
 #include "pipeline/complete_box.h"
 #include "pipeline/mask_policy.h"
@@ -23,12 +24,12 @@ ReadScene read_scene(const Photographs& photographs, const ReconstructOptions& o
   out.findings = {scene.path.string(), to_string(scene.format), {}, int(scene.listed.size()),
                   scene.scaled,        scene.passed_over};
   if (options.lattice == Lattice::kFixed && looks_for_box(options.box, scene))
-    throw Error(concat(scene.path.string(), ": ", flag_of("lattice"),
-                       " fixed needs a box that does not follow the photographs, and the "
+    throw Error(concat(scene.path.string(), ": ", option_word("lattice", "fixed"),
+                       " needs a box that does not follow the photographs, and the "
                        "scene gives none; give ",
-                       flag_of("box")));
-  const BoxFindings found = complete_box(options.box, mask_policy(photographs.load.masks),
-                                         scene, progress, photographs.reader);
+                       option_word("box")));
+  const BoxFindings found = complete_box(options.box, mask_policy(photographs.load.masks), scene,
+                                         progress, photographs.reader);
   out.box_found = found.found;
   out.seen = found.seen;
   for (const std::string& text : scene.warnings) progress.warn(text);
@@ -44,18 +45,19 @@ Reading choose_reading(const Photographs& photographs, const Scene& scene, const
                        const ReconstructOptions& options, Progress& progress) {
   // With masks, the voxels that pixels give are not known for sure before these have been seen: the
   // box may become smaller.
-  const bool known = options.resolution || options.voxel_size ||
-                     photographs.load.masks == io::MaskSource::kNone;
+  const bool known =
+      options.resolution || options.voxel_size || photographs.load.masks == io::MaskSource::kNone;
   const std::int64_t limit = memory_limit(options);
-  Plan plan = plan_reading({options, photographs.load.masks, photographs.reader}, scene, box, known,
-                           limit);
+  Plan plan =
+      plan_reading({options, photographs.load.masks, photographs.reader}, scene, box, known, limit);
   check_memory(plan.cost.bytes, limit);
   const bool short_of_memory = plan.scales != plan.wanted;
   if (short_of_memory)
     progress.warn(concat("the photographs are read at ", smallest_scale_text(plan.scales),
                          " of their size: at ", smallest_scale_text(plan.wanted),
                          " the job would take more than ", memory_text(limit), " of memory (",
-                         flag_of("max_memory"), "; ", flag_of("image_scale"), " forces a size)"));
+                         option_word("max_memory"), "; ", option_word("image_scale"),
+                         " forces a size)"));
   return {std::move(plan.scales), short_of_memory};
 }
 

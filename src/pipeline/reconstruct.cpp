@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/option_word.h"
 #include "core/process_limits.h"
 #include "mesh/join_meshes.h"
 #include "pipeline/agree_cameras.h"
@@ -69,8 +70,8 @@ Prepared prepare(Run& run) {
       return agree_cameras(options, scene.scene, std::move(agreeing.views), progress);
     });
   report.cameras = agreeing.findings;
-  const SourcedBox box = tighten_box(options, {*scene.scene.box, scene.scene.box_source},
-                                     agreeing.views, progress);
+  const SourcedBox box =
+      tighten_box(options, {*scene.scene.box, scene.scene.box_source}, agreeing.views, progress);
   const GridSpec grid = place_lattice(options, box, agreeing.views);
   std::vector<View> views = has_surroundings(options, box_found, agreeing.views)
                                 ? std::move(agreeing.views)
@@ -92,24 +93,25 @@ Prepared prepare(Run& run) {
           std::move(found.findings)};
 }
 
-/// Masks are done with when neither sweeps nor stems need them any more. What was made of them stays.
+/// Masks are done with when neither sweeps nor stems need them any more. What was made of them
+/// stays.
 void forget_masks(const ReconstructOptions& options, std::vector<View>& views) {
   // The other samplers weight by the masks, and lines get their width from them.
-  const bool needed =
-      !method_of(options).from_hull || sampler_of(options) != projtex::Sampler::kMipmap ||
-      std::any_of(views.begin(), views.end(), [](const View& view) {
-        return !view.silhouette.lines.empty() || !view.silhouette.widened.empty();
-      });
+  const bool needed = !method_of(options).from_hull ||
+                      sampler_of(options) != projtex::Sampler::kMipmap ||
+                      std::any_of(views.begin(), views.end(), [](const View& view) {
+                        return !view.silhouette.lines.empty() || !view.silhouette.widened.empty();
+                      });
   if (needed) return;
   for (View& view : views) std::vector<std::uint8_t>().swap(view.mask.coverage);
 }
 
 void warn_of_surroundings(const ReconstructOptions& options, bool bounded, Progress& progress) {
   if (!bounded || options.surroundings != Surroundings::kOn) return;
-  progress.warn(concat(flag_of("surroundings"),
-                       " on: silhouettes bound the object, and what surrounds it is in none of "
+  progress.warn(concat(option_word("surroundings", "on"),
+                       ": silhouettes bound the object, and what surrounds it is in none of "
                        "them; it is left out (",
-                       flag_of("masks"), " none reconstructs without silhouettes)"));
+                       option_word("masks", "none"), " reconstructs without silhouettes)"));
 }
 
 Evidence keep_evidence(const TriMesh& mesh, const std::vector<render::PooledEvidence>& evidence) {
@@ -147,21 +149,18 @@ class Carver {
     Reconstruction out;
     out.volume = carve_surface();
     clock.run("clean", Weights::kClean, [&] { remove_dust(job(), out.volume); });
-    out.mesh = clock.run("mesh", Weights::kMesh, [&] {
-      return extract_surface(job(), out.volume, mesh_findings_);
-    });
+    out.mesh = clock.run("mesh", Weights::kMesh,
+                         [&] { return extract_surface(job(), out.volume, mesh_findings_); });
     make_alike_on_mesh(out.mesh);
     const std::vector<float> views_that_see = colour(out);
     // What silhouettes bound is judged by them as a whole; else what is delivered is.
     const bool open = leaves_open(run_.options, bounded_);
-    if (open && !bounded_)
-      out.mesh = open_unseen(job(), out.mesh, views_that_see, mesh_findings_);
+    if (open && !bounded_) out.mesh = open_unseen(job(), out.mesh, views_that_see, mesh_findings_);
     const Around around = surround(out.mesh, open);
     images_.reset();
     run_.context->release_deleted();
     judge(around, out);
-    if (open && bounded_)
-      out.mesh = open_unseen(job(), out.mesh, views_that_see, mesh_findings_);
+    if (open && bounded_) out.mesh = open_unseen(job(), out.mesh, views_that_see, mesh_findings_);
     append_mesh(around.mesh, out.mesh);
     deliver(out);
     return out;
@@ -202,17 +201,16 @@ class Carver {
   SparseVolume carve_hull() {
     if (!method_.from_hull) return {};
     if (method_.by_silhouettes && !any_mask(subject_.views))
-      run_.progress.warn(concat("without masks the hull is the box clipped by the frusta: give "
-                                "masks or use ",
-                                flag_of("method"), " refine"));
+      run_.progress.warn(
+          concat("without masks the hull is the box clipped by the frusta: give "
+                 "masks or use ",
+                 option_word("method", "refine")));
     return hull_.carve(subject_.grid);
   }
 
   void upload() { images_ = std::make_unique<projtex::ImageSet>(subject_.views); }
 
-  PhotometricJob photometric_job() {
-    return {run_.options, subject_.noise_sigma, run_.progress};
-  }
+  PhotometricJob photometric_job() { return {run_.options, subject_.noise_sigma, run_.progress}; }
 
   /// Makes the photographs' gains alike by `work`, before colours are compared. Did pixels change?
   template <typename Work>
@@ -258,9 +256,9 @@ class Carver {
 
   void judge(const Around& around, Reconstruction& out) {
     Judgement judgement = run_.clock.run("verdict", Weights::kVerdict, [&] {
-      return judge_result(
-          job(), {out.mesh, around, cameras_, silhouettes_, mesh_findings_.stem_vertices},
-          out.evidence.has_value());
+      return judge_result(job(),
+                          {out.mesh, around, cameras_, silhouettes_, mesh_findings_.stem_vertices},
+                          out.evidence.has_value());
     });
     run_.report.verdict = std::move(judgement.findings);
     if (!out.evidence) return;

@@ -16,7 +16,8 @@
 
 namespace photohull::pipeline {
 
-/// What confidence was computed from, and where the model does not fit (ReconstructOptions::evidence).
+/// What confidence was computed from, and where the model does not fit
+/// (ReconstructOptions::evidence).
 struct Evidence {
   TriMesh mesh;              ///< uniform, with the surface that no camera sees
   VertexScalars scalars;     ///< of its vertices

@@ -7,6 +7,7 @@
 #include "carving/photo.h"
 #include "carving/search_disc.h"
 #include "core/error.h"
+#include "core/option_word.h"
 #include "io/mesh/mesh_writers.h"
 #include "pipeline/image_scale.h"
 #include "pipeline/memory.h"
@@ -30,28 +31,29 @@ void check_sweep_options(const ReconstructOptions& o) {
                       : o.r_consistency ? "r_consistency"
                                         : nullptr;
   if (given)
-    throw UsageError(concat(flag_of(given), ": ", flag_of("method"), " ", method_of(o).name,
-                            " has no plane sweep; give ", flag_of("method"),
-                            " space-carving or voxel-coloring"));
+    throw UsageError(concat(option_word(given), ": ", option_word("method", method_of(o).name),
+                            " has no plane sweep; give ", option_word("method", "space-carving"),
+                            " or voxel-coloring"));
 }
 
 /// Throws UsageError for options that exclude each other.
 void check_combinations(const ReconstructOptions& o) {
-  const std::string resolution = flag_of("resolution"), voxel_size = flag_of("voxel_size"),
-                    fixed = flag_of("lattice") + " fixed", box = flag_of("box");
+  const std::string resolution = option_word("resolution"), voxel_size = option_word("voxel_size"),
+                    fixed = option_word("lattice", "fixed");
   if (o.resolution && o.voxel_size)
     throw UsageError(concat(resolution, " and ", voxel_size, " exclude each other: give one"));
   if (o.lattice == Lattice::kFixed && !o.resolution && !o.voxel_size)
     throw UsageError(concat(fixed, ": give ", voxel_size, " or ", resolution,
-                            ", for the voxels of ", flag_of("quality"), " follow the photographs"));
+                            ", for the voxels of ", option_word("quality"),
+                            " follow the photographs"));
   if (o.lattice == Lattice::kFixed && o.box.find)
-    throw UsageError(concat(fixed, ": ", box,
-                            " auto follows the photographs; give the box's corners, or leave ", box,
-                            " out where the scene has one"));
+    throw UsageError(concat(fixed, ": ", option_word("box", "auto"),
+                            " follows the photographs; give the box's corners, or leave ",
+                            option_word("box"), " out where the scene has one"));
   if (o.surroundings == Surroundings::kOn && !method_of(o).carve_around)
-    throw UsageError(concat(flag_of("surroundings"), " on: ", flag_of("method"), " ",
-                            to_string(o.effective_method()), " has none; they are made by ",
-                            flag_of("method"), " refine"));
+    throw UsageError(concat(option_word("surroundings", "on"), ": ",
+                            option_word("method", method_of(o).name),
+                            " has none; they are made by ", option_word("method", "refine")));
   check_sweep_options(o);
 }
 
@@ -294,15 +296,15 @@ void ReconstructOptions::validate() const {
   io::LoadSceneOptions usual;
   Described described;
   describe(described, copy, usual);
-  for (const Option& option : described.options()) check_option(option);
+  described.check_given();
   const bool index = !device.empty() && device.find_first_not_of("0123456789") == std::string::npos;
   if (device != "auto" && device != "software" && !index)
-    throw UsageError(concat(flag_of("device"), " ", device,
+    throw UsageError(concat(option_word("device", device),
                             ": expected auto, software or an index of 'photohull devices'"));
   if (!(std::isfinite(mesh_error.value) && mesh_error.value >= 0))
     throw UsageError(
-        concat(flag_of("mesh_error"), " ", mesh_error.value, ": must be finite, 0 or more"));
-  for (const std::string& format : exports) find_mesh_writer(flag_of("export"), format);
+        concat(option_word("mesh_error", mesh_error.value), ": must be finite, 0 or more"));
+  for (const std::string& format : exports) find_mesh_writer(option_word("export"), format);
   check_combinations(*this);
   tuned(*this);
 }

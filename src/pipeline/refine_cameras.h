@@ -13,8 +13,8 @@ enum class RefineCameras { kOff, kAuto, kPoses, kPosesAndIntrinsics };
 
 const char* to_string(RefineCameras refine);
 
-/// Carries what a refinement of the undistorted views' cameras changed over to the photographs' own,
-/// one for each.
+/// Carries what a refinement of the undistorted views' cameras changed over to the photographs'
+/// own, one for each.
 void apply(const CameraRefinement& refinement, std::span<SourceView> views);
 
 /// Does the gain pay? The held-out residual must have fallen by a fifth, and to begin with be more

@@ -14,8 +14,7 @@ ordered_json array_of(const glm::ivec3& v) { return {v.x, v.y, v.z}; }
 
 void add_scene(const Report& r, ordered_json& j) {
   j["photohull"] = r.version;
-  j["scene"] = {
-      {"path", r.scene.path}, {"format", r.scene.format}, {"views", r.photographs.views}};
+  j["scene"] = {{"path", r.scene.path}, {"format", r.scene.format}, {"views", r.photographs.views}};
   j["photographs"] = {{"listed", r.scene.listed},
                       {"scaled", r.scene.scaled},
                       {"passed_over", r.scene.passed_over},
@@ -146,8 +145,7 @@ void add_mesh(const Report& r, ordered_json& j) {
 
 void add_verdict(const VerdictFindings& verdict, ordered_json& j) {
   if (!verdict.json.empty()) j["verdict"] = ordered_json::parse(verdict.json);
-  if (!verdict.explained_view.empty())
-    j["verdict"]["explained_png_shows"] = verdict.explained_view;
+  if (!verdict.explained_view.empty()) j["verdict"]["explained_png_shows"] = verdict.explained_view;
 }
 
 void add_stages(const std::vector<StageTime>& stages, ordered_json& j) {

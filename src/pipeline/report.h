@@ -24,7 +24,8 @@ struct Report {
   ViewFindings photographs;
   CameraFindings cameras;
   SilhouetteFindings silhouettes;
-  double full_evidence = 0;  ///< pixels outside an outline at which one view alone carves; 0: at once
+  double full_evidence =
+      0;  ///< pixels outside an outline at which one view alone carves; 0: at once
   HullFindings hull;
   PhotometricFindings photometric;
   SurfaceFindings surface;

@@ -1,6 +1,7 @@
 #include "pipeline/result_files.h"
 
 #include "core/error.h"
+#include "core/option_word.h"
 
 namespace photohull::pipeline {
 namespace fs = std::filesystem;
@@ -13,10 +14,10 @@ ResultFiles::ResultFiles(fs::path folder, std::vector<std::string> names)
   std::error_code ignored;
   if (error || !fs::is_directory(folder_, ignored))
     throw Error(
-        concat("--out ", folder_.string(), ": cannot make this folder (",
+        concat(option_word("out", folder_.string()), ": cannot make this folder (",
                fs::exists(folder_, ignored) ? "a file of that name exists" : error.message(),
                "); choose another one"));
-  lock_.emplace(folder_, "--out");
+  lock_.emplace(folder_, "out");
   for (const std::string& name : names_) AtomicFile probe(folder_ / name);
 }
 

@@ -28,14 +28,13 @@ void warn_of_room(const std::vector<OutlineRoom>& room, Progress& progress) {
       room.begin(), room.end(), [](const auto& a, const auto& b) { return a.pixels < b.pixels; });
   const std::size_t count = room.size();
   progress.warn(concat("the ", count == 1 ? "outline" : "outlines", " of ", count,
-                       count == 1 ? " view is" : " views are",
-                       " off what the others say (most in ", worst->view, ", by about ",
-                       hundredths(worst->pixels),
+                       count == 1 ? " view is" : " views are", " off what the others say (most in ",
+                       worst->view, ", by about ", hundredths(worst->pixels),
                        " px): they carve with as much room (check these cameras and masks)"));
 }
 
-void count_explained(std::span<const carving::ForegroundCounts> found, const std::vector<View>& views,
-                     ThinFindings& counts) {
+void count_explained(std::span<const carving::ForegroundCounts> found,
+                     const std::vector<View>& views, ThinFindings& counts) {
   double worst = 0;
   for (std::size_t i = 0; i < views.size(); ++i) {
     const carving::ForegroundCounts& v = found[i];
@@ -100,9 +99,8 @@ void explain_foreground(const SilhouetteJob& job, double full_evidence, std::vec
                         SilhouetteFindings& findings, Progress& progress) {
   if (job.options.views_may_miss || !any_mask(views)) return;
   const std::vector<Camera> cameras = projtex::cameras_of(views);
-  const carving::MissingParts found =
-      carving::find_missing_parts(job.box, cameras, silhouettes_of(views),
-                                  tuned(job.options).missing, &progress);
+  const carving::MissingParts found = carving::find_missing_parts(
+      job.box, cameras, silhouettes_of(views), tuned(job.options).missing, &progress);
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
     if (views[i].mask.empty()) return;
     ViewSilhouette& s = views[i].silhouette;

@@ -19,8 +19,8 @@ void leave_out_blurred(const SilhouetteJob& job, std::vector<View>& views,
 
 /// Masks that are all too small carve the object itself away, and those that are too large leave it
 /// too thick. True where stems that eaten masks had lost were put back.
-bool correct_masks(const SilhouetteJob& job, std::vector<View>& views,
-                   SilhouetteFindings& findings, Progress& progress);
+bool correct_masks(const SilhouetteJob& job, std::vector<View>& views, SilhouetteFindings& findings,
+                   Progress& progress);
 
 /// Fills the silhouettes' lines.
 Outlines trace_outlines(std::vector<View>& views);

@@ -13,8 +13,7 @@ double Weights::cameras(const ReconstructOptions& options) {
 double total_weight(const ReconstructOptions& options) {
   return Weights::kScene + Weights::kViews + Weights::cameras(options) +
          (options.photometric != Photometric::kOff ? Weights::kPhotometric : 0) + Weights::kDevice +
-         Weights::kSilhouettes + Weights::kHull + Weights::kImages +
-         method_of(options).weight +
+         Weights::kSilhouettes + Weights::kHull + Weights::kImages + method_of(options).weight +
          (options.mesh_error.value > 0 ? Weights::kSimplify : 0) + Weights::kClean +
          Weights::kMesh + Weights::kColour + Weights::kVerdict + Weights::kPreview +
          Weights::kFiles;

@@ -1,5 +1,5 @@
-// What is carved: views with their silhouettes, the box and the lattice. The stages from the hull on
-// work with it, and none of them changes it.
+// What is carved: views with their silhouettes, the box and the lattice. The stages from the hull
+// on work with it, and none of them changes it.
 #pragma once
 
 #include <optional>

@@ -39,7 +39,8 @@ bool holds(const Box& a, const Box& b) { return a.contains(b.min) && a.contains(
 std::vector<float> colour(const SurfaceJob& job, const GridSpec& grid, TriMesh& mesh) {
   std::vector<render::PooledEvidence> evidence;
   bake_colour(job.context, grid, job.images, projtex::cameras_of(job.subject.views),
-              job.subject.noise_sigma, render::Shaping::kPhotographs, mesh, job.progress, nullptr, &evidence);
+              job.subject.noise_sigma, render::Shaping::kPhotographs, mesh, job.progress, nullptr,
+              &evidence);
   std::vector<float> views;
   for (std::size_t i = 0; i < evidence.size(); ++i) {
     evidence[i].scatter *= float(kCoarseness * kCoarseness);
@@ -52,8 +53,8 @@ std::vector<float> colour(const SurfaceJob& job, const GridSpec& grid, TriMesh& 
 /// The surface in one shell, without what `known` has.
 TriMesh surface_in(const SurfaceJob& job, const Shell& shell, const TriMesh& known, bool open,
                    std::int64_t& samples) {
-  SparseVolume volume = method_of(job.options).carve_around(
-      job, {shell.grid, shell.box, kNearestAngle}, samples);
+  SparseVolume volume =
+      method_of(job.options).carve_around(job, {shell.grid, shell.box, kNearestAngle}, samples);
   remove_small_components(volume, kDebrisFraction);
   TriMesh mesh = extract_mesh(volume);
   volume = {};

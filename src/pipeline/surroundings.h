@@ -25,8 +25,8 @@ std::vector<Shell> plan_shells(const Box& box, double voxel_size, const std::opt
 
 /// What was made.
 struct Around {
-  TriMesh mesh;  ///< without what the surface in the box has already
-  Box box;       ///< that it lies in
+  TriMesh mesh;                         ///< without what the surface in the box has already
+  Box box;                              ///< that it lies in
   std::vector<ShellFindings> findings;  ///< the innermost first
   std::int64_t samples = 0;             ///< of textures
 };

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/option_word.h"
 #include "pipeline/methods/method.h"
 
 namespace photohull::pipeline {
@@ -17,7 +18,7 @@ std::string name_in(const std::string& assignment) {
 }
 
 [[noreturn]] void refuse(const std::string& assignment, const std::string& why) {
-  throw UsageError(concat(flag_of("tune"), " ", assignment, ": ", why));
+  throw UsageError(concat(option_word("tune", assignment), ": ", why));
 }
 
 std::string known_names(const Described& parameters) {
@@ -57,11 +58,9 @@ void assign(const std::string& assignment, const Option& option) {
 }  // namespace
 
 void describe(Described& to, Method method, Parameters& parameters) {
-  const MethodEntry& entry = method_of(method);
-  if (!entry.describe) return;
   to.group("missing", parameters.missing);
   to.group("stems", parameters.stems);
-  entry.describe(to, parameters);
+  if (const auto own = method_of(method).describe) own(to, parameters);
 }
 
 void tune(const std::vector<std::string>& assignments, Method method, Parameters& parameters) {
@@ -71,8 +70,6 @@ void tune(const std::vector<std::string>& assignments, Method method, Parameters
     const std::string name = name_in(assignment);
     if (const Option* option = known.find(name))
       assign(assignment, *option);
-    else if (known.options().empty())
-      refuse(assignment, concat("the ", to_string(method), " has no parameters"));
     else
       refuse(assignment, concat("this method has no '", name, "'; it has ", known_names(known)));
   }

@@ -22,7 +22,8 @@ struct Parameters {
   carving::StemOptions stems;
 };
 
-/// Those that a job with this method has. The hull has none.
+/// Those that a job with this method has: its own, and those of the hull that all begin with and of
+/// the mesh that all end with.
 void describe(Described& to, Method method, Parameters& parameters);
 
 /// Each assignment is NAME=VALUE with a parameter's name and a finite number, whole where the

@@ -98,8 +98,8 @@ Report write_all(const Reconstruction& result, const std::vector<std::string>& f
 
 }  // namespace
 
-Report write(const Reconstruction& result, const std::filesystem::path& folder,
-             Progress& progress, const std::vector<std::string>& formats) {
+Report write(const Reconstruction& result, const std::filesystem::path& folder, Progress& progress,
+             const std::vector<std::string>& formats) {
   for (const std::string& format : formats) find_mesh_writer("formats", format);
   ResultFiles files(folder, file_names(formats, result.evidence.has_value()));
   return write_all(result, formats, files, progress);
@@ -112,8 +112,8 @@ Report reconstruct_to_folder(const ReconstructOptions& options, const Photograph
   const Reconstructor reconstructor(with_checkpoint);
   // What can fail at once does so before the photographs are decoded.
   ResultFiles files(folder, file_names(options.exports, options.evidence));
-  const Report report = write_all(reconstructor.run(photographs, progress), options.exports,
-                                  files, progress);
+  const Report report =
+      write_all(reconstructor.run(photographs, progress), options.exports, files, progress);
   remove_checkpoint(folder);
   return report;
 }

@@ -11,6 +11,7 @@ namespace {
 using glm::ivec3;
 using glm::vec3;
 
+constexpr int kIterations = 150;    // of the Gauss-Seidel method
 constexpr float kOver = 1.6f;       // over-relaxation
 constexpr float kOpposite = -0.3f;  // cosine between the normals of a wall's two sides
 
@@ -93,7 +94,7 @@ std::vector<float> close_unseen(const GridSpec& grid, const TriMesh& mesh, const
     p[i] = start(i);
     if (wide[i] && !graph.of(i).empty()) unseen.push_back(std::uint32_t(i));
   }
-  for (int iteration = 0; iteration < options.iterations; ++iteration)
+  for (int iteration = 0; iteration < kIterations; ++iteration)
     for (const std::uint32_t i : unseen) {
       vec3 sum(0);
       for (const std::uint32_t j : graph.of(i)) sum += p[j];

@@ -12,7 +12,7 @@
 namespace photohull::refine {
 
 struct CloseOptions {
-  int rings = 3, belt = 2, iterations = 150;
+  int rings = 3, belt = 2;
   double longest = 2, thickness = 2;
 };
 
@@ -23,7 +23,6 @@ inline void describe(Described& to, CloseOptions& o) {
             "width around wider unseen patches that stays, for their rim would give way bit by "
             "bit");
   to.rule(o.belt <= o.rings, "belt", "must not exceed", "rings");
-  to.number("iterations", &o.iterations, at_least(0), "", "iterations of the Gauss-Seidel method");
   to.number("longest", &o.longest, from_to(0, SparseVolume::kBand), "voxels",
             "longest way that a vertex moves at once");
   to.number("thickness", &o.thickness, from_to(0, 1000), "voxels",

@@ -11,6 +11,7 @@ namespace {
 
 /// Of the fairing in Jacobi's method, whose operator (the Laplacian's square) reaches up to 4.
 constexpr double kDamping = 2;
+constexpr double kDistinctBy = 0.1;  // lead over the second peak that gives full weight
 
 template <typename F>
 void for_vertices(std::size_t count, F&& f) {
@@ -74,7 +75,7 @@ std::vector<Peak> find_peaks(const Matches& matches, const PeakOptions& options)
     const double shift =
         curvature < 0 ? std::clamp(0.5 * (s[best - 1] - s[best + 1]) / curvature, -0.5, 0.5) : 0;
     const double sure = (score - options.least_score) / (options.sure_score - options.least_score);
-    const double lead = (s[best] - second) / options.distinct_by;
+    const double lead = (s[best] - second) / kDistinctBy;
     const double sharp = -curvature / 0.05;
     peaks[i].offset = float(matches.range.at(double(best) + shift));
     peaks[i].score = s[best];

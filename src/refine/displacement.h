@@ -23,7 +23,7 @@ struct Peak {
 };
 
 struct PeakOptions {
-  double least_score = 0.3, sure_score = 0.8, thick = 4, distinct_by = 0.1;
+  double least_score = 0.3, sure_score = 0.8, thick = 4;
 };
 
 inline void describe(Described& to, PeakOptions& o) {
@@ -34,8 +34,6 @@ inline void describe(Described& to, PeakOptions& o) {
   to.rule(o.least_score < o.sure_score, "least_score", "must lie below", "sure_score");
   to.number("thick", &o.thick, above(0, 1000), "voxels",
             "body behind a vertex that gives full weight");
-  to.number("distinct_by", &o.distinct_by, above(0), "",
-            "lead over the second peak that gives full weight");
 }
 
 /// The best interior maximum of each curve, to a fraction of a step by a parabola. What known noise

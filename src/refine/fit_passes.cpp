@@ -17,6 +17,9 @@
 namespace photohull::refine {
 namespace {
 
+// What membrane and fairing are for offsets that were fitted: these know more than peaks do.
+constexpr double kFitMembrane = 30, kFitFairing = 3;
+
 /// What fitted peaks tell, whatever their taps' spacing.
 std::vector<float> weights_told(std::span<const Peak> peaks, std::span<const float> spacings) {
   std::vector<float> out;
@@ -76,7 +79,7 @@ class FitPass {
                                            : 0;
     for (float& t : tight_at) t *= float(tight);
     RegularizeOptions smooth = options_.regularize;
-    smooth.membrane = options_.fit.membrane, smooth.fairing = options_.fit.fairing;
+    smooth.membrane = kFitMembrane, smooth.fairing = kFitFairing;
     std::vector<float> moves = regularize(graph_, peaks, positions_, mesh_.normals, trust, smooth);
     if (seats) seat_outlines(hull, job_.cones, surfels(), {told, tight_at}, options_.seat, moves);
     graph_ = {};

@@ -21,7 +21,7 @@ struct FitOptions {
   double least_spacing = 0.4, pixel_spacing = 1, noise = 0.6;
   double least_score = 0.3, sure_score = 0.8, slope = 0.05;
   double largest_offset = 0.5, largest_step = 0.5, most_bend = 1;
-  double sure = 0.1, most_weight = 4, membrane = 30, fairing = 3;
+  double sure = 0.1, most_weight = 4;
 };
 
 inline void describe(Described& to, FitOptions& o) {
@@ -49,10 +49,6 @@ inline void describe(Described& to, FitOptions& o) {
             "standard deviation of an offset that weighs 1");
   to.number("most_weight", &o.most_weight, above(0, 1000), "",
             "greatest weight of an offset when they are smoothed");
-  to.number("membrane", &o.membrane, at_least(0), "",
-            "what regularize.membrane is, for fitted offsets");
-  to.number("fairing", &o.fairing, at_least(0), "",
-            "what regularize.fairing is, for fitted offsets");
 }
 
 /// Standing of a surface in the views that were held out.

@@ -17,9 +17,10 @@ namespace {
 
 using glm::ivec3;
 
-constexpr float kFreed = 0.5f;  // distance of a voxel that was freed, voxels
-constexpr int kLeastViews = 3;  // that a surfel was matched in
-constexpr int kPasses = 3;      // of freeing what freed voxels outnumber
+constexpr float kFreed = 0.5f;        // distance of a voxel that was freed, voxels
+constexpr double kLeastWeight = 0.5;  // of a surfel's peak: smooth shading agrees anywhere
+constexpr int kLeastViews = 3;        // that a surfel was matched in
+constexpr int kPasses = 3;            // of freeing what freed voxels outnumber
 
 /// Where lines pass through the volume's inside: a voxel comes as often as lines do.
 VoxelSet blocked(std::span<const Sightline> lines, std::span<const projtex::GridCamera> cameras,
@@ -102,7 +103,7 @@ std::vector<Sightline> find_sightlines(gpu::Context& context, const GridSpec& gr
   std::vector<ViewChoice> pairs;  // a witness, and a view that the surfel is hidden from
   for (std::size_t i = 0; i < known.positions.size(); ++i) {
     const ViewChoice& choice = known.choices[i];
-    if (choice.views.size() < kLeastViews || known.weights[i] < options.least_weight) continue;
+    if (choice.views.size() < kLeastViews || known.weights[i] < kLeastWeight) continue;
     for (const int view : choice.hidden) {
       const int witness = nearest_chosen(choice, view, cameras, glm::dvec3(known.positions[i]));
       surfels.push_back({known.positions[i], known.normals[i]});

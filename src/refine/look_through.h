@@ -16,15 +16,13 @@
 namespace photohull::refine {
 
 struct LookOptions {
-  double least_score = 0.9, least_weight = 0.5, margin = 2;
+  double least_score = 0.9, margin = 2;
   int least_lines = 2;
 };
 
 inline void describe(Described& to, LookOptions& o) {
   to.number("least_score", &o.least_score, from_to(-1, 1), "",
             "score of a surfel taken for surface, and of a view taken to show it");
-  to.number("least_weight", &o.least_weight, from_to(0, 1), "",
-            "weight of the surfel's peak, for smooth shading agrees anywhere");
   to.number("margin", &o.margin, from_to(0, 1000), "voxels",
             "height above such surface in which voxels stay");
   to.number("least_lines", &o.least_lines, at_least(1), "", "lines of sight that free a voxel");

@@ -18,7 +18,7 @@ inline constexpr int kPatchTaps = 13;
 struct MatchOptions {
   double least_spacing = 0.4, pixel_spacing = 1, most_bend = 1, best_pairs = 0.4;
   double shift = 1.5, depth_bias = 2.5, least_cosine = 0.2, seen_cosine = 0.02;
-  double nearest_angle = 5, farthest_angle = 70, sparse_angle = 75, duplicate_angle = 8;
+  double nearest_angle = 5, farthest_angle = 70, duplicate_angle = 8;
 };
 
 inline void describe(Described& to, MatchOptions& o) {
@@ -46,8 +46,6 @@ inline void describe(Described& to, MatchOptions& o) {
   to.number("farthest_angle", &o.farthest_angle, from_to(0, 180), "degrees",
             "greatest angle between the reference and a view compared with it");
   to.rule(o.nearest_angle < o.farthest_angle, "nearest_angle", "must lie below", "farthest_angle");
-  to.number("sparse_angle", &o.sparse_angle, from_to(0, 180), "degrees",
-            "what match.farthest_angle is widened to where cameras are sparse");
   to.number("duplicate_angle", &o.duplicate_angle, from_to(0, 180), "degrees",
             "angle between views below which they tell nearly the same");
 }

@@ -10,6 +10,7 @@
 
 #include "carving/fit_grid.h"
 #include "core/error.h"
+#include "core/option_word.h"
 #include "refine/bounding_hull.h"
 #include "refine/checkpoint.h"
 #include "refine/fit_passes.h"
@@ -27,6 +28,8 @@ namespace {
 constexpr double kLeastPixels = 3;  // that a voxel of the first level is wide, without silhouettes
 constexpr double kNearReach = kStillReach;  // voxels of exact distance that a step needs
 constexpr double kAnglePerSpacing = 2.0;  // reach of a view's partners, in spacings of the cameras
+constexpr double kSparseAngle = 75;       // degrees, to which the farthest partners' is widened
+constexpr int kMiddleIterations = 2;      // of matching and moving, at the levels between
 constexpr double kFullReach = SparseVolume::kBand;
 
 /// Angles to the reference view that the cameras' spacing asks for: where neighbours stand far
@@ -44,7 +47,7 @@ MatchOptions fit_angles(std::span<const Camera> cameras, const glm::dvec3& middl
   }
   std::nth_element(nearest.begin(), nearest.begin() + long(nearest.size() / 2), nearest.end());
   const double wanted = kAnglePerSpacing * nearest[nearest.size() / 2];
-  options.farthest_angle = std::max(options.farthest_angle, std::min(wanted, options.sparse_angle));
+  options.farthest_angle = std::max(options.farthest_angle, std::min(wanted, kSparseAngle));
   return options;
 }
 
@@ -130,7 +133,7 @@ class SurfaceRefiner {
     const RefineOptions& options = job_.options;
     const int iterations = is_last(level) ? options.fine_iterations
                            : level == 0   ? options.coarse_iterations
-                                          : options.middle_iterations;
+                                          : kMiddleIterations;
     StepFindings findings;
     for (int i = 0; i < iterations; ++i) {
       progress_.check_cancelled();

@@ -50,7 +50,7 @@ struct RefineOptions {
   bool bounded = true;
   int levels = 0;
   static constexpr int kCoarsestVoxels = 80, kFewestVoxels = 20;
-  int coarse_iterations = 3, middle_iterations = 2, fine_iterations = 1;
+  int coarse_iterations = 3, fine_iterations = 1;
   int coarse_offsets = 11, fine_offsets = 7;
   double step = 0.5;
   int aggregations = 2;
@@ -87,8 +87,6 @@ inline void describe(Described& to, RefineOptions& o) {
       .zero = "automatic";
   to.number("coarse_iterations", &o.coarse_iterations, at_least(1), "",
             "iterations of matching and moving, at the first level");
-  to.number("middle_iterations", &o.middle_iterations, at_least(1), "",
-            "iterations of matching and moving, at the levels between");
   to.number("fine_iterations", &o.fine_iterations, at_least(1), "",
             "iterations of matching and moving, at the last level");
   to.number("coarse_offsets", &o.coarse_offsets, from_to(3, 64), "",

@@ -12,14 +12,12 @@
 namespace photohull::refine {
 
 struct RimOptions {
-  double weight = 30, reach = 1, told = 0.2;
+  double weight = 30, told = 0.2;
 };
 
 inline void describe(Described& to, RimOptions& o) {
   to.number("weight", &o.weight, from_to(0, 1000), "",
             "weight of a tight hull among the peaks, where nothing has texture; 0: none");
-  to.number("reach", &o.reach, above(0, 1000), "voxels",
-            "depth under the hull at which it has lost its say");
   to.number("told", &o.told, above(0, 1000), "",
             "mean weight of the peaks around at which the hull has lost its say, too");
 }

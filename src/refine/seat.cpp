@@ -18,6 +18,7 @@ constexpr int kRounds = 10;  // of averaging with the neighbours: three or four 
 constexpr float kHold = 0.001f;
 constexpr double kMembrane = 0.02, kFairing = 0.004;
 constexpr int kIterations = 8;
+constexpr double kUnsure = 0.1;  // voxels: standard deviation of a contact at its ray
 constexpr double kLeastTight = 1e-3;
 
 /// Unit normals of the faces around each vertex, weighted by area.
@@ -43,7 +44,7 @@ std::vector<Peak> asked(const SparseVolume& hull, std::span<const Contact> conta
     const double chance = (1 - c.along) * tight[c.a] + c.along * tight[c.b];
     const double odds = (1 - chance) / std::max(chance, kLeastTight);  // that it is elsewhere
     const double behind = double(c.lack) - double(c.least);
-    const double outline = options.unsure * options.unsure;
+    const double outline = kUnsure * kUnsure;
     const auto weight =
         float(outline / (outline + double(c.unsure) * double(c.unsure) + odds * behind * behind));
     for (const auto& [vertex, share] : {std::pair(c.a, 1 - c.along), std::pair(c.b, c.along)}) {
@@ -101,7 +102,7 @@ void seat_outlines(const SparseVolume& hull, const SilhouetteCones& cones,
   }
   for (std::size_t i = 0; i < n; ++i) {
     const double under = -hull.interpolated(glm::dvec3(positions[i])) - moves[i];
-    const double known = options.unsure / std::sqrt(double(beliefs.told[i]) + kHold);
+    const double known = kUnsure / std::sqrt(double(beliefs.told[i]) + kHold);
     if (under < std::min(options.margin * double(beliefs.tight[i]), known))
       moves[i] += float(options.margin);
   }

@@ -13,7 +13,7 @@ namespace photohull::refine {
 
 struct SeatOptions {
   int passes = 2;
-  double reach = 1.5, unsure = 0.1, margin = 0.4;
+  double reach = 1.5, margin = 0.4;
 };
 
 inline void describe(Described& to, SeatOptions& o) {
@@ -21,14 +21,12 @@ inline void describe(Described& to, SeatOptions& o) {
             "passes of finding contacts and moving towards them; 0: nothing is seated");
   to.number("reach", &o.reach, below(0, SparseVolume::kBand), "voxels",
             "distance that the surface may be short of an outline");
-  to.number("unsure", &o.unsure, above(0, 1000), "voxels",
-            "standard deviation of a contact at its ray");
   to.number("margin", &o.margin, from_to(0, 1), "voxels",
             "how far off interpolated distances to a curved hull may be");
 }
 
 /// How surely photographs tell the offsets of surfels, as seat_outlines takes it: `weights` that
-/// are 1 at a standard deviation of `SeatOptions::unsure` (0: nothing told), averaged over the
+/// are 1 at a standard deviation of a tenth of a voxel (0: nothing told), averaged over the
 /// surface around such that single surfels with strong claims among many without any count little.
 std::vector<float> told_around(const VertexGraph& graph, std::span<const float> weights);
 
@@ -42,12 +40,12 @@ struct SeatBeliefs {
 /// grid, such that the moved surface touches the rays through the
 /// silhouettes' outlines: least squares of what photographs tell (the moves as they come, by
 /// `told`, see told_around) and of what silhouettes tell. Each ray touches the object: the part of
-/// the surface that comes nearest to it is to, with options.unsure. Another part next to the ray
-/// may, the less the farther it stands behind the nearest, and the more the hull can be believed:
-/// `tight` in [0, 1] is the chance that surface lies on it, by vertex (pull_to_hull gives it; less
-/// at thin parts, which hulls make too thick). Surface that ends closer under the hull than
-/// photographs can tell, and than the hull's distances are exact, is moved on beyond the hull: the
-/// caller intersects both.
+/// the surface that comes nearest to it is to, with such a standard deviation. Another part next to
+/// the ray may, the less the farther it stands behind the nearest, and the more the hull can be
+/// believed: `tight` in [0, 1] is the chance that surface lies on it, by vertex (pull_to_hull gives
+/// it; less at thin parts, which hulls make too thick). Surface that ends closer under the hull
+/// than photographs can tell, and than the hull's distances are exact, is moved on beyond the hull:
+/// the caller intersects both.
 void seat_outlines(const SparseVolume& hull, const SilhouetteCones& cones,
                    const MeshSurfels& surfels, const SeatBeliefs& beliefs,
                    const SeatOptions& options, std::vector<float>& moves);

@@ -10,20 +10,21 @@ namespace {
 using glm::ivec3;
 
 constexpr std::uint32_t kNone = 0xffffffffu;
-constexpr float kAhead = 0.8f;  // voxels before a vertex: in what it looks into
-constexpr int kPositions = 4;   // along the normal
+constexpr float kLeastDepth = 0.3f;  // voxels under the hull from where on space is hollow
+constexpr float kAhead = 0.8f;       // voxels before a vertex: in what it looks into
+constexpr int kPositions = 4;        // along the normal
 
 /// The connected parts of the space under the hull that the volume leaves empty, as far as the
 /// volume's bricks reach.
 class Hollows {
  public:
-  Hollows(const SparseVolume& hull, const SparseVolume& volume, float least_depth)
+  Hollows(const SparseVolume& hull, const SparseVolume& volume)
       : volume_(volume), label_(volume.distance.size(), kNone) {
     for (std::size_t slot = 0; slot < volume.bricks.size(); ++slot)
       for (int i = 0; i < kBrickVoxels; ++i) {
         const std::size_t index = slot * kBrickVoxels + std::size_t(i);
         if (volume.distance[index] <= 0) continue;
-        if (hull.at(voxel_of(slot, i)) >= -least_depth) continue;
+        if (hull.at(voxel_of(slot, i)) >= -kLeastDepth) continue;
         label_[index] = std::uint32_t(parent_.size());
         parent_.push_back(std::uint32_t(parent_.size()));
       }
@@ -82,7 +83,7 @@ std::size_t fill_unproven(const SparseVolume& hull, std::span<const glm::vec3> p
                           std::span<const glm::vec3> normals, std::span<const float> weights,
                           const UnprovenOptions& options, SparseVolume& volume) {
   if (options.least_weight == 0) return 0;
-  Hollows hollows(hull, volume, float(options.least_depth));
+  Hollows hollows(hull, volume);
   if (hollows.size() == 0) return 0;
   struct Sum {
     double weight = 0, count = 0, unseen = 0;

@@ -11,14 +11,12 @@
 namespace photohull::refine {
 
 struct UnprovenOptions {
-  double least_weight = 0.12, least_depth = 0.3;
+  double least_weight = 0.12;
 };
 
 inline void describe(Described& to, UnprovenOptions& o) {
   to.number("least_weight", &o.least_weight, from_to(0, 1), "",
             "mean weight of the peaks that a hollow's surface must have; 0: none");
-  to.number("least_depth", &o.least_depth, from_to(0, SparseVolume::kBand), "voxels",
-            "depth under the hull from where on space counts as hollow");
 }
 
 /// Fills the hollows of the volume under its hull whose surface no photograph tells of: where

@@ -10,6 +10,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/json_levels.h"
+#include "core/option_word.h"
 #include "core/read_file.h"
 #include "io/image_file.h"
 #include "io/mesh/write_mesh.h"
@@ -48,7 +49,7 @@ void make_folder(const fs::path& folder) {
   fs::create_directories(folder, failure);
   if (failure)
     throw Error(concat(folder.string(), ": the folder cannot be made (", failure.message(),
-                       "); choose another with --out"));
+                       "); choose another with ", option_word("out")));
 }
 
 /// Takes the pictures of an older synthesized scene out of a folder that holds one.
@@ -56,7 +57,8 @@ void clear_old_scene(const fs::path& folder) {
   std::error_code failure;
   if (!fs::exists(folder, failure)) return;
   if (!fs::is_directory(folder, failure))
-    throw Error(concat(folder.string(), ": is not a folder; choose another with --out"));
+    throw Error(
+        concat(folder.string(), ": is not a folder; choose another with ", option_word("out")));
   const bool empty = fs::is_empty(folder, failure);
   if (failure)
     throw Error(concat(folder.string(), ": cannot be looked into (", failure.message(), ")"));
@@ -66,7 +68,8 @@ void clear_old_scene(const fs::path& folder) {
   if (!views)
     throw Error(concat(folder.string(),
                        ": the folder holds other files than a synthesized scene; nothing was "
-                       "written, choose an empty or a new folder with --out"));
+                       "written, choose an empty or a new folder with ",
+                       option_word("out")));
   for (const std::string& name : *views) {
     fs::remove(folder / kPlates / (name + ".png"), failure);
     for (const auto& [part, extension] : kParts)

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/json_levels.h"
+#include "core/option_word.h"
 #include "core/read_file.h"
 #include "synth/spec_reader.h"
 #include "synth/spec_visit.h"
@@ -171,7 +172,7 @@ int view_count(const CameraSpec& cameras) {
 void set_view_count(CameraSpec& cameras, int count) {
   const int rings = cameras.layout == "rings" ? int(cameras.rings.size()) : 1;
   if (count < rings || count > kMostViews)
-    throw UsageError(concat("--views ", count, ": expected a number from ", rings,
+    throw UsageError(concat(option_word("views", count), ": expected a number from ", rings,
                             rings > 1 ? " (one for every ring)" : "", " to ", kMostViews));
   if (cameras.layout != "rings") {
     cameras.count = count;

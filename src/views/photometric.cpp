@@ -15,6 +15,7 @@
 
 #include "core/error.h"
 #include "core/median.h"
+#include "core/option_word.h"
 
 namespace photohull {
 namespace {
@@ -233,8 +234,8 @@ class Solver {
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem, &summary);
     if (!summary.IsSolutionUsable())
-      throw Error("the gains of the views were not found (" + summary.message +
-                  "); use --photometric off");
+      throw Error(concat("the gains of the views were not found (", summary.message, "); use ",
+                         option_word("photometric", "off")));
   }
 
   const std::vector<PhotometricPoint>& points_;

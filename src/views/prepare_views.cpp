@@ -80,10 +80,13 @@ void for_each_view(std::size_t count, double begin, double end, Progress& progre
 
 }  // namespace
 
-void PrepareOptions::validate() const {
-  if (!(max_frame_growth >= 1.0 && max_frame_growth <= 8.0))
-    throw UsageError(concat("max_frame_growth must lie in [1, 8], not ", max_frame_growth));
+void describe(Described& to, PrepareOptions& o) {
+  to.flag("grabcut", &o.cut_masks, "let GrabCut place the contours");
+  to.number("max_frame_growth", &o.max_frame_growth, from_to(1, 8), "",
+            "times that an undistorted picture may be as large as the photograph");
 }
+
+void PrepareOptions::validate() const { check_options(*this); }
 
 PreparedViews prepare_views(Scene& scene, const ViewLoader& loader, const PrepareOptions& options,
                             Progress& progress) {

@@ -1,6 +1,7 @@
 // From a scene's files to views that are ready for carving: decoded, pinhole, with masks.
 #pragma once
 
+#include "core/describe.h"
 #include "core/prepared_views.h"
 #include "core/progress.h"
 #include "core/scene.h"
@@ -22,12 +23,15 @@ struct PrepareOptions {
   /// A picture that cannot be decoded is an error; else it is left out while enough remain.
   bool strict = false;
   /// Undistorted pictures may reach at most this many times as far from the principal point as
-  /// the photograph does: wide-angle corners would otherwise stretch without end. In [1, 8].
+  /// the photograph does: wide-angle corners would otherwise stretch without end.
   double max_frame_growth = 2.0;
 
   /// Throws UsageError for values outside their range.
   void validate() const;
 };
+
+/// Those that LoadSceneOptions do not decide.
+void describe(Described& to, PrepareOptions& options);
 
 /// Decodes in parallel (within the caller's task arena), checks sizes, finds masks and removes
 /// lens distortion. Undistorted pictures keep the focal length in pixels at the principal point

@@ -103,7 +103,7 @@ TEST(Verdict, StemsThatMasksOrVoxelsDoNotShow) {
   expect(with([](Signals& s) { s.stems = 0.6, s.stems_restored = 0.9; }), Level::kDoubtful,
          "90 % of the thin parts were put back from the photographs");
   expect(with([](Signals& s) { s.stems = 0.6, s.voxel_size = 3 * s.far, s.resolution = 40; }),
-         Level::kDoubtful, "use --resolution 120");
+         Level::kDoubtful, "use resolution=120");
   EXPECT_EQ(with([](Signals& s) { s.stems = 0.1, s.voxel_size = 3 * s.far; }).level, Level::kGood);
 }
 
@@ -178,7 +178,7 @@ TEST(Verdict, PointsThatCoarseVoxelsPutAsideAskForFinerOnes) {
   expect(with([](Signals& s) {
            s.match.beyond_far = 0.3, s.voxel_size = 3 * s.far, s.resolution = 40;
          }),
-         Level::kDoubtful, "use --resolution 120");
+         Level::kDoubtful, "use resolution=120");
 }
 
 TEST(Verdict, PartsThinnerThanVoxelsNameTheResolutionThatShowsThem) {
@@ -188,9 +188,9 @@ TEST(Verdict, PartsThinnerThanVoxelsNameTheResolutionThatShowsThem) {
   const Verdict v = judged(s);
   EXPECT_EQ(v.level, Level::kDoubtful);
   EXPECT_THAT(v.reasons.front(), HasSubstr("about 3 px wide"));
-  EXPECT_THAT(v.reasons.front(), HasSubstr("--resolution 200"));
+  EXPECT_THAT(v.reasons.front(), HasSubstr("resolution=200"));
   s.missed_width = 0.4;  // voxels below half a pixel would show nothing more
-  EXPECT_THAT(judged(s).reasons.front(), HasSubstr("--resolution 600"));
+  EXPECT_THAT(judged(s).reasons.front(), HasSubstr("resolution=600"));
   s.missed_width = 30;
   expect(judged(s), Level::kDoubtful, "silhouettes empty");
   s.missed_width = 1, s.voxel_size = 0.005;

@@ -129,7 +129,7 @@ TEST(JudgeCalibration, ABoardThatLiesFlatOnTheTableIsRefused) {
   RecordProperty("object_error", std::to_string(c.object_error));
   const CalibrationJudgement judged = judge_calibration(views, c);
   EXPECT_THAT(judged.refusal, HasSubstr("lean the board on the table"));
-  EXPECT_THAT(judged.refusal, HasSubstr("--lens-from"));
+  EXPECT_THAT(judged.refusal, HasSubstr("with lens_from"));
 }
 
 TEST(JudgeCalibration, ABoardThatLeansOnTheTableServes) {

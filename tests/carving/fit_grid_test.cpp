@@ -63,7 +63,7 @@ TEST(FitGrid, RefusesAbsurdResolutionsWithTheMemoryTheyWouldTake) {
   } catch (const Error& e) {
     EXPECT_EQ(e.kind(), ErrorKind::kFailed);
     EXPECT_THAT(e.what(), ::testing::HasSubstr("MiB"));
-    EXPECT_THAT(e.what(), ::testing::HasSubstr("--resolution"));
+    EXPECT_THAT(e.what(), ::testing::HasSubstr("lower resolution"));
   }
   EXPECT_THROW(fit_grid(cube, 1e-300), Error);
   EXPECT_NO_THROW(fit_grid(cube, voxel_size_for(cube, 3000)));

@@ -94,7 +94,8 @@ TEST_F(EvaluatePhotos, WrongUsageIsTold) {
   usage(judge("right.obj", {"--views", "3", "--lenders", "2-4"}),
         {"--lenders: view 3 (view3.png)"});
   usage(judge("right.obj", {"--views", "3", "--lenders", "99"}), {"--lenders: '99'"});
-  usage(judge("right.obj", {"--views", "3", "--window", "6"}), {"--window must be odd"});
+  usage(judge("right.obj", {"--views", "3", "--window", "6"}),
+        {"--window 6: expected an odd number of pixels from 3 to 63"});
   usage(judge("right.obj", {"--views", "3", "--least-angle", "70"}), {"--least-angle", "70"});
 }
 

@@ -50,6 +50,7 @@ TEST_F(MasksCommand, OnePlateServesAFixedCamera) {
   }
   // What was written is what serves as masks.
   EXPECT_EQ(listing(out()).size(), std::size_t(kViews));
+  EXPECT_TRUE(fs::exists(path("out/view5.png")));
   const json given =
       json::parse(succeed(masks({"--masks", out(), "--compare", path("cutouts"), "--json"})).out);
   EXPECT_EQ(given["views"][5]["iou"], j["views"][5]["iou"]);
@@ -58,6 +59,30 @@ TEST_F(MasksCommand, OnePlateServesAFixedCamera) {
   const Finished lacking = run_photohull(masks({"--masks", out(), "--compare", path("cutouts")}));
   EXPECT_EQ(lacking.code, 1);
   EXPECT_THAT(lacking.err, testing::HasSubstr("there is no mask for view5.png"));
+}
+
+TEST_F(MasksCommand, PhotographsAreNotOverwritten) {
+  const std::string photographs = fs::path(image(0)).parent_path().string();
+  const std::string before = read_bytes(image(0));
+  const Finished run = run_photohull(masks({"--out", photographs}));
+  EXPECT_EQ(run.code, 2);
+  EXPECT_THAT(run.err, HasSubstr("is the folder of the scene's photographs"));
+  EXPECT_EQ(read_bytes(image(0)), before);
+}
+
+TEST_F(MasksCommand, PhotographsThatShareANameKeepTheirFolders) {
+  for (const auto& [view, name] : {std::pair{3, "left/same.png"}, std::pair{4, "right/same.png"}}) {
+    const fs::path place = folder_ / "images" / name;
+    fs::create_directories(place.parent_path());
+    fs::rename(image(view), place);
+    scene_.views[std::size_t(view)].image = place;
+  }
+  write_scene_file();
+  succeed(masks({"--masks", "background", "--out", out()}));
+  EXPECT_THAT(listing(out()),
+              testing::IsSupersetOf({"images/left/same.png.png", "images/right/same.png.png"}));
+  EXPECT_EQ(json::parse(succeed(masks({"--masks", out(), "--strict", "--json"})).out)["source"],
+            "mask files");
 }
 
 TEST_F(MasksCommand, ReportsSayHowSureTheMasksAre) {

@@ -121,7 +121,7 @@ TEST_F(Output, PlainLinesOnATerminalThatTakesNoEscapeSequences) {
 TEST_F(Output, ASecondJobIntoTheSameFolderIsRefused) {
   put_earlier_results();
   {
-    const FolderLock first(out(), "--out");
+    const FolderLock first(out(), "out");
     fail(1, reconstruct({"--method", "hull"}),
          {"--out " + out(), "another photohull is at work there"});
     expect_earlier_results();

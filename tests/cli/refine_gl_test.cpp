@@ -88,7 +88,8 @@ TEST_F(Refine, WrongTuningIsRefused) {
   refuse("refine", "levels", "--tune levels: expected NAME=NUMBER");
   refuse("refine", "levels=9", "levels must be 0 (automatic) to 8");
   refuse("refine", "match.best_pairs=0", "match.best_pairs");
-  refuse("hull", "levels=2", "--tune levels=2: the hull has no parameters");
+  refuse("hull", "levels=2",
+         "--tune levels=2: this method has no 'levels'; it has missing.full_miss");
 }
 
 }  // namespace

@@ -211,7 +211,10 @@ TEST_F(Usage, InfoDrawsTheBox) {
   EXPECT_GT(picture.width, 1000);
   EXPECT_GT(picture.height, 1000);
   fail(2, {"info", scene(), "--picture", ""}, {"--picture is empty"});
-  fail(1, {"info", scene(), "--picture", path("nowhere/box.png")}, {"nowhere"});
+  succeed({"info", scene(), "--picture", path("new/folder/box.png")});
+  EXPECT_EQ(io::read_image(path("new/folder/box.png")).width, picture.width);
+  fail(1, {"info", scene(), "--picture", path("bbox.txt/box.png")},
+       {"bbox.txt: the folder cannot be made", "choose another with --picture"});
 }
 
 TEST_F(Usage, DevicesSaysWhatAutoTakes) {

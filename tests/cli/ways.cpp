@@ -171,7 +171,7 @@ Heard try_way(const Way& way) {
   std::optional<SmallDisk> disk;
   if (way.with.contains("disk of")) disk.emplace(scratch / "out", way.with["disk of"]);
   std::optional<FolderLock> lock;
-  if (way.with.contains("at work in")) lock.emplace(names.filled(way.with["at work in"]), "--out");
+  if (way.with.contains("at work in")) lock.emplace(names.filled(way.with["at work in"]), "out");
   Heard heard;
   heard.possible = !disk || disk->is_there();
   const Finished finished = run(way.run, surroundings_of(way));

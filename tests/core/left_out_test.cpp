@@ -76,7 +76,7 @@ TEST(NoteLeftOut, TwoOfThreeAndThreeMustRemain) {
   EXPECT_EQ(error_of(scene_of(3), unusable(1)), "no error");
   EXPECT_THAT(error_of(scene_of(2), unusable(1)), HasSubstr("three views, must remain"));
   EXPECT_THAT(error_of(scene_of(0), unusable(4)), HasSubstr("4 of 4"));
-  EXPECT_THAT(error_of(scene_of(20), unusable(1), true), HasSubstr("--strict asks for all"));
+  EXPECT_THAT(error_of(scene_of(20), unusable(1), true), HasSubstr("strict asks for all"));
 }
 
 /// What was left out before counts, though the views were thinned out in between.

@@ -260,15 +260,13 @@ TEST(Evaluate, BadInputIsNamed) {
   EXPECT_THAT(error_of(good, with([](auto& o) {
                          o.thresholds = {0.1, 0};
                        })),
-              HasSubstr("--thresholds"));
-  EXPECT_THAT(error_of(good, with([](auto& o) { o.thresholds = {1.5}; })),
-              HasSubstr("--thresholds"));
-  EXPECT_THAT(error_of(good, with([](auto& o) { o.thresholds = {NAN}; })),
-              HasSubstr("--thresholds"));
-  EXPECT_THAT(error_of(good, with([](auto& o) { o.thresholds = {}; })), HasSubstr("--thresholds"));
-  EXPECT_THAT(error_of(good, with([](auto& o) { o.absolute = {-1}; })), HasSubstr("--absolute"));
-  EXPECT_THAT(error_of(good, with([](auto& o) { o.samples = 10; })), HasSubstr("--samples"));
-  EXPECT_THAT(error_of(good, with([](auto& o) { o.min_views = 0; })), HasSubstr("--min-views"));
+              HasSubstr("thresholds"));
+  EXPECT_THAT(error_of(good, with([](auto& o) { o.thresholds = {1.5}; })), HasSubstr("thresholds"));
+  EXPECT_THAT(error_of(good, with([](auto& o) { o.thresholds = {NAN}; })), HasSubstr("thresholds"));
+  EXPECT_THAT(error_of(good, with([](auto& o) { o.thresholds = {}; })), HasSubstr("thresholds"));
+  EXPECT_THAT(error_of(good, with([](auto& o) { o.absolute = {-1}; })), HasSubstr("absolute"));
+  EXPECT_THAT(error_of(good, with([](auto& o) { o.samples = 10; })), HasSubstr("samples"));
+  EXPECT_THAT(error_of(good, with([](auto& o) { o.min_views = 0; })), HasSubstr("min_views"));
 }
 
 TEST(DistanceStats, QuantilesAreTheInvertedDistribution) {

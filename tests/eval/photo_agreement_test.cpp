@@ -146,7 +146,7 @@ TEST(PhotoAgreement, BadInputIsNamed) {
   EXPECT_THAT(error(mesh, {1}, {0, 1}), HasSubstr("view 1 is held out and lends"));
   PhotoOptions even;
   even.window = 8;
-  EXPECT_THAT(error(mesh, {2}, {1}, even), HasSubstr("--window must be odd"));
+  EXPECT_THAT(error(mesh, {2}, {1}, even), HasSubstr("an odd number of pixels from 3 to 63"));
 }
 
 TEST(PhotoAgreement, IsTheSameWithOneThreadAndCanBeCancelled) {

@@ -102,7 +102,7 @@ TEST(Reliability, RefusesWhatSaysNothing) {
   EXPECT_THAT(message_of<Error>([&] { measure(1); }), HasSubstr("vertex 2"));
   result.confidence[2] = 1;
   for (const double d : {0.0, -1.0, std::numeric_limits<double>::infinity()})
-    EXPECT_THAT(message_of<UsageError>([&] { measure(d); }), HasSubstr("--reliability"));
+    EXPECT_THAT(message_of<UsageError>([&] { measure(d); }), HasSubstr("reliability"));
 }
 
 }  // namespace

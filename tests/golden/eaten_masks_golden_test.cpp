@@ -33,14 +33,13 @@ Result run(const std::string& degradations, const std::string& background, int p
   pipeline::ReconstructOptions options;
   options.method = pipeline::Method::kHull;
   options.device = "software";
-  const pipeline::Reconstruction made = pipeline::Reconstructor(options).run(
-      pipeline::load_photographs(folder / "scene"), silent);
+  const pipeline::Reconstruction made =
+      pipeline::Reconstructor(options).run(pipeline::load_photographs(folder / "scene"), silent);
   Result result{made.report};
   eval::EvaluateOptions judge;
   judge.samples = 20000;
   judge.columns = 64;
-  const eval::Evaluation e =
-      eval::evaluate(made.mesh, eval::read_truth(folder / "scene"), judge);
+  const eval::Evaluation e = eval::evaluate(made.mesh, eval::read_truth(folder / "scene"), judge);
   for (const eval::Score& score : e.seen.scores)
     if (score.threshold == 0.01) result.f = 100 * score.f;
   std::printf("F %.2f at 1 %%, %lld px restored\n", result.f,

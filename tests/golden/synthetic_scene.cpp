@@ -41,8 +41,8 @@ eval::Evaluation SyntheticScene::reconstruct(pipeline::Method method, int resolu
   options.sampler = sampler;
   options.device = "software";
   Progress silent;
-  const pipeline::Reconstruction result = pipeline::Reconstructor(options).run(
-      pipeline::load_photographs(folder_ / "scene"), silent);
+  const pipeline::Reconstruction result =
+      pipeline::Reconstructor(options).run(pipeline::load_photographs(folder_ / "scene"), silent);
   eval::EvaluateOptions judge;
   judge.samples = 50000;
   judge.columns = 64;

@@ -56,8 +56,8 @@ TEST_F(TextureTest, MoreThanTheDeviceHasIsRefusedByName) {
     return "";
   };
   for (const std::string& text : {message(65, 4, 1), message(4, 65, 1)})
-    EXPECT_NE(text.find("--image-scale"), std::string::npos) << text;
-  EXPECT_NE(message(4, 4, 4).find("--views"), std::string::npos) << message(4, 4, 4);
+    EXPECT_NE(text.find("(image_scale)"), std::string::npos) << text;
+  EXPECT_NE(message(4, 4, 4).find("(views)"), std::string::npos) << message(4, 4, 4);
   set_current_limits(&context_.limits());
 }
 

@@ -108,11 +108,11 @@ TEST_F(LoadScene, ViewsAreHeldOut) {
   EXPECT_THAT(rest("0-1", "2"), ElementsAre("a.png", "b.png"));  // an index into all views
   LoadSceneOptions options;
   options.hold_out = "3";
-  EXPECT_THAT(error_with(options), HasSubstr("--hold-out: '3' is out of range"));
+  EXPECT_THAT(error_with(options), HasSubstr("hold_out: '3' is out of range"));
   options.hold_out = "0-1";
-  EXPECT_THAT(error_with(options), HasSubstr("1 view is left by --hold-out, but at least 2"));
+  EXPECT_THAT(error_with(options), HasSubstr("1 view is left by hold_out, but at least 2"));
   options.hold_out = "*";
-  EXPECT_THAT(error_with(options), HasSubstr("0 views are left by --hold-out"));
+  EXPECT_THAT(error_with(options), HasSubstr("0 views are left by hold_out"));
 }
 
 // Leaving a view out is the mend that the error for a missing image proposes.
@@ -159,7 +159,7 @@ TEST_F(LoadScene, MasksMayBeCalledNameMask) {
 TEST_F(LoadScene, AMaskDirectoryMayLackSome) {
   LoadSceneOptions options;
   options.masks = MaskSource::kDirectory;
-  EXPECT_THAT(error_with(options), HasSubstr("--masks is empty"));
+  EXPECT_THAT(error_with(options), HasSubstr("masks is empty"));
   options.mask_directory = folder_ / "cut";
   EXPECT_THAT(error_with(options), HasSubstr("no such mask folder"));
   put_image("cut/b.png.png");
@@ -172,7 +172,7 @@ TEST_F(LoadScene, AMaskDirectoryMayLackSome) {
   options.strict = true;
   EXPECT_THAT(error_with(options),
               AllOf(HasSubstr("cut holds no mask for 2 of 3 views (a.png, c.png)"),
-                    HasSubstr("--strict"), HasSubstr("a.png.png and a.png, .jpg")));
+                    HasSubstr("strict asks"), HasSubstr("a.png.png and a.png, .jpg")));
   put_image("cut/a.png");
   put_image("cut/c.png", 8, 7);
   EXPECT_THAT(error_with(options), AllOf(HasSubstr("c.png"), HasSubstr("8 x 7")));
@@ -217,7 +217,8 @@ TEST_F(LoadScene, AnAutomaticMaskFolderThatLacksSomeIsRefusedWhenStrict) {
   put_image("masks/b.png");
   LoadSceneOptions options;
   options.strict = true;
-  EXPECT_THAT(error_with(options), AllOf(HasSubstr("1 of 3 views (c.png)"), HasSubstr("--strict")));
+  EXPECT_THAT(error_with(options),
+              AllOf(HasSubstr("1 of 3 views (c.png)"), HasSubstr("strict asks")));
   put_image("masks/c.png");
   EXPECT_THAT(load_scene(folder_, options).warnings, IsEmpty());
 }
@@ -227,7 +228,7 @@ TEST_F(LoadScene, BoxOptionComesFirst) {
   LoadSceneOptions options;
   options.box = Box{{0, 0, 0}, {1, 2, 3}};
   const Scene scene = load_scene(folder_, options);
-  EXPECT_EQ(scene.box_source, "--box");
+  EXPECT_EQ(scene.box_source, "box");
   EXPECT_EQ(scene.box->max, glm::dvec3(1, 2, 3));
 }
 
@@ -237,14 +238,14 @@ TEST_F(LoadScene, SwappedCornersOfTheBoxOptionAreSortedAndTold) {
   Scene scene = load_scene(folder_, options);
   EXPECT_EQ(scene.box->min, glm::dvec3(0, 0, 0));
   EXPECT_EQ(scene.box->max, glm::dvec3(1, 2, 3));
-  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("--box are swapped along x, z")));
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("of box are swapped along x, z")));
   options.box = Box{{0, 0, 0}, {1, 2, 3}};
   EXPECT_THAT(load_scene(folder_, options).warnings, IsEmpty());
 }
 
 TEST_F(LoadScene, PhotographsElsewhereAreFoundByTheOption) {
   fs::rename(folder_ / "images", folder_ / "moved");
-  EXPECT_THAT(error_with({}), AllOf(HasSubstr("not found"), HasSubstr("--images says where")));
+  EXPECT_THAT(error_with({}), AllOf(HasSubstr("not found"), HasSubstr("; images says where")));
   LoadSceneOptions options;
   options.images = folder_ / "moved";
   const Scene scene = load_scene(folder_, options);
@@ -255,7 +256,7 @@ TEST_F(LoadScene, PhotographsElsewhereAreFoundByTheOption) {
   fs::remove(folder_ / "moved" / "b.png");
   EXPECT_THAT(error_with(options), HasSubstr("not found (b.png; looked in"));
   options.images = folder_ / "nowhere";
-  EXPECT_THAT(error_with(options), AllOf(HasSubstr("nowhere"), HasSubstr("--images")));
+  EXPECT_THAT(error_with(options), AllOf(HasSubstr("nowhere"), HasSubstr("(images)")));
 }
 
 TEST_F(LoadScene, FormatsWhoseCamerasNeedPhotographsFindThemElsewhereToo) {

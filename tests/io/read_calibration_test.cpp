@@ -79,7 +79,7 @@ TEST_F(ReadCalibration, RigsMomentsAreChosenByName) {
     for (const char* moment : {"1", "2"})
       put_image(std::string("images/") + camera + "/" + moment + ".png");
   EXPECT_THAT(error_of([&] { load(rig(), {}); }),
-              AllOf(HasSubstr("left holds 2 pictures"), HasSubstr("--moment")));
+              AllOf(HasSubstr("left holds 2 pictures"), HasSubstr("say with moment")));
   EXPECT_EQ(load(rig(), {{}, {}, {}, "2"}).views[1].image, folder_ / "images/right/2.png");
   EXPECT_THAT(error_of([&] {
                 load(rig(), {{}, {}, {}, "7"});
@@ -136,14 +136,14 @@ TEST_F(ReadCalibration, CamerasSeeTheBoardBesideTheObject) {
   EXPECT_EQ(scene.views[1].camera.cam_from_world.translation.z, 1);
   EXPECT_EQ(scene.warnings.size(), 1u);
   EXPECT_THAT(error_of([&] { load(j, {{}, 10.0, {}, ""}); }), HasSubstr("are for turntables"));
-  EXPECT_THAT(error_of([&] { load(j, {{}, {}, {}, "x"}); }), HasSubstr("--moment is for rigs"));
+  EXPECT_THAT(error_of([&] { load(j, {{}, {}, {}, "x"}); }), HasSubstr("moment is for rigs"));
 }
 
 TEST_F(ReadCalibration, DamagedAndForeignFilesAreRefused) {
   put_image("images/left.png");
   put_image("images/right.png");
   EXPECT_THAT(error_of([&] { load_scene(put("calib.json", rig().dump())); }),
-              AllOf(HasSubstr("is a calibration"), HasSubstr("--images")));
+              AllOf(HasSubstr("is a calibration"), HasSubstr("images=")));
   EXPECT_THAT(error_of([&] { load({{"frames", 1}}, {}); }), HasSubstr("no file of photohull"));
   EXPECT_THAT(error_of([&] {
                 load(rig(), {folder_ / "nowhere", {}, {}, ""});
@@ -187,7 +187,7 @@ TEST_F(ReadCalibration, LensesAreReadFromCalibrations) {
   EXPECT_EQ(read_lens(rigs, 8, 6, "right").intrinsics.fx, 10);
   EXPECT_THAT(error_of([&] { read_lens(rigs, 8, 6, "top"); }),
               AllOf(HasSubstr("left, right"), HasSubstr("none is called top")));
-  EXPECT_THAT(error_of([&] { read_lens(rigs, 8, 6); }), HasSubstr("--rig"));
+  EXPECT_THAT(error_of([&] { read_lens(rigs, 8, 6); }), HasSubstr("give rig"));
   EXPECT_THAT(error_of([&] { read_lens(folder_ / "nowhere.json", 8, 6); }), HasSubstr("nowhere"));
 }
 
@@ -234,7 +234,8 @@ TEST_F(BoardImages, PatternsOfNames) {
   EXPECT_THAT(rig.moments, ElementsAre("7", "8"));
   put_image("shot7_camA.jpg.png");
   for (const char* bad : {"{camera}", "{camera}{moment}", "{camera}/{moment}/{camera}", ""})
-    EXPECT_THAT(error_of([&] { list_rig_images(folder_, bad); }), HasSubstr("--rig")) << bad;
+    EXPECT_THAT(error_of([&] { list_rig_images(folder_, bad); }), HasSubstr(concat("rig=", bad)))
+        << bad;
   EXPECT_THAT(error_of([&] { list_rig_images(folder_, "x{camera}/{moment}"); }),
               HasSubstr("none of 5 pictures"));
   fs::copy(folder_ / "shot8_camA.png", folder_ / "shot8_camA.PNG");

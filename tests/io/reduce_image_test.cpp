@@ -15,7 +15,8 @@ namespace {
 std::vector<std::uint8_t> noise(std::size_t count) {
   std::vector<std::uint8_t> bytes(count);
   std::uint32_t state = 1;
-  for (std::uint8_t& byte : bytes) byte = std::uint8_t((state = state * 1664525u + 1013904223u) >> 24);
+  for (std::uint8_t& byte : bytes)
+    byte = std::uint8_t((state = state * 1664525u + 1013904223u) >> 24);
   return bytes;
 }
 

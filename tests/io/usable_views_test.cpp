@@ -80,7 +80,7 @@ TEST_F(UsableViews, AFewAreMissing) {
   ASSERT_EQ(scene.left_out.size(), 4u);
   EXPECT_EQ(scene.left_out[3].reason, LeftOutView::Reason::kMissing);
   EXPECT_THAT(error_with(strict()), AllOf(HasSubstr("transforms.json frame 2"),
-                                          HasSubstr("4 of 12"), HasSubstr("--strict")));
+                                          HasSubstr("4 of 12"), HasSubstr("strict asks for all")));
   // Indices count all views that are listed; those that are not chosen do not matter.
   LoadSceneOptions options = strict();
   options.views = "0,1,6-11";

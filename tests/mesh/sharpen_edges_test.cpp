@@ -236,10 +236,8 @@ TEST(SharpenEdges, OptionsAreChecked) {
   };
   refuses([](SharpenOptions& o) { o.bend = 0; });
   refuses([](SharpenOptions& o) { o.reach = 1; });
-  refuses([](SharpenOptions& o) { o.most_turn = 130; });
   refuses([](SharpenOptions& o) { o.distinct = -1; });
   refuses([](SharpenOptions& o) { o.rounding = NAN; });
-  refuses([](SharpenOptions& o) { o.share = 1.5; });
   refuses([](SharpenOptions& o) { o.shortest = -1; });
 }
 

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "core/option_word.h"
 #include "support/ray_cast.h"
 
 namespace photohull::pipeline {
@@ -40,9 +41,9 @@ TEST(HopelessSetup, OtherUnitsAreNamedWithBothLengths) {
 
 TEST(HopelessSetup, ABoxThatWasGivenIsToBeMadeLarger) {
   const Box tiny{glm::dvec3(0), glm::dvec3(1e-3)};
-  const auto why = hopeless_setup(tiny, "--box", around(3));
+  const auto why = hopeless_setup(tiny, option_word("box"), around(3));
   ASSERT_TRUE(why);
-  EXPECT_THAT(*why, HasSubstr("make --box larger"));
+  EXPECT_THAT(*why, HasSubstr("make box larger"));
 }
 
 TEST(HopelessSetup, CamerasInOnePlaceShowNoDepth) {

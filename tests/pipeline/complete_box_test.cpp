@@ -101,7 +101,7 @@ TEST(CompleteBox, KeepsAndScalesTheScenesOwn) {
 TEST(CompleteBox, RefusesAbsurdScales) {
   for (const double scale : {0.0, -1.0, 0.01, 21.0, double(NAN), double(INFINITY)})
     EXPECT_THAT([&] { (BoxOptions{.scale = scale}).validate(); },
-                ThrowsMessage<UsageError>(StartsWith("--box-scale ")));
+                ThrowsMessage<UsageError>(StartsWith("box_scale=")));
   BoxOptions{.scale = 20}.validate();
 }
 
@@ -111,7 +111,7 @@ TEST(CompleteBox, NamesTheSceneWherePlainPicturesTellNothing) {
       R"("light": {"ambient": [0, 0, 0], "directional": []}, "cameras": {"rings": [{"count": 4, "elevation": 12}]})",
       folder / "dark");
   EXPECT_THAT([&] { complete(folder / "dark", MaskPolicy::kNone, {.find = true}); },
-              ThrowsMessage<Error>(AllOf(HasSubstr("transforms.json"), HasSubstr("give --box"))));
+              ThrowsMessage<Error>(AllOf(HasSubstr("transforms.json"), HasSubstr("give box"))));
 }
 
 /// Pixels of the colour that edges along an axis have.

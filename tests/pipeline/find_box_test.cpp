@@ -209,10 +209,9 @@ TEST(FindBox, SaysWhenPlainPicturesTellNothing) {
   std::vector<View> views = ring(4, 3, 1);
   make_plain(views);
   Progress silent;
-  EXPECT_THAT(
-      [&] { find_box({views}, silent); },
-      ThrowsMessage<Error>(AllOf(HasSubstr("0 features match"), HasSubstr("there are no masks"),
-                                 HasSubstr("give --box"))));
+  EXPECT_THAT([&] { find_box({views}, silent); },
+              ThrowsMessage<Error>(AllOf(HasSubstr("0 features match"),
+                                         HasSubstr("there are no masks"), HasSubstr("give box"))));
 }
 
 TEST(FindBox, SaysWhenCamerasLookAwayFromEachOther) {

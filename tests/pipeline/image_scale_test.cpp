@@ -251,7 +251,7 @@ TEST(MaxMemory, RefusesBeforeDecoding) {
     Reconstructor(options).run(load_photographs(folder / "x_par.txt", load), silent);
     ADD_FAILURE() << "it was taken";
   } catch (const Error& e) {
-    EXPECT_NE(std::string(e.what()).find("may take 100 MiB (--max-memory)"), std::string::npos)
+    EXPECT_NE(std::string(e.what()).find("may take 100 MiB (max_memory)"), std::string::npos)
         << e.what();
   }
 }

@@ -12,8 +12,7 @@
 namespace photohull::pipeline {
 namespace {
 
-std::string identity_of(const ReconstructOptions& options,
-                        const io::LoadSceneOptions& load = {}) {
+std::string identity_of(const ReconstructOptions& options, const io::LoadSceneOptions& load = {}) {
   return job_identity(options, {.load = load}, {}, "device");
 }
 
@@ -55,8 +54,7 @@ TEST(JobIdentity, DiffersByEveryOptionThatRefinementRestsOnAndByNoOther) {
     const Option& changed = *described.find(option.name);
     change(changed);
     ASSERT_NE(text_of(changed), text_of(option)) << option.name;
-    EXPECT_EQ(identity_of(options, load) != usual, option.from <= Stage::kSurface)
-        << option.name;
+    EXPECT_EQ(identity_of(options, load) != usual, option.from <= Stage::kSurface) << option.name;
   }
   for (const char* name : {"threads", "evidence", "fresh", "mesh_error", "unseen"})
     EXPECT_GT(all.find(name)->from, Stage::kSurface) << name;

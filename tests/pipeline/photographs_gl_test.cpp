@@ -40,8 +40,11 @@ TEST(PhotographsInMemory, WhatDoesNotFitIsNamed) {
   p = grey("c");
   p.mask = {4, 2, std::vector<std::uint8_t>(8, 255)};
   expect_refused(p, "photograph 'c': the mask has 4x2 pixels and 8 values, the picture 4x3");
-  EXPECT_THAT([] { photographs_in_memory({grey("d"), grey("d")}); },
-              ThrowsMessage<Error>(HasSubstr("another one has the same name")));
+  EXPECT_THAT(
+      [] {
+        photographs_in_memory({grey("d"), grey("d")});
+      },
+      ThrowsMessage<Error>(HasSubstr("another one has the same name")));
 }
 
 TEST(PhotographsInMemory, AreToldApartByTheirPixels) {
@@ -99,8 +102,7 @@ TEST_F(BlockScene, StopsByItsOwnToken) {
   Progress stopped(token);
   ReconstructOptions options;
   options.device = "software";
-  EXPECT_THROW(Reconstructor(options).run(load_photographs(folder_ / "scene"), stopped),
-               Cancelled);
+  EXPECT_THROW(Reconstructor(options).run(load_photographs(folder_ / "scene"), stopped), Cancelled);
 }
 
 TEST(Reconstructor, RefusesOptionsAtOnce) {

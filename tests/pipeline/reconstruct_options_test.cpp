@@ -41,7 +41,7 @@ TEST_F(OptionText, AutoOrANumberOfViews) {
   for (const std::string bad :
        {"", "-1", "17", "two", "1.5", "3 ", " 3", "+3", "0x2", "99999999999", "Auto", "auto2"})
     EXPECT_EQ(refusal("views_may_miss", bad),
-              "--views-may-miss " + bad + ": expected auto, or a number of views from 0 to 16");
+              "views_may_miss=" + bad + ": expected auto, or a number of views from 0 to 16");
 }
 
 TEST_F(OptionText, ScalesAreFractionsOrNumbers) {
@@ -50,7 +50,7 @@ TEST_F(OptionText, ScalesAreFractionsOrNumbers) {
   read("image_scale", "auto");
   EXPECT_EQ(options_.image_scale, std::nullopt);
   for (const std::string bad : {"", "0", "1.5", "1/0", "half"})
-    EXPECT_EQ(refusal("image_scale", bad), "--image-scale " + bad +
+    EXPECT_EQ(refusal("image_scale", bad), "image_scale=" + bad +
                                                ": expected auto, or a scale above 0 and up to 1, "
                                                "such as 1/4 or 0.3");
 }
@@ -59,7 +59,7 @@ TEST_F(OptionText, MemoryHasAUnit) {
   read("max_memory", "1.5GiB");
   EXPECT_EQ(options_.max_memory, std::int64_t(3) << 29);
   EXPECT_EQ(refusal("max_memory", "2"),
-            "--max-memory 2: expected auto, or a size with its unit such as 512M or 2G");
+            "max_memory=2: expected auto, or a size with its unit such as 512M or 2G");
 }
 
 TEST_F(OptionText, MeshErrorsAreVoxelsOrWorldUnits) {
@@ -69,19 +69,19 @@ TEST_F(OptionText, MeshErrorsAreVoxelsOrWorldUnits) {
   read("mesh_error", "0.002u");
   EXPECT_TRUE(options_.mesh_error.world_units);
   for (const std::string bad : {"", "-1", "u", "1v", "nan"})
-    EXPECT_THAT(refusal("mesh_error", bad), testing::StartsWith("--mesh-error " + bad + ": exp"));
+    EXPECT_THAT(refusal("mesh_error", bad), testing::StartsWith("mesh_error=" + bad + ": exp"));
 }
 
 TEST_F(OptionText, NumbersOutOfRangeAreNamed) {
-  EXPECT_EQ(refusal("resolution", "1"), "--resolution 1: at least 2");
-  EXPECT_EQ(refusal("resolution", "3.5"), "--resolution 3.5: expected a whole number; see --help");
-  EXPECT_EQ(refusal("voxel_size", "nan"), "--voxel-size nan: must be finite and positive");
-  EXPECT_EQ(refusal("noise", "-3"), "--noise -3: expected 8-bit codes from 0 to 255");
-  EXPECT_EQ(refusal("threads", "-1"), "--threads -1: 0 (one a core) or more");
-  EXPECT_EQ(refusal("supersample", "9"), "--supersample 9: expected 1 to 8");
+  EXPECT_EQ(refusal("resolution", "1"), "resolution=1: at least 2");
+  EXPECT_EQ(refusal("resolution", "3.5"), "resolution=3.5: expected a whole number");
+  EXPECT_EQ(refusal("voxel_size", "nan"), "voxel_size=nan: must be finite and positive");
+  EXPECT_EQ(refusal("noise", "-3"), "noise=-3: expected 8-bit codes from 0 to 255");
+  EXPECT_EQ(refusal("threads", "-1"), "threads=-1: 0 (one a core) or more");
+  EXPECT_EQ(refusal("supersample", "9"), "supersample=9: expected 1 to 8");
   EXPECT_EQ(refusal("mask_offset", "101"),
-            "--mask-offset 101: expected auto, or pixels from -100 to 100");
-  EXPECT_EQ(refusal("noise", "1e9"), "--noise 1e9: expected 8-bit codes from 0 to 255")
+            "mask_offset=101: expected auto, or pixels from -100 to 100");
+  EXPECT_EQ(refusal("noise", "1e9"), "noise=1e9: expected 8-bit codes from 0 to 255")
       << "as it was written";
 }
 
@@ -89,7 +89,7 @@ TEST_F(OptionText, ValuesThatAProgramSetsAreCheckedInTheSameWords) {
   options_.validate();
   options_.threads = -1;
   EXPECT_THAT([&] { options_.validate(); },
-              testing::ThrowsMessage<UsageError>("--threads -1: 0 (one a core) or more"));
+              testing::ThrowsMessage<UsageError>("threads=-1: 0 (one a core) or more"));
 }
 
 TEST_F(OptionText, ReportHasWhatIsGivenAndSomeDefaults) {

@@ -21,7 +21,8 @@ TEST(TempleGolden, SpaceCarvingTakesAFewPercentOfTheHullAndAddsNothing) {
   const Reconstruction carved = reconstruct_temple(96, Method::kSpaceCarving);
   EXPECT_NEAR(double(carved.report.voxels_kept), 62440, 0.01 * 62440);
   // Specks that carving cuts off are dropped without being counted as carved.
-  const auto accounted = double(carved.report.voxels_kept + carved.report.surface.sweep.voxels_carved);
+  const auto accounted =
+      double(carved.report.voxels_kept + carved.report.surface.sweep.voxels_carved);
   EXPECT_LE(accounted, double(hull.report.voxels_kept));
   EXPECT_GE(accounted, 0.999 * double(hull.report.voxels_kept));
   ASSERT_EQ(carved.volume.grid.voxel_size, hull.volume.grid.voxel_size);

@@ -25,7 +25,8 @@ TEST(WrongMask, IsLeftOutAloneWhereFeaturesConfirmTheCamera) {
   options.refine_cameras = RefineCameras::kPoses;
   const Report report =
       Reconstructor(options).run(load_photographs(folder / "scene"), silent).report;
-  EXPECT_THAT(report.silhouettes.masks_left_out, testing::UnorderedElementsAre("0000.png", "0007.png"));
+  EXPECT_THAT(report.silhouettes.masks_left_out,
+              testing::UnorderedElementsAre("0000.png", "0007.png"));
   EXPECT_TRUE(report.silhouettes.left_out.empty());
 }
 
@@ -64,7 +65,8 @@ TEST_F(ViewsThatAreOff, GetCamerasThatAgree) {
 TEST_F(ViewsThatAreOff, CarveWithAsMuchRoomWhereCamerasStay) {
   const Report report = run(RefineCameras::kOff);
   ASSERT_EQ(report.silhouettes.outline_room.size(), 2u);
-  for (const OutlineRoom& room : report.silhouettes.outline_room) EXPECT_NEAR(room.pixels, 1.2, 0.5);
+  for (const OutlineRoom& room : report.silhouettes.outline_room)
+    EXPECT_NEAR(room.pixels, 1.2, 0.5);
   EXPECT_THAT(report.warnings, testing::Contains(testing::HasSubstr("carve with as much room")));
 }
 

@@ -41,9 +41,8 @@ bool run_scene(std::uint64_t number) {
   Progress silent;
   synth::synthesize(random_spec(number), folder / "scene", silent);
   try {
-    pipeline::reconstruct_to_folder(random_job(number),
-                                    pipeline::load_photographs(folder / "scene"), folder / "out",
-                                    silent);
+    pipeline::reconstruct_to_folder(
+        random_job(number), pipeline::load_photographs(folder / "scene"), folder / "out", silent);
   } catch (const Error& e) {
     std::printf("scene %llu: %s\n", static_cast<unsigned long long>(number), e.what());
     return false;

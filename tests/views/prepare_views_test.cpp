@@ -249,7 +249,7 @@ TEST_F(PrepareViews, RejectsInvertedMasksOfThinObjects) {
     add_mask(inverted);
   }
   EXPECT_THAT(error_of_prepare(), HasSubstr("masks look inverted: in 3 of 3"));
-  EXPECT_THAT(error_of_prepare(), HasSubstr("--masks none"));
+  EXPECT_THAT(error_of_prepare(), HasSubstr("masks=none"));
 }
 
 TEST_F(PrepareViews, TakesFullMasksThatCutAThingOutOfSomeViews) {

@@ -16,8 +16,8 @@ std::span<const MeshWriter> mesh_writers() {
 }
 
 const MeshWriter& find_mesh_writer(const std::string& option, const std::string& name) {
-  const auto found = std::ranges::find_if(mesh_writers(),
-                                          [&](const MeshWriter& w) { return w.name == name; });
+  const auto found =
+      std::ranges::find_if(mesh_writers(), [&](const MeshWriter& w) { return w.name == name; });
   if (found != mesh_writers().end()) return *found;
   std::string all;
   for (const MeshWriter& w : mesh_writers()) all += (all.empty() ? "" : ", ") + std::string(w.name);

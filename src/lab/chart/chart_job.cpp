@@ -34,6 +34,12 @@ std::string run_id(const std::string& program_hash, const std::string& scene_has
 
 }  // namespace
 
+void describe(Described& to, ChartOptions& o) {
+  to.flag("force", &o.force, "repeat runs and synthetic scenes that are there already");
+  to.flag("retry", &o.retry, "repeat runs that failed");
+  to.flag("draw_only", &o.draw_only, "draw the results that are there again");
+}
+
 ChartJob::ChartJob(ChartOptions options)
     : options_(std::move(options)), plan_(read_plan(options_.plan)), store_(options_.output) {
   for (const ExternalSource& source : plan_.external)

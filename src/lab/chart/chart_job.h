@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/describe.h"
 #include "core/progress.h"
 #include "lab/chart/execute_run.h"
 #include "lab/chart/outcome.h"
@@ -22,6 +23,9 @@ struct ChartOptions {
   bool retry = false;             ///< repeat runs that failed
   bool draw_only = false;         ///< no runs: draw results.json again
 };
+
+/// Without its paths.
+void describe(Described& to, ChartOptions& options);
 
 struct ChartSummary {
   int made = 0;                    ///< runs of this call

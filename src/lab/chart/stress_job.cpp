@@ -41,6 +41,17 @@ std::string voxel_of(const Json& report) {
 
 }  // namespace
 
+void describe(Described& to, StressOptions& o) {
+  to.list("axes", &o.selection.axes, {}, "names", "names of the plan's axes to run (default: all)");
+  to.list("seeds", &o.selection.seeds, at_least(0), "whole numbers",
+          "seeds of the scenes in place of the plan's");
+  to.text("before", &o.before,
+          "folder of an earlier run, whose curves are drawn beside the new ones");
+  to.flag("force", &o.force, "repeat runs that are there already");
+  to.flag("retry", &o.retry, "repeat runs that failed");
+  to.flag("draw_only", &o.draw_only, "draw the results that are there again");
+}
+
 StressJob::StressJob(StressOptions options)
     : options_(std::move(options)),
       plan_(read_stress_plan(options_.plan, options_.selection)),

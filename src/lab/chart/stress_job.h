@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/describe.h"
 #include "core/progress.h"
 #include "lab/chart/result_store.h"
 #include "lab/chart/stress_plan.h"
@@ -26,6 +27,9 @@ struct StressOptions {
   bool retry = false;      ///< repeat runs that failed
   bool draw_only = false;  ///< no runs: draw results.json again
 };
+
+/// Without the plan, the output and the program.
+void describe(Described& to, StressOptions& options);
 
 struct StressOutcome {
   int made = 0, reused = 0;

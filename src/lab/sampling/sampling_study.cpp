@@ -207,9 +207,13 @@ class Study {
 
 }  // namespace
 
+void describe(Described& to, StudyOptions& o) {
+  to.number("squares", &o.squares, from_to(16, 100000), "",
+            "squares a footprint in each of two images");
+}
+
 void StudyOptions::validate() const {
-  if (squares < 16 || squares > 100000)
-    throw UsageError(concat("--squares ", squares, ": expected 16 to 100000"));
+  check_options(*this);
   for (const int n : supersamples) PHOTOHULL_CHECK(n >= 1 && n <= kMaxSupersample);
   // Long footprints must stay on the image.
   for (const double f : footprints)

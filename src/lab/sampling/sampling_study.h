@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/describe.h"
 #include "core/progress.h"
 #include "gpu/context.h"
 #include "projtex/sampler.h"
@@ -20,6 +21,9 @@ struct StudyOptions {
 
   void validate() const;  ///< throws UsageError
 };
+
+/// Those that a caller chooses for the time that the study takes.
+void describe(Described& to, StudyOptions& options);
 
 /// One sampler at one kind of footprint.
 struct StudyCell {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/error.h"
+#include "core/option_word.h"
 #include "lab/visibility/study_parts.h"
 #include "lab/visibility/study_receivers.h"
 #include "visibility/truth.h"
@@ -48,7 +49,7 @@ std::vector<Technique> chosen_techniques(const StudyOptions& options) {
   if (options.techniques.empty()) return named_techniques();
   std::vector<Technique> out;
   for (const std::string& name : options.techniques)
-    out.push_back(parse_technique("--techniques", name));
+    out.push_back(parse_technique(option_word("techniques"), name));
   return out;
 }
 
@@ -178,22 +179,26 @@ class SceneStudy {
 
 }  // namespace
 
+void describe(Described& to, StudyOptions& o) {
+  to.list("scenes", &o.scenes, {}, "names", "some of the scenes");
+  to.list("resolutions", &o.resolutions, from_to(16, 8192), "numbers from 16 to 8192",
+          "texels along a map's side");
+  to.list("techniques", &o.techniques, {}, "names", "some of the techniques (default: all)");
+  to.number("repeats", &o.repeats, from_to(1, 100), "",
+            "of each timing, of which the quickest counts");
+  to.number("width", &o.width, from_to(16, 4096), "pixels", "of the receivers' picture");
+  to.number("height", &o.height, from_to(16, 4096), "pixels", "of the receivers' picture");
+  to.number("silhouettes", &o.silhouettes, from_to(10, 100000), "", "places on silhouettes");
+}
+
 void StudyOptions::validate() const {
-  const auto require = [](bool ok, const std::string& what) {
-    if (!ok) throw UsageError(what);
-  };
+  check_options(*this);
   const auto& names = study_scene_names();
   for (const std::string& s : scenes)
-    require(std::find(names.begin(), names.end(), s) != names.end(),
-            concat("--scenes ", s, ": there is no such scene"));
-  for (const std::string& t : techniques) parse_technique("--techniques", t);
-  require(!scenes.empty() && !resolutions.empty(), "nothing to measure");
-  for (const int r : resolutions)
-    require(r >= 16 && r <= 8192, concat("--resolutions ", r, ": expected 16 to 8192"));
-  require(width >= 16 && width <= 4096 && height >= 16 && height <= 4096,
-          "the receivers' picture must have 16 to 4096 pixels along each side");
-  require(silhouettes >= 10 && silhouettes <= 100000, "silhouettes: expected 10 to 100000");
-  require(repeats >= 1 && repeats <= 100, concat("--repeats ", repeats, ": expected 1 to 100"));
+    if (std::find(names.begin(), names.end(), s) == names.end())
+      throw UsageError(concat(option_word("scenes", s), ": there is no such scene"));
+  for (const std::string& t : techniques) parse_technique(option_word("techniques"), t);
+  if (scenes.empty() || resolutions.empty()) throw UsageError("nothing to measure");
 }
 
 Study study_visibility(gpu::Context& context, const StudyOptions& options, Progress& progress) {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/describe.h"
 #include "core/progress.h"
 #include "gpu/context.h"
 #include "lab/visibility/study_scenes.h"
@@ -25,6 +26,8 @@ struct StudyOptions {
 
   void validate() const;  ///< throws UsageError naming the option
 };
+
+void describe(Described& to, StudyOptions& options);
 
 /// Errors are over the receivers that face the viewpoint.
 struct VisibilityErrors {

@@ -46,7 +46,7 @@ struct AroundBox {
 struct MethodCost {
   double face_seconds = 0, unmasked_face_seconds = 0;  ///< CPU; with silhouettes, and without
   double unmasked_face_bytes = 0;                      ///< without silhouettes
-  double unmasked_pixel_seconds = 0;                   ///< CPU, of a photograph's, without silhouettes
+  double unmasked_pixel_seconds = 0;  ///< CPU, of a photograph's, without silhouettes
 };
 
 struct MethodEntry {
@@ -54,7 +54,8 @@ struct MethodEntry {
   const char* name;  ///< as options have it
   /// Does it sweep planes, so that the options of the sweeps are its own?
   bool sweeps;
-  /// Do silhouettes alone shape it? Then colours, confidence and verdict say nothing of photographs.
+  /// Do silhouettes alone shape it? Then colours, confidence and verdict say nothing of
+  /// photographs.
   bool by_silhouettes;
   /// Does it find surface without silhouettes, also around cameras?
   bool needs_no_silhouettes;

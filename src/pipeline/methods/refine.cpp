@@ -6,6 +6,7 @@
 
 #include "carving/fit_grid.h"
 #include "core/error.h"
+#include "core/option_word.h"
 #include "mesh/sharpen_edges.h"
 #include "pipeline/checkpoint_folder.h"
 #include "pipeline/checks.h"
@@ -25,7 +26,7 @@ constexpr int kHighIterations = 2, kHighPasses = 3, kHighSteps = 3;
 constexpr int kDoubtingViews = 3;
 constexpr double kDoubtfulRim = 2;
 constexpr double kLeastEvidence = 0.1;  // share of the surface below which a result is doubtful
-constexpr double kDetail = 1.5;  // pixels: what refinement resolves, by its patches
+constexpr double kDetail = 1.5;         // pixels: what refinement resolves, by its patches
 
 Parameters parameters_of(const SurfaceJob& job) {
   Parameters parameters;
@@ -37,8 +38,8 @@ Parameters parameters_of(const SurfaceJob& job) {
     refine.fit.steps = kHighSteps;
   }
   if (job.subject.mask_confidence < 1) {
-    refine.restore.least_views = std::max(refine.restore.least_views,
-                                          int(job.subject.views.size()) / kDoubtingViews);
+    refine.restore.least_views =
+        std::max(refine.restore.least_views, int(job.subject.views.size()) / kDoubtingViews);
     refine.restore.least_inside = kDoubtfulRim;
   }
   tune(job.options.tune, Method::kRefine, parameters);
@@ -70,12 +71,13 @@ void check_found(const SurfaceJob& job, const SparseVolume& volume,
     throw Error(concat(
         "no surface was found: without masks the photographs must show texture that several of "
         "them agree on; give masks (",
-        flag_of("masks"), "), more views, or check the cameras (photohull info)",
+        option_word("masks"), "), more views, or check the cameras (photohull info)",
         told_of_cameras_within(subject.box, subject.box_source, sources_of(subject.views))));
   if (volume.inside_voxels() == 0)
-    throw Error(concat("refinement left nothing: the photographs disagree everywhere; check the "
-                       "cameras (photohull info) or use ",
-                       flag_of("method"), " hull"));
+    throw Error(
+        concat("refinement left nothing: the photographs disagree everywhere; check the "
+               "cameras (photohull info) or use ",
+               option_word("method", "hull")));
   const double evidence = counts.levels.back().evidence;
   if (evidence < kLeastEvidence)
     job.progress.warn(
@@ -90,8 +92,7 @@ std::optional<refine::CheckpointFile> checkpoint_of(const SurfaceJob& job) {
   const std::filesystem::path file = checkpoint_file(job.options.checkpoint);
   if (job.options.fresh) remove_checkpoint(job.options.checkpoint);
   return refine::CheckpointFile{
-      file, job_identity(job.options, job.photographs, job.subject,
-                         job.context.device().renderer)};
+      file, job_identity(job.options, job.photographs, job.subject, job.context.device().renderer)};
 }
 
 Surface carve(const SurfaceJob& job, SparseVolume) {

@@ -1,6 +1,7 @@
 // Plane sweeps (--method voxel-coloring and space-carving).
 #include "carving/photo.h"
 #include "core/error.h"
+#include "core/option_word.h"
 #include "pipeline/methods/method.h"
 #include "pipeline/methods/sampler.h"
 #include "pipeline/stage_weights.h"
@@ -52,9 +53,10 @@ Surface carve(const SurfaceJob& job, SparseVolume hull) {
   found.voxels_carved = counts.carved;
   found.voxels_undecided = counts.undecided + counts.reverted;
   if (out.volume.inside_voxels() == 0)
-    throw Error(concat("photo-consistency carved everything away: the photographs disagree "
-                       "everywhere; check the cameras (photohull info) or use ",
-                       flag_of("method"), " hull"));
+    throw Error(
+        concat("photo-consistency carved everything away: the photographs disagree "
+               "everywhere; check the cameras (photohull info) or use ",
+               option_word("method", "hull")));
   if (counts.judged == 0)
     job.progress.warn("no voxel was seen by enough cameras to be judged: the result is the hull");
   else if (found.voxels_undecided >= counts.judged)
