@@ -15,7 +15,7 @@ import filecmp
 from pathlib import Path
 
 from bench import tables
-from bench.runner import DATASETS, ROOT, SYNTHETIC, Photohull, ProgramError
+from bench.runner import ROOT, SYNTHETIC, Photohull, ProgramError, add_datasets
 
 RENDERED = ("armadillo", "bunny", "fandisk", "trellis", "plaster", "glazed")
 TEMPLE = ROOT / "datasets/templeSparseRing"
@@ -30,7 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("before", type=Path)
     parser.add_argument("after", type=Path)
     parser.add_argument("out", type=Path)
-    parser.add_argument("--datasets", type=Path, default=DATASETS, help="folder of the rendered scenes")
+    add_datasets(parser)
     parser.add_argument("--quick", action="store_true",
                         help="few voxels along the box, at most 12 views, small synthetic pictures")
     parser.add_argument("--resolution", type=int, default=128, help="voxels along the box (default: %(default)s)")
@@ -68,7 +68,7 @@ def compare(builds: dict[str, Photohull], scene: Path, folder: Path, method: str
             try:
                 done = program.reconstruct(scene, folder / f"{name}-{repeat}", *words)
             except ProgramError as error:
-                return [f"{name} failed: {error.message.splitlines()[-1]}", "", "", "", ""], False
+                return [f"{name} failed: {error.message}", "", "", "", ""], False
             seconds[name] = min(done.cpu_seconds, seconds.get(name, done.cpu_seconds))
     first = folder / "before-0"
     equal = [all(filecmp.cmp(first / file, folder / f"{name}-{repeat}" / file, shallow=False)
