@@ -3,7 +3,7 @@
 namespace photohull::pipeline {
 namespace {
 
-// Fitted on the runs of docs/guide/limits.md by `python3 -m bench estimates --fit`. Bytes:
+// Fitted on the runs of docs/guide/limits.md by `bench/estimates.py --fit`. Bytes:
 constexpr double kBaseBytes = 305e6;  // libraries, the driver's compiler, batches of rays
 constexpr double kPixelBytes = 8;     // colour and coverage; around the box outlines and mip chain
 constexpr double kFaceBytes = 377;    // a face of the box, in voxels: bricks, mesh and files
