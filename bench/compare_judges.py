@@ -1,81 +1,89 @@
-#!/usr/bin/python3
-"""bench/compare_judges.py [--program build/release/photohull] [--data ../shared] [--scenes bunny,...]
-                          [--methods hull,space-carving] [--resolution 128] [--samples 200000]
+"""`photohull evaluate` against another program that computes the same figures, ../shared/tools/evaluate.py.
 
-Reconstructs scenes with exact truth, judges every mesh with `photohull evaluate` and with
-DATA/tools/evaluate.py, and prints the tables of docs/guide/evaluate.md: some figures of both side by side, the
-greatest relative difference over all figures that both give (save the maxima, which hang on single samples),
-the same between two seeds of evaluate.py for comparison, and the seconds that each took."""
-import argparse, json, os, subprocess, tempfile, time
+    python3 -m bench compare_judges [--scenes bunny,...] [--methods hull,space-carving] [--resolution 128]
 
-DISTANCES = ('mean', 'median', 'rms', 'q95')
+Reconstructs scenes with exact truth, judges every mesh with both, and prints the table of docs/guide/evaluate.md: some
+figures of both side by side, the greatest relative difference over all figures that both give (save the maxima, which
+hang on single samples), the same between two seeds of evaluate.py for comparison, and the seconds that each took. The
+Python that runs this needs numpy and scipy for evaluate.py."""
+import argparse
+import json
+import subprocess
+import sys
+import time
+from pathlib import Path
 
-def run(*command):
-    r = subprocess.run(command, capture_output=True, text=True)
-    if r.returncode != 0:
-        raise SystemExit('%s failed (%d): %s' % (' '.join(command), r.returncode, r.stderr.strip()))
-    return r.stdout
+from bench import tables
+from bench.runner import SHARED, Photohull, add_keep, add_program, listed, work_folder
 
-def timed(*command):
+DISTANCES = ("mean", "median", "rms", "q95")
+COLUMNS = ["mesh", "accuracy, seen (% of diagonal)", "completeness (%)", "F 0.1 %, seen", "F 0.5 %, seen",
+           "greatest difference", "between seeds", "seconds"]
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    add_program(parser)
+    parser.add_argument("--data", type=Path, default=SHARED, help="has tools/evaluate.py and datasets/")
+    parser.add_argument("--scenes", type=listed, default="bunny,armadillo,fandisk,trellis,plaster")
+    parser.add_argument("--methods", type=listed, default="hull,space-carving")
+    parser.add_argument("--resolution", type=int, default=128)
+    parser.add_argument("--samples", type=int, default=200000)
+    add_keep(parser)
+
+
+def reference(options: argparse.Namespace, mesh: Path, scene: Path, seed: int) -> tuple[dict, float]:
+    out = mesh.with_name(f"{mesh.name}.{seed}.json")
     start = time.perf_counter()
-    return run(*command), time.perf_counter() - start
+    subprocess.run([sys.executable, options.data / "tools/evaluate.py", mesh, scene, "--json", out, "--samples",
+                    str(options.samples), "--seed", str(seed)], check=True, stdout=subprocess.DEVNULL)
+    return json.loads(out.read_text(encoding="utf-8")), time.perf_counter() - start
 
-def reference(a, mesh, scene, seed):
-    out = mesh + '.%d.json' % seed
-    _, seconds = timed('/usr/bin/python3', os.path.join(a.data, 'tools/evaluate.py'), mesh, scene, '--json', out,
-                       '--samples', str(a.samples), '--seed', str(seed))
-    return json.load(open(out)), seconds
 
-def ours(a, mesh, scene):
-    text, seconds = timed(a.program, 'evaluate', mesh, '--truth', scene, '--json', '--samples', str(a.samples))
-    return json.loads(text), seconds
-
-def figures(r):
-    """every figure that both judges give, by name"""
-    f = {k: r[k] for k in ('accuracy', 'completeness', 'hausdorff95', 'chamfer_mean')}
-    for side in ('recon_to_gt', 'gt_to_recon'):
-        f.update({side + '.' + k: r[side][k] for k in DISTANCES})
-    f.update({'seen.' + k: r['seen'][k] for k in ('share', 'accuracy', 'median')})
-    for part, name in ((r, ''), (r['seen'], 'seen.')):
-        for row in part.get('f') or part['thresholds']:
-            f.update({'%s%s@%g%%' % (name, k, 100 * row['t']): row[k] for k in ('precision', 'recall', 'f')})
+def figures(r: dict) -> dict[str, float]:
+    """Every figure that both judges give, by name."""
+    f = {k: r[k] for k in ("accuracy", "completeness", "hausdorff95", "chamfer_mean")}
+    for side in ("recon_to_gt", "gt_to_recon"):
+        f.update({f"{side}.{k}": r[side][k] for k in DISTANCES})
+    f.update({f"seen.{k}": r["seen"][k] for k in ("share", "accuracy", "median")})
+    for part, name in ((r, ""), (r["seen"], "seen.")):
+        for row in part.get("f") or part["thresholds"]:
+            f.update({f"{name}{k}@{100 * row['t']:g}%": row[k] for k in ("precision", "recall", "f")})
     return f
 
-def greatest(a, b):
-    """name and relative difference of the figures that differ most"""
-    name = max(a, key=lambda k: abs(a[k] - b[k]) / abs(b[k]) if b[k] else float(a[k] != b[k]))
-    return name, abs(a[name] - b[name]) / abs(b[name]) if b[name] else float(a[name] != b[name])
 
-def main():
-    p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    p.add_argument('--program', default='build/release/photohull')
-    p.add_argument('--data', default='../shared')
-    p.add_argument('--scenes', default='bunny,armadillo,fandisk,trellis,plaster')
-    p.add_argument('--methods', default='hull,space-carving')
-    p.add_argument('--resolution', type=int, default=128)
-    p.add_argument('--samples', type=int, default=200000)
-    p.add_argument('--keep', help='folder of the meshes; those that are there are not made again')
-    a = p.parse_args()
-    with tempfile.TemporaryDirectory() as scratch:
-        folder = a.keep or scratch
-        print('| mesh | accuracy, seen (% of diagonal) | completeness (%) | F 0.1 %, seen | F 0.5 %, seen | greatest '
-              'difference | between seeds | seconds |\n|---|---|---|---|---|---|---|---|')
-        for scene in a.scenes.split(','):
-            path = os.path.join(a.data, 'datasets', scene)
-            for method in a.methods.split(','):
-                out = os.path.join(folder, '%s_%s_%d' % (scene, method, a.resolution))
-                mesh = os.path.join(out, 'mesh.ply')
-                if not os.path.exists(mesh):
-                    run(a.program, 'reconstruct', path, '--out', out, '--method', method, '--resolution', str(a.resolution))
-                (theirs, their_s), (other, _), (mine, my_s) = reference(a, mesh, path, 1), reference(a, mesh, path, 2), ours(a, mesh, path)
-                x, y, z = figures(mine), figures(theirs), figures(other)
-                assert set(x) == set(y)
-                d = 100 / theirs['gt_diagonal']
-                pair = lambda k, scale: '%.4g / %.4g' % (scale * x[k], scale * y[k])
-                name, worst = greatest(x, y)
-                print('| %s, %s | %s | %s | %s | %s | %.2f %% (%s) | %.2f %% | %.1f / %.1f |' % (
-                    scene, method, pair('seen.accuracy', d), pair('completeness', 100), pair('seen.f@0.1%', 100),
-                    pair('seen.f@0.5%', 100), 100 * worst, name, 100 * greatest(z, y)[1], my_s, their_s), flush=True)
+def greatest(a: dict[str, float], b: dict[str, float]) -> tuple[str, float]:
+    """Name and relative difference of the figure that differs most."""
+    def apart(k: str) -> float:
+        return abs(a[k] - b[k]) / abs(b[k]) if b[k] else float(a[k] != b[k])
+    name = max(a, key=apart)
+    return name, apart(name)
 
-if __name__ == '__main__':
-    main()
+
+def compare(options: argparse.Namespace, photohull: Photohull, mesh: Path, scene: Path) -> list[str]:
+    theirs, their_seconds = reference(options, mesh, scene, 1)
+    other, _ = reference(options, mesh, scene, 2)
+    ours = photohull.call("evaluate", mesh, "--truth", scene, "--json", "--samples", options.samples)
+    x, y, z = figures(ours.report), figures(theirs), figures(other)
+    if set(x) != set(y):
+        raise SystemExit(f"the judges give different figures: {sorted(set(x) ^ set(y))}")
+    d = 100 / theirs["gt_diagonal"]
+    pairs = [f"{scale * x[k]:.4g} / {scale * y[k]:.4g}" for k, scale in
+             (("seen.accuracy", d), ("completeness", 100), ("seen.f@0.1%", 100), ("seen.f@0.5%", 100))]
+    name, worst = greatest(x, y)
+    return [*pairs, f"{100 * worst:.2f} % ({name})", f"{100 * greatest(z, y)[1]:.2f} %",
+            f"{ours.wall_seconds:.1f} / {their_seconds:.1f}"]
+
+
+def rows(options: argparse.Namespace, folder: Path):
+    photohull = Photohull(options.program)
+    for name in options.scenes:
+        scene = options.data / "datasets" / name
+        for method in options.methods:
+            out = folder / f"{name}_{method}_{options.resolution}"
+            photohull.reconstruct(scene, out, "--method", method, "--resolution", options.resolution)
+            yield [f"{name}, {method}", *compare(options, photohull, out / "mesh.ply", scene)]
+
+
+def run(options: argparse.Namespace) -> None:
+    with work_folder(options.keep) as folder:
+        tables.show(COLUMNS, rows(options, folder))

@@ -1,96 +1,86 @@
-#!/usr/bin/python3
-"""bench/held_out.py [--program build/release/photohull] [--data ../shared] [--scenes templeRing,dinoRing]
-    [--out bench/results/held_out.json] [--keep FOLDER]
+"""Reconstructions judged by photographs that were not used.
 
-Judges reconstructions of photographs that have no true surface by photographs that were not used: holds out every
-eighth view, reconstructs by each method, and predicts the held-out views from the mesh (photohull evaluate --photos), with
-colours from all other views and with those at least 20 degrees away only, which is stricter. Prints tables for
-docs/measurements/benchmarks.md; a ratio is that of the mean ZNCC to the hull's. Scenes that do have a true surface (gt.ply) get a row for that surface itself, which
-no mesh should beat, and F-scores at 0.25 % beside the ZNCC. --keep leaves meshes and pictures of the worst
-views in a folder."""
-import argparse, json, os, subprocess, sys, tempfile
+    python3 -m bench held_out [--scenes templeRing,dinoRing] [--out bench/results/held_out.json] [--keep FOLDER]
 
-METHODS = ('hull', 'space-carving', 'refine', 'truth')
+Holds out every eighth view, reconstructs by each method, and predicts the held-out views from the mesh (photohull
+evaluate --photos), with colours from all other views and with those at least 20 degrees away only, which is stricter.
+Prints a table for docs/measurements/benchmarks.md; a ratio is that of the mean ZNCC to the hull's. Scenes that do have
+a true surface (gt.ply) get a row for that surface itself, which no mesh should beat, and F-scores at 0.25 % beside the
+ZNCC. --keep leaves meshes and pictures of the worst views in a folder."""
+import argparse
+import sys
+from pathlib import Path
+
+from bench import tables
+from bench.runner import RESULTS, Photohull, add_datasets, add_keep, add_program, keep_json, listed, work_folder
+
+METHODS = ("hull", "space-carving", "refine", "truth")
 ANGLES = (0, 20)
-STEP = 8
+COLUMNS = ["scene", "method", "CPU s", "ZNCC", "ratio", "ZNCC from 20 degrees", "ratio", "PSNR, dB", "covered %",
+           "excess %", "IoU %", "worst view"]
 
-def photohull(program, *arguments):
-    run = subprocess.run([program, *arguments, '--json'], capture_output=True, text=True)
-    if run.returncode != 0:
-        raise SystemExit('%s failed (%d): %s' % (' '.join(arguments), run.returncode, run.stderr.strip()))
-    return json.loads(run.stdout)
 
-def judge(a, scene, method, folder):
-    path = os.path.join(a.data, 'datasets', scene)
-    truth = os.path.join(path, 'gt.ply')
-    views = len(photohull(a.program, 'info', path)['views'])
-    held_out = ','.join(str(i) for i in range(0, views, STEP))
-    out = os.path.join(folder, '%s_%s' % (scene, method))
-    row = {'scene': scene, 'method': method, 'held_out': held_out, 'angles': {}}
-    if method == 'truth':
-        if not os.path.isfile(truth):
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    add_program(parser)
+    add_datasets(parser)
+    parser.add_argument("--scenes", type=listed, default="templeRing,dinoRing")
+    parser.add_argument("--resolution", type=int, default=256)
+    parser.add_argument("--out", type=Path, default=RESULTS / "held_out.json")
+    add_keep(parser)
+
+
+def predict(photohull: Photohull, mesh: Path, scene: Path, held_out: str, angle: int, out: Path) -> dict:
+    """How well the mesh predicts the held-out views, of which those with masks count where only some have them:
+    without a mask, a whole photograph is foreground."""
+    def predicted(views: str) -> dict:
+        photos = photohull.evaluate(mesh, "--photos", scene, "--views", views, "--least-angle", angle, "--picture",
+                                    out / f"worst_{angle}.png")["photos"]
+        return photos | {"scene": scene.name}  # whose folder differs between machines
+    photos = predicted(held_out)
+    masked = [i for i, view in zip(held_out.split(","), photos["views"]) if view["masked"]]
+    return predicted(",".join(masked)) if 0 < len(masked) < len(photos["views"]) else photos
+
+
+def judge(photohull: Photohull, scene: Path, method: str, folder: Path, resolution: int) -> dict | None:
+    truth, out = scene / "gt.ply", folder / f"{scene.name}_{method}"
+    held_out = photohull.every_eighth_view(scene)
+    row = {"scene": scene.name, "method": method, "held_out": held_out, "angles": {}}
+    if method == "truth":
+        if not truth.is_file():
             return None
-        os.makedirs(out, exist_ok=True)
+        out.mkdir(parents=True, exist_ok=True)
         mesh = truth
     else:
-        report = photohull(a.program, 'reconstruct', path, '--out', out, '--method', method, '--resolution',
-                           str(a.resolution), '--hold-out', held_out)
-        row.update(resolution=a.resolution, cpu_s=report['cpu_seconds'], triangles=report['mesh']['triangles'])
-        mesh = os.path.join(out, 'mesh.ply')
-    def predicted(views, angle):
-        return photohull(a.program, 'evaluate', mesh, '--photos', path, '--views', views, '--least-angle', str(angle),
-                         '--picture', os.path.join(out, 'worst_%d.png' % angle))['photos']
+        report = photohull.reconstruct(scene, out, "--method", method, "--resolution", resolution, "--hold-out",
+                                       held_out).report
+        row.update(resolution=resolution, cpu_s=report["cpu_seconds"], triangles=report["mesh"]["triangles"])
+        mesh = out / "mesh.ply"
     for angle in ANGLES:
-        photos = predicted(held_out, angle)
-        masked = [i for i, view in zip(held_out.split(','), photos['views']) if view['masked']]
-        if 0 < len(masked) < len(photos['views']):  # without a mask, a whole photograph is foreground
-            photos = predicted(','.join(masked), angle)
-        row['angles'][str(angle)] = photos
-    if os.path.isfile(truth):
-        row['f'] = photohull(a.program, 'evaluate', mesh, '--truth', path, '--thresholds', '0.0025')['seen']['f'][0]['f']
+        row["angles"][str(angle)] = predict(photohull, mesh, scene, held_out, angle, out)
+    if truth.is_file():
+        row["f"] = photohull.seen_f(mesh, scene)
     return row
 
-def table(rows):
-    hull = {r['scene']: r for r in rows if r['method'] == 'hull'}
-    with_truth = any('f' in r for r in rows)
-    print('| scene | method | CPU s | ZNCC | ratio | ZNCC from 20 degrees | ratio | PSNR, dB | covered % | excess % | IoU % | worst view |' +
-          (' F 0.25 % |' if with_truth else ''))
-    print('|---' * (13 if with_truth else 12) + '|')
-    for r in rows:
-        near, far = (r['angles'][str(a)]['all'] for a in ANGLES)
-        base = [hull[r['scene']]['angles'][str(a)]['all']['zncc'] for a in ANGLES]
-        print('| %s | %s | %s | %.3f | %.2f | %.3f | %.2f | %.2f | %.2f | %.2f | %.2f | %s |' % (
-            r['scene'], r['method'], '%.1f' % r['cpu_s'] if 'cpu_s' in r else '-', near['zncc'], near['zncc'] / base[0], far['zncc'], far['zncc'] / base[1],
-            near['psnr'], 100 * near['coverage'], 100 * near['excess'], 100 * near['silhouette_iou'],
-            r['angles']['0']['worst']) + (' %.2f |' % (100 * r['f']) if 'f' in r else ' - |' if with_truth else ''))
 
-def main():
-    p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    p.add_argument('--program', default='build/release/photohull')
-    p.add_argument('--data', default='../shared')
-    p.add_argument('--scenes', default='templeRing,dinoRing')
-    p.add_argument('--resolution', type=int, default=256)
-    p.add_argument('--out', default='bench/results/held_out.json')
-    p.add_argument('--keep', help='folder for meshes and pictures (default: they go)')
-    a = p.parse_args()
-    if not os.path.isdir(os.path.join(a.data, 'datasets')):
-        raise SystemExit(a.data + ': no datasets/ there; give --data')
-    with tempfile.TemporaryDirectory() as scratch:
-        folder = a.keep or scratch
-        rows = []
-        for scene in a.scenes.split(','):
+def cells(row: dict, hull: dict, with_truth: bool) -> list[str]:
+    near, far = (row["angles"][str(a)]["all"] for a in ANGLES)
+    base = [hull["angles"][str(a)]["all"]["zncc"] for a in ANGLES]
+    found = [row["scene"], row["method"], f"{row['cpu_s']:.1f}" if "cpu_s" in row else "-", f"{near['zncc']:.3f}",
+             f"{near['zncc'] / base[0]:.2f}", f"{far['zncc']:.3f}", f"{far['zncc'] / base[1]:.2f}", f"{near['psnr']:.2f}",
+             *(f"{100 * near[k]:.2f}" for k in ("coverage", "excess", "silhouette_iou")), row["angles"]["0"]["worst"]]
+    return found + ([f"{100 * row['f']:.2f}" if "f" in row else "-"] if with_truth else [])
+
+
+def run(options: argparse.Namespace) -> None:
+    photohull, rows = Photohull(options.program), []
+    with work_folder(options.keep) as folder:
+        for scene in options.scenes:
             for method in METHODS:
                 print(scene, method, file=sys.stderr, flush=True)
-                row = judge(a, scene, method, folder)
-                if row:
-                    rows.append(row)
-    table(rows)
-    for r in rows:  # the scene's folder differs between machines
-        for photos in r['angles'].values():
-            photos['scene'] = r['scene']
-    os.makedirs(os.path.dirname(a.out) or '.', exist_ok=True)
-    with open(a.out, 'w') as f:
-        json.dump(rows, f, indent=1)
-
-if __name__ == '__main__':
-    main()
+                row = judge(photohull, options.datasets / scene, method, folder, options.resolution)
+                rows += [row] if row else []
+    hulls = {row["scene"]: row for row in rows if row["method"] == "hull"}
+    with_truth = any("f" in row for row in rows)
+    tables.show(COLUMNS + (["F 0.25 %"] if with_truth else []),
+                (cells(row, hulls[row["scene"]], with_truth) for row in rows))
+    keep_json(options.out, rows)

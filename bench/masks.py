@@ -1,63 +1,74 @@
-#!/usr/bin/python3
-"""bench/masks.py [--program build/release/photohull] [--specs bench/specs/masks_*.json] [--out bench/results/masks.json] [--keep FOLDER]
+"""Masks made from the background of rendered scenes, against the exact ones.
 
-Masks made from the background of rendered scenes, against the exact ones: by the background's colours and by
-photographs without the object, each without and with GrabCut. Prints a table for docs/guide/masks.md: intersection over
-union (the mean and the worst view), the share of the object that is missed, confidence (mean and least), and whether confidence tells the good masks
-(IoU of 0.95 at least) from the bad ones: the chance that of two such masks the better one has more of it."""
-import argparse, glob, json, os, subprocess, tempfile, time
+    python3 -m bench masks [--specs bench/specs/masks_black.json,...] [--out bench/results/masks.json] [--keep FOLDER]
+
+Masks are made by the background's colours and by photographs without the object, each without and with GrabCut. Prints
+the table of docs/guide/masks.md: intersection over union (the mean and the worst view), the share of the object that is
+missed, confidence (mean and least), and whether confidence tells the good masks (IoU of 0.95 at least) from the bad
+ones: the chance that of two such masks the better one has more of it."""
+import argparse
+from pathlib import Path
+from statistics import fmean
+
+from bench import tables
+from bench.runner import ROOT, Photohull, add_keep, add_program, keep_json, listed, work_folder
 
 GOOD = 0.95
+COLUMNS = ["scene", "from", "GrabCut", "masks", "IoU, mean (worst)", "missed", "confidence, mean (least)", "CPU s"]
 
-def photohull(program, *arguments):
-    run = subprocess.run([program, *arguments], capture_output=True, text=True)
-    if run.returncode != 0:
-        raise SystemExit('%s failed (%d): %s' % (' '.join(arguments), run.returncode, run.stderr.strip()))
-    return run.stdout
 
-def mean(values):
-    return sum(values) / len(values)
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    add_program(parser)
+    specs = sorted(str(path) for path in (ROOT / "bench/specs").glob("masks_*.json"))
+    parser.add_argument("--specs", type=listed, default=specs, help="default: bench/specs/masks_*.json")
+    parser.add_argument("--out", type=Path)
+    add_keep(parser)
 
-def main():
-    p = argparse.ArgumentParser()
-    p.add_argument('--program', default='build/release/photohull')
-    p.add_argument('--specs', default=','.join(sorted(glob.glob('bench/specs/masks_*.json'))))
-    p.add_argument('--out')
-    p.add_argument('--keep')
-    a = p.parse_args()
-    rows, judged = [], []
-    with tempfile.TemporaryDirectory() as scratch:
-        folder = a.keep or scratch
-        for spec in a.specs.split(','):
-            name = os.path.splitext(os.path.basename(spec))[0]
-            scene = os.path.join(folder, name)
-            photohull(a.program, 'synthesize', spec, '--out', scene)
-            truth = os.path.join(scene, 'masks')
-            for label, more in (('colours', []), ('plates', ['--background', os.path.join(scene, 'plates')])):
-                for cut in (False, True):
-                    start = time.process_time(), os.times().children_user
-                    found = json.loads(photohull(a.program, 'masks', scene, '--masks', 'background' if not more else 'auto', *more, '--compare', truth, '--json',
-                                                 '--out', os.path.join(folder, '%s_%s%s' % (name, label, '_cut' if cut else '')), *(['--grabcut'] if cut else [])))
-                    cpu = os.times().children_user - start[1]
-                    views = [v for v in found['views'] if v['source'] != 'none']
-                    if not cut:
-                        judged += [(v['confidence'], v['iou']) for v in views]
-                    rows.append({'scene': name, 'from': label, 'grabcut': cut, 'cpu': cpu, 'masks': len(views), 'views': found['views']})
-    print('| scene | from | GrabCut | masks | IoU, mean (worst) | missed | confidence, mean (least) | CPU s |')
-    print('|---' * 8 + '|')
-    for r in rows:
-        v = [x for x in r['views'] if x['source'] != 'none']
-        print('| %s | %s | %s | %d of %d | %s | %.1f |' % (
-            r['scene'], r['from'], 'yes' if r['grabcut'] else 'no', len(v), len(r['views']),
-            '%.4f (%.4f) | %.2f %% | %.2f (%.2f)' % (mean([x['iou'] for x in v]), min(x['iou'] for x in v), 100 * mean([x['missed'] for x in v]),
-                                                   mean([x['confidence'] for x in v]), min(x['confidence'] for x in v)) if v else '- | - | -', r['cpu']))
+
+def measure(photohull: Photohull, spec: Path, folder: Path) -> list[dict]:
+    scene, rows = photohull.synthesize(spec, folder / spec.stem), []
+    ways = {"colours": ["--masks", "background"], "plates": ["--masks", "auto", "--background", scene / "plates"]}
+    for label, way in ways.items():
+        for cut in (False, True):
+            out = folder / f"{spec.stem}_{label}{'_cut' if cut else ''}"
+            done = photohull.call("masks", scene, *way, "--compare", scene / "masks", "--json", "--out", out,
+                                  *(["--grabcut"] if cut else []))
+            views = done.report["views"]
+            rows.append({"scene": spec.stem, "from": label, "grabcut": cut, "cpu": done.cpu_seconds,
+                         "masks": len(made(views)), "views": views})
+    return rows
+
+
+def made(views: list[dict]) -> list[dict]:
+    return [view for view in views if view["source"] != "none"]
+
+
+def cells(row: dict) -> list[object]:
+    v = made(row["views"])
+    iou, confidence = [x["iou"] for x in v], [x["confidence"] for x in v]
+    figures = [f"{fmean(iou):.4f} ({min(iou):.4f})", f"{100 * fmean(x['missed'] for x in v):.2f} %",
+               f"{fmean(confidence):.2f} ({min(confidence):.2f})"] if v else ["-", "-", "-"]
+    return [row["scene"], row["from"], "yes" if row["grabcut"] else "no", f"{len(v)} of {len(row['views'])}", *figures,
+            f"{row['cpu']:.1f}"]
+
+
+def told_apart(rows: list[dict]) -> None:
+    """Prints how well confidence tells good masks, made without GrabCut, from bad ones."""
+    judged = [(x["confidence"], x["iou"]) for row in rows if not row["grabcut"] for x in made(row["views"])]
     good, bad = [c for c, i in judged if i >= GOOD], [c for c, i in judged if i < GOOD]
-    if good and bad:
-        print('%d good and %d bad masks; the good one has more confidence in %.3f of the pairs' % (
-            len(good), len(bad), mean([(g > b) + 0.5 * (g == b) for g in good for b in bad])))
-        for t in (0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9):
-            print('below %.1f: %d of %d bad, %d of %d good' % (t, sum(c < t for c in bad), len(bad), sum(c < t for c in good), len(good)))
-    if a.out:
-        json.dump(rows, open(a.out, 'w'), indent=1)
+    if not good or not bad:
+        return
+    share = fmean((g > b) + 0.5 * (g == b) for g in good for b in bad)
+    print(f"{len(good)} good and {len(bad)} bad masks; the good one has more confidence in {share:.3f} of the pairs")
+    for limit in (0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9):
+        print(f"below {limit:.1f}: {sum(c < limit for c in bad)} of {len(bad)} bad, "
+              f"{sum(c < limit for c in good)} of {len(good)} good")
 
-main()
+
+def run(options: argparse.Namespace) -> None:
+    photohull = Photohull(options.program)
+    with work_folder(options.keep) as folder:
+        rows = [row for spec in options.specs for row in measure(photohull, Path(spec), folder)]
+    tables.show(COLUMNS, map(cells, rows))
+    told_apart(rows)
+    keep_json(options.out, rows)

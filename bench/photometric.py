@@ -1,96 +1,92 @@
-#!/usr/bin/python3
-"""bench/photometric.py [--program build/release/photohull] [--specs bench/specs/jitter_folds.json,...]
-    [--methods refine,hull] [--resolution 160] [--out bench/results/photometric.json] [--keep FOLDER]
+"""What photographs of different exposure, white balance and vignetting cost, and what --photometric brings back.
 
-What photographs of different exposure, white balance and vignetting cost, and what --photometric brings back. Each
-spec is rendered as it is and without these degradations ("alike"); both are reconstructed with every eighth view
-held out. Prints a table for docs/guide/cameras.md: F at 0.25 % of the diagonal, the error of the gains against
-the synthesizer's true ones (up to a factor a channel), by how much the photographs disagree on the colour of a surface point, the error of predicted photographs (PSNR;
-with the gains of all views measured on the mesh where --photometric is on), and the stage's CPU seconds."""
-import argparse, json, math, os, subprocess, tempfile
+    python3 -m bench photometric [--specs bench/specs/jitter_folds.json,...] [--methods refine,hull]
+        [--out bench/results/photometric.json] [--keep FOLDER]
 
-STEP = 8
-DEFAULT = 'bench/specs/jitter_folds.json,bench/specs/jitter_pawn.json,bench/specs/jitter_block.json'
+Each spec is rendered as it is and without these degradations ("alike"); both are reconstructed with every eighth view
+held out. Prints the table of docs/guide/cameras.md: F at 0.25 % of the diagonal, the error of the gains against the
+synthesizer's true ones (up to a factor a channel), by how much the photographs disagree on the colour of a surface
+point, the error of predicted photographs (PSNR; with the gains of all views measured on the mesh where --photometric is
+on), and the stage's CPU seconds."""
+import argparse
+import json
+import math
+from pathlib import Path
 
-def photohull(program, *arguments):
-    run = subprocess.run([program, *arguments], capture_output=True, text=True)
-    if run.returncode not in (0, 3):  # 3: done, but the result failed its own checks
-        raise SystemExit('%s failed (%d): %s' % (' '.join(arguments), run.returncode, run.stderr.strip()))
-    return run.stdout
+from bench import tables
+from bench.runner import ROOT, Photohull, add_keep, add_program, keep_json, listed, read_spec, work_folder
 
-def render(a, path, alike, folder):
-    spec = json.load(open(path))
+SPECS = [str(ROOT / f"bench/specs/jitter_{name}.json") for name in ("folds", "pawn", "block")]
+COLUMNS = ["scene", "method", "--photometric", "F 0.25 %", "gain error rms (max)", "colours differ", "corrected",
+           "vignetting", "PSNR, dB", "CPU s"]
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    add_program(parser)
+    parser.add_argument("--specs", type=listed, default=SPECS, help="default: bench/specs/jitter_*.json")
+    parser.add_argument("--methods", type=listed, default="refine")
+    parser.add_argument("--resolution", type=int, default=160)
+    parser.add_argument("--out", type=Path)
+    add_keep(parser)
+
+
+def render(photohull: Photohull, path: Path, alike: bool, folder: Path) -> Path:
+    spec = read_spec(path)
     if alike:
-        for key in ('exposure', 'white_balance', 'vignetting'):
-            spec['degradations'].pop(key, None)
-    name = spec['name'] + ('_alike' if alike else '')
-    file = os.path.join(folder, name + '.json')
-    json.dump(spec, open(file, 'w'))
-    scene = os.path.join(folder, name)
-    photohull(a.program, 'synthesize', file, '--out', scene)
-    return scene
+        for key in ("exposure", "white_balance", "vignetting"):
+            spec["degradations"].pop(key, None)
+    return photohull.synthesize(spec, folder / (spec["name"] + ("_alike" if alike else "")))
 
-def gain_errors(scene, photometric):
-    result = json.load(open(os.path.join(scene, 'spec.json')))['result']
-    true = dict(zip(result['views'], result['gains']))
+
+def gain_errors(scene: Path, photometric: dict) -> dict[str, float]:
+    result = json.loads((scene / "spec.json").read_text(encoding="utf-8"))["result"]
+    true = dict(zip(result["views"], result["gains"]))
     errors = []
     for channel in range(3):
-        logs = [math.log(v['gain'][channel] / true[os.path.splitext(v['name'])[0] if v['name'] not in true else v['name']][channel])
-                for v in photometric['views'] if v['solved']]
+        logs = [math.log(v["gain"][channel] / true[v["name"] if v["name"] in true else Path(v["name"]).stem][channel])
+                for v in photometric["views"] if v["solved"]]
         middle = sum(logs) / len(logs)
-        errors += [(e - middle) for e in logs]
-    return {'rms': math.sqrt(sum(e * e for e in errors) / len(errors)), 'max': max(map(abs, errors))}
+        errors += [e - middle for e in logs]
+    return {"rms": math.sqrt(sum(e * e for e in errors) / len(errors)), "max": max(map(abs, errors))}
 
-def measure(a, scene, label, method, photometric, folder):
-    views = len(json.loads(photohull(a.program, 'info', scene, '--json'))['views'])
-    held_out = ','.join(str(i) for i in range(0, views, STEP))
-    out = os.path.join(folder, 'out_%s_%s_%s' % (os.path.basename(scene), method, photometric))
-    report = json.loads(photohull(a.program, 'reconstruct', scene, '--out', out, '--method', method, '--resolution',
-                                  str(a.resolution), '--hold-out', held_out, '--photometric', photometric, '--json'))
-    mesh = os.path.join(out, 'mesh.ply')
-    f = json.loads(photohull(a.program, 'evaluate', mesh, '--truth', scene, '--thresholds', '0.0025', '--json'))['seen']['f'][0]['f']
-    photos = json.loads(photohull(a.program, 'evaluate', mesh, '--photos', scene, '--views', held_out,
-                                  '--photometric', photometric, '--json'))['photos']['all']
-    row = {'scene': label, 'method': method, 'photometric': photometric, 'f': f, 'psnr': photos['psnr'], 'zncc': photos['zncc']}
-    p = report.get('photometric')
+
+def measure(photohull: Photohull, scene: Path, method: str, photometric: str, resolution: int) -> dict:
+    held_out = photohull.every_eighth_view(scene)
+    out = scene.parent / f"out_{scene.name}_{method}_{photometric}"
+    report = photohull.reconstruct(scene, out, "--method", method, "--resolution", resolution, "--hold-out", held_out,
+                                   "--photometric", photometric).report
+    mesh = out / "mesh.ply"
+    photos = photohull.evaluate(mesh, "--photos", scene, "--views", held_out, "--photometric",
+                                photometric)["photos"]["all"]
+    row = {"method": method, "photometric": photometric, "f": photohull.seen_f(mesh, scene), "psnr": photos["psnr"],
+           "zncc": photos["zncc"]}
+    p = report.get("photometric")
     if p:
-        row.update(used=p['used'], before=p['disagreement_before'], after=p['disagreement_after'], lenses=p['lenses'],
-                   cpu=sum(s['cpu_seconds'] for s in report['stages'] if s['name'] == 'photometric'))
-        if p['solved']:
-            row['gain_error'] = gain_errors(scene, p)
+        row.update(used=p["used"], cpu=sum(s["cpu_seconds"] for s in report["stages"] if s["name"] == "photometric"))
+        if p["solved"]:
+            row.update(before=p["disagreement_before"], after=p["disagreement_after"], lenses=p["lenses"],
+                       gain_error=gain_errors(scene, p))
     return row
 
-def main():
-    p = argparse.ArgumentParser()
-    p.add_argument('--program', default='build/release/photohull')
-    p.add_argument('--specs', default=DEFAULT)
-    p.add_argument('--methods', default='refine')
-    p.add_argument('--resolution', type=int, default=160)
-    p.add_argument('--out')
-    p.add_argument('--keep')
-    a = p.parse_args()
-    rows = []
-    with tempfile.TemporaryDirectory() as scratch:
-        folder = a.keep or scratch
-        os.makedirs(folder, exist_ok=True)
-        for spec in a.specs.split(','):
-            alike, jittered = render(a, spec, True, folder), render(a, spec, False, folder)
-            name = os.path.basename(jittered)
-            for method in a.methods.split(','):
-                for scene, label, photometric in ((alike, name + ', alike', 'off'), (alike, name + ', alike', 'auto'),
-                                                  (jittered, name, 'off'), (jittered, name, 'auto')):
-                    rows.append(measure(a, scene, label, method, photometric, folder))
-    print('| scene | method | --photometric | F 0.25 % | gain error rms (max) | colours differ | corrected | vignetting | PSNR, dB | CPU s |')
-    print('|---' * 10 + '|')
-    for r in rows:
-        e = r.get('gain_error')
-        print('| %s | %s | %s | %.2f | %s | %s | %s | %s | %.2f | %s |' % (
-            r['scene'], r['method'], r['photometric'] + ('' if 'used' not in r else ' (corrects)' if r['used'] else ' (leaves)'),
-            100 * r['f'], '%.2f %% (%.2f %%)' % (100 * e['rms'], 100 * e['max']) if e else '',
-            '%.2f %%' % (100 * r['before']) if 'before' in r else '', '%.2f %%' % (100 * r['after']) if 'after' in r else '',
-            ', '.join('%.3f +- %.3f' % (l['vignetting'], l['sigma']) for l in r['lenses']) if 'lenses' in r else '',
-            r['psnr'], '%.1f' % r['cpu'] if 'cpu' in r else ''))
-    if a.out:
-        json.dump(rows, open(a.out, 'w'), indent=1)
 
-main()
+def cells(r: dict) -> list[str]:
+    e = r.get("gain_error")
+    corrects = "" if "used" not in r else " (corrects)" if r["used"] else " (leaves)"
+    return [r["scene"], r["method"], r["photometric"] + corrects, f"{100 * r['f']:.2f}",
+            f"{100 * e['rms']:.2f} % ({100 * e['max']:.2f} %)" if e else "",
+            f"{100 * r['before']:.2f} %" if "before" in r else "", f"{100 * r['after']:.2f} %" if "after" in r else "",
+            ", ".join(f"{lens['vignetting']:.3f} +- {lens['sigma']:.3f}" for lens in r.get("lenses", [])),
+            f"{r['psnr']:.2f}", f"{r['cpu']:.1f}" if "cpu" in r else ""]
+
+
+def run(options: argparse.Namespace) -> None:
+    photohull, rows = Photohull(options.program), []
+    with work_folder(options.keep) as folder:
+        for spec in map(Path, options.specs):
+            alike, unlike = (render(photohull, spec, same, folder) for same in (True, False))
+            for method in options.methods:
+                for scene, label in ((alike, f"{unlike.name}, alike"), (unlike, unlike.name)):
+                    rows += [{"scene": label} | measure(photohull, scene, method, photometric, options.resolution)
+                             for photometric in ("off", "auto")]
+    tables.show(COLUMNS, map(cells, rows))
+    keep_json(options.out, rows)

@@ -1,20 +1,24 @@
-#!/usr/bin/env python3
 """Puts the tables and curves of `photohull stress` into docs/measurements/stability.md.
 
     build/release/photohull stress bench/plans/stress.json --out out/stress
     build/release/photohull stress bench/plans/stress_marks.json --out out/stress_marks
-    bench/stability_doc.py out/stress out/stress_marks
-    bench/stability_doc.py --verdicts out/seed2               # the table of verdicts alone
-    bench/stability_doc.py --thin out/stress_thin             # the axes of group thin alone
+    python3 -m bench stability_doc out/stress out/stress_marks
+    python3 -m bench stability_doc --verdicts out/seed2       # the table of verdicts alone
+    python3 -m bench stability_doc --thin out/stress_thin     # the axes of group thin alone
 
 Replaces what stands between the lines `<!-- stress:NAME -->` and `<!-- /stress:NAME -->` by the sections of the folders'
-summary.md, and copies the charts to docs/images. Without the second folder the promises in larger pictures stay as they are.
-"""
+summary.md, and copies the charts to docs/images. Without the second folder the promises in larger pictures stay as they
+are."""
+import argparse
 import json
 import re
 import shutil
 import sys
+from collections.abc import Callable
 from pathlib import Path
+
+from bench import tables
+from bench.runner import ROOT, f_scores
 
 # What is done about a degradation: its name, the axis, and the settings with and without it.
 CURES = [
@@ -36,55 +40,56 @@ CURES = [
 
 THIN = {"stem-width", "mask-style", "views-off-1", "views-off-2", "view-shift"}  # axes, each scene's figures in full
 
-DOCS = Path(__file__).resolve().parent.parent / "docs"
+DOCS = ROOT / "docs"
+COLUMNS = ["axis", "point", "scene", "settings", "F 0.1 %", "F 0.25 %", "F 0.5 %", "silhouettes missed", "verdict"]
 
 
-def section(folder, heading):
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("folders", nargs="*", type=Path, help="of all axes, and of the promises in larger pictures")
+    parser.add_argument("--verdicts", type=Path, metavar="FOLDER")
+    parser.add_argument("--thin", type=Path, metavar="FOLDER")
+
+
+def section(folder: Path, heading: str) -> str:
     """The tables below a heading of summary.md; nothing where the heading is missing."""
     text = (folder / "summary.md").read_text()
     found = re.search(rf"^## {re.escape(heading)}\n(.*?)(?=^## |\Z)", text, re.S | re.M)
     return found.group(1).strip() if found else ""
 
 
-def cures(folder):
+def cures(folder: Path) -> str:
     """F at 0.25 % in percent, without and with each cure, at the clean and every other strength."""
     curves = {(c["axis"], c["variant"]): c["points"] for c in json.loads((folder / "results.json").read_text())["curves"]}
-    lines = [
-        "F at 0.25 % of the diagonal, mean over scenes, without and with the cure.",
-        "",
-        "| cure | degradation | clean | strength: without, with |",
-        "|---|---|---|---|",
-    ]
+    rows = []
     for cure, axis, on, off in CURES:
         pairs = list(zip(curves[axis, off], curves[axis, on], strict=True))
         cells = [(with_["label"], f"{100 * without['f025']:.1f}, **{100 * with_['f025']:.1f}**") for without, with_ in pairs]
         others = "; ".join(f"{label}: {text}" for label, text in cells[1:])
-        lines.append(f"| {cure} | {axis.replace('-', ' ')} | {cells[0][1]} | {others} |")
-    return "\n".join(lines)
+        rows.append([cure, axis.replace("-", " "), cells[0][1], others])
+    return ("F at 0.25 % of the diagonal, mean over scenes, without and with the cure.\n\n" +
+            tables.markdown(["cure", "degradation", "clean", "strength: without, with"], rows))
 
 
-def thin(folder):
+def thin(folder: Path) -> str:
     """Every scene's own figures, and the curves."""
     results = json.loads((folder / "results.json").read_text())
-    lines = [
-        "| axis | point | scene | settings | F 0.1 % | F 0.25 % | F 0.5 % | silhouettes missed | verdict |",
-        "|---|---|---|---|---|---|---|---|---|",
-    ]
+    rows = []
     for s in results["samples"]:
         if s["axis"] not in THIN:
             continue
         run = json.loads((folder / "runs" / f"{s['run']}.json").read_text())
-        scores = {f["t"]: f["f"] for f in run.get("evaluation", {}).get("f", [])}
+        scores = f_scores(run["evaluation"]) if "evaluation" in run else {}
         missed = s["report"]["verdict"]["signals"]["silhouettes_missed"] if s.get("report") else None
         cells = [s["axis"].replace("-", " "), s["label"], s["scene"], s["variant"]]
         cells.append(f"{100 * scores[0.001]:.1f}" if 0.001 in scores else "")
         cells += [f"{100 * s['f025']:.1f}", f"{100 * s['f05']:.1f}"]
         cells += ["" if missed is None else f"{100 * missed:.2f} %", s.get("verdict") or ""]
-        lines.append("| " + " | ".join(cells) + " |")
-    return "\n".join(lines) + "\n\n" + pictures(folder, lambda group: group == "thin")
+        rows.append(cells)
+    return tables.markdown(COLUMNS, rows) + "\n\n" + pictures(folder, lambda group: group == "thin")
 
 
-def pictures(folder, wanted):
+def pictures(folder: Path, wanted: Callable[[str], bool]) -> str:
+    """Links to the charts of these groups, which are copied."""
     lines = []
     for chart in sorted(folder.glob("stress--*.png")):
         if not wanted(chart.stem.removeprefix("stress--")):
@@ -94,7 +99,7 @@ def pictures(folder, wanted):
     return "\n\n".join(lines)
 
 
-def replace(parts):
+def replace(parts: dict[str, str]) -> None:
     page = DOCS / "measurements" / "stability.md"
     text = page.read_text()
     for name, content in parts.items():
@@ -105,16 +110,7 @@ def replace(parts):
     page.write_text(text)
 
 
-def main():
-    if len(sys.argv) not in (2, 3):
-        sys.exit(__doc__)
-    if sys.argv[1] == "--verdicts":
-        replace({"verdicts": section(Path(sys.argv[2]), "Verdicts")})
-        return
-    if sys.argv[1] == "--thin":
-        replace({"thin": thin(Path(sys.argv[2]))})
-        return
-    curves = Path(sys.argv[1])
+def all_parts(curves: Path) -> dict[str, str]:
     parts = {
         "marks-small": section(curves, "Promises"),
         "breakdown": section(curves, "Where it breaks"),
@@ -124,10 +120,17 @@ def main():
     }
     if any(s["axis"] in THIN for s in json.loads((curves / "results.json").read_text())["samples"]):
         parts["thin"] = thin(curves)
-    if len(sys.argv) == 3:
-        parts["marks"] = section(Path(sys.argv[2]), "Promises")
+    return parts
+
+
+def run(options: argparse.Namespace) -> None:
+    parts = all_parts(options.folders[0]) if options.folders else {}
+    if len(options.folders) > 1:
+        parts["marks"] = section(options.folders[1], "Promises")
+    if options.verdicts:
+        parts["verdicts"] = section(options.verdicts, "Verdicts")
+    if options.thin:
+        parts["thin"] = thin(options.thin)
+    if not parts:
+        sys.exit("stability_doc needs a folder that 'photohull stress' made")
     replace(parts)
-
-
-if __name__ == "__main__":
-    main()

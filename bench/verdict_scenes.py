@@ -1,22 +1,20 @@
-#!/usr/bin/env python3
 """How the verdict calls every synthetic scene, against how good the result is.
 
-    bench/verdict_scenes.py build/release/photohull out/verdict_scenes [--resolution 96] [--only NAME ...]
+    python3 -m bench verdict_scenes out/verdict_scenes [--resolution 96] [--only NAME ...]
 
 Each spec of datasets/synthetic is photographed small, with two seeds, and reconstructed in several ways
 (VARIANTS). results.json of the folder holds for each run F at 0.5 % of the diagonal, of the parts that are
 seen, and the verdict with its reasons and the signals that it rests on. Runs that are there are not repeated.
 The tables at the end count the calls, and in how many of them the first reason is the right one, apart for
-seed 1, on which limits were fitted, and for the others; docs/measurements/stability.md has them.
-"""
+seed 1, on which limits were fitted, and for the others; docs/measurements/stability.md has them."""
 import argparse
 import json
-import pathlib
 import re
-import shutil
-import subprocess
+from pathlib import Path
 
-SPECS = pathlib.Path(__file__).resolve().parent.parent / "datasets" / "synthetic"
+from bench import tables
+from bench.runner import SYNTHETIC, Photohull, ProgramError, add_program, f_scores, keep_json, listed
+
 VARIANTS = {
     "default": [],
     "draft": ["--quality", "draft"],
@@ -26,7 +24,6 @@ VARIANTS = {
     "every third view": None,
     "small box": ["--box-scale", "0.7", "--box-exact"],
 }
-
 
 # What a run's first reason is to say, by patterns, where it is called: what was done to it (VARIANTS) or what
 # is hard about its scene (SPEC_CAUSES). Of a box that is too small nothing else is the cause.
@@ -68,90 +65,79 @@ SPEC_CAUSES = {
 }
 
 
-def first_is_right(key, result):
+COLUMNS = ["F of what is seen, 0.5 %", "good", "doubtful", "failed", "refused"]
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    add_program(parser)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--resolution", type=int, default=96)
+    parser.add_argument("--size", default="320x240")
+    parser.add_argument("--seeds", type=listed, default="1,2")
+    parser.add_argument("--only", nargs="*", default=[])
+    parser.add_argument("--variants", type=listed, default=",".join(VARIANTS))
+
+
+def first_is_right(key: str, result: dict) -> bool:
     spec, _, variant = key.split("|")
     causes = VARIANT_CAUSES[variant] + ([] if variant == "small box" else SPEC_CAUSES.get(spec, []))
     return any(re.search(WORDS[cause], result["reasons"][0]) for cause in causes)
 
 
-def spec_json(path):
-    lines = [line for line in path.read_text().splitlines() if not line.strip().startswith("//")]
-    return json.loads("\n".join(lines))
-
-
-def arguments_of(variant, views, resolution):
+def arguments_of(variant: str, views: int, resolution: int) -> list[str]:
     if variant == "every third view":
         return ["--views", f"spread:{max(5, views // 3)}", "--resolution", str(resolution)]
     given = VARIANTS[variant]
     return given if "--quality" in given or "--resolution" in given else given + ["--resolution", str(resolution)]
 
 
-def call(command):
-    return subprocess.run([str(word) for word in command], capture_output=True, text=True)
+def measure(photohull: Photohull, scene: Path, out: Path, arguments: list[str]) -> dict:
+    try:
+        done = photohull.call("reconstruct", scene, "--out", out, "--json", *arguments)
+    except ProgramError as error:
+        return {"exit": error.status, "error": [error.message]}
+    judged = photohull.evaluate(out / "mesh.ply", "--truth", scene)
+    verdict = done.report["verdict"]
+    return {"exit": done.status, "f": f_scores(judged)[0.005], "f_seen": f_scores(judged["seen"])[0.005],
+            "level": verdict["level"], "reasons": verdict["reasons"], "verdict": verdict,
+            "cpu_seconds": done.report["cpu_seconds"]}
 
 
-def measure(program, scene, out, arguments):
-    done = call([program, "reconstruct", scene, "--out", out, "--json", *arguments])
-    if done.returncode not in (0, 3):
-        return {"exit": done.returncode, "error": done.stderr.strip().splitlines()[-1:]}
-    report = json.loads(done.stdout)
-    judged = json.loads(call([program, "evaluate", out / "mesh.ply", "--truth", scene, "--json"]).stdout)
-    at = {f["t"]: f["f"] for f in judged["f"]}
-    seen = {f["t"]: f["f"] for f in judged["seen"]["f"]}
-    verdict = report["verdict"]
-    return {"exit": done.returncode, "f": at[0.005], "f_seen": seen[0.005], "level": verdict["level"],
-            "reasons": verdict["reasons"], "verdict": verdict, "cpu_seconds": report["cpu_seconds"]}
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("program")
-    parser.add_argument("folder", type=pathlib.Path)
-    parser.add_argument("--resolution", type=int, default=96)
-    parser.add_argument("--size", default="320x240")
-    parser.add_argument("--seeds", default="1,2")
-    parser.add_argument("--only", nargs="*", default=[])
-    parser.add_argument("--variants", default=",".join(VARIANTS))
-    options = parser.parse_args()
-    options.folder.mkdir(parents=True, exist_ok=True)
-    file = options.folder / "results.json"
-    results = json.loads(file.read_text()) if file.exists() else {}
-    for path in sorted(SPECS.glob("*.json")):
+def run(options: argparse.Namespace) -> None:
+    photohull, file = Photohull(options.program), options.folder / "results.json"
+    results = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
+    for path in sorted(SYNTHETIC.glob("*.json")):
         if options.only and path.stem not in options.only:
             continue
-        for seed in options.seeds.split(","):
-            missing = [v for v in options.variants.split(",") if f"{path.stem}|{seed}|{v}" not in results]
+        for seed in options.seeds:
+            missing = [v for v in options.variants if f"{path.stem}|{seed}|{v}" not in results]
             if not missing:
                 continue
-            scene = options.folder / "scene"
-            shutil.rmtree(scene, ignore_errors=True)
-            call([options.program, "synthesize", path, "--size", options.size, "--seed", seed, "--out", scene])
-            views = len(json.loads((scene / "transforms.json").read_text())["frames"])
+            scene = photohull.synthesize(path, options.folder / "scene", "--size", options.size, "--seed", seed)
+            views = len(json.loads((scene / "transforms.json").read_text(encoding="utf-8"))["frames"])
             for variant in missing:
                 arguments = arguments_of(variant, views, options.resolution)
-                result = measure(options.program, scene, options.folder / "out", arguments)
+                result = measure(photohull, scene, options.folder / "out", arguments)
                 results[f"{path.stem}|{seed}|{variant}"] = result
-                file.write_text(json.dumps(results, indent=1))
+                keep_json(file, results)
                 print(path.stem, seed, variant, result.get("level"), round(100 * result.get("f_seen", 0), 1),
                       result.get("reasons", result.get("error"))[:1], flush=True)
-    summary(results)
-
-
-def summary(results):
     fitted = {key for key in results if key.split("|")[1] == "1"}
-    for title, chosen in [("fitted on", fitted), ("judged on", set(results) - fitted)]:
-        print(f"\n{title}:\n\n| F of what is seen, 0.5 % | good | doubtful | failed | refused |\n|---|---|---|---|---|")
-        for low, high in [(0, 0.8), (0.8, 0.95), (0.95, 2)]:
-            runs = [results[key] for key in chosen if "f" in results[key] and low <= results[key]["f_seen"] < high]
-            counts = [sum(r["level"] == level for r in runs) for level in ("good", "doubtful", "failed")]
-            print(f"| {100 * low:.0f} to {min(100, 100 * high):.0f} % |", " | ".join(map(str, counts)), "| 0 |")
-        print("| no result | 0 | 0 | 0 |", sum("f" not in results[key] for key in chosen), "|")
-        called = [key for key in chosen if results[key].get("reasons")]
-        wrong = sorted(key for key in called if not first_is_right(key, results[key]))
-        if called:
-            print(f"\nThe right cause comes first in {len(called) - len(wrong)} of {len(called)} called "
-                  f"({100 * (1 - len(wrong) / len(called)):.0f} %); not in: {', '.join(wrong) or 'none'}")
+    summary("fitted on", results, fitted)
+    summary("judged on", results, set(results) - fitted)
 
 
-if __name__ == "__main__":
-    main()
+def summary(title: str, results: dict[str, dict], chosen: set[str]) -> None:
+    rows = []
+    for low, high in [(0, 0.8), (0.8, 0.95), (0.95, 2)]:
+        runs = [results[key] for key in chosen if "f" in results[key] and low <= results[key]["f_seen"] < high]
+        counts = [sum(r["level"] == level for r in runs) for level in ("good", "doubtful", "failed")]
+        rows.append([f"{100 * low:.0f} to {min(100, 100 * high):.0f} %", *counts, 0])
+    rows.append(["no result", 0, 0, 0, sum("f" not in results[key] for key in chosen)])
+    print(f"\n{title}:\n")
+    tables.show(COLUMNS, rows)
+    called = [key for key in chosen if results[key].get("reasons")]
+    wrong = sorted(key for key in called if not first_is_right(key, results[key]))
+    if called:
+        print(f"\nThe right cause comes first in {len(called) - len(wrong)} of {len(called)} called "
+              f"({100 * (1 - len(wrong) / len(called)):.0f} %); not in: {', '.join(wrong) or 'none'}")

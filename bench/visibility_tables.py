@@ -1,25 +1,33 @@
-#!/usr/bin/env python3
 """What 'photohull bench visibility' measured, as Markdown tables in the papers' structure.
 
     build/release/photohull bench visibility --json bench/results/visibility.json
-    bench/visibility_tables.py bench/results/visibility.json
+    python3 -m bench visibility_tables bench/results/visibility.json
 
-Several files, one a scene say, are joined; --merge writes them as one.
-"""
+Several files, one a scene say, are joined; --merge writes them as one."""
 import argparse
 import json
+from collections.abc import Callable, Iterable, Sequence
+from operator import itemgetter
+from pathlib import Path
+
+from bench import tables
+from bench.runner import listed
 
 PIXELS = 800 * 600  # of the pictures in [BarrosoCeles07], to which receivers are scaled
 SHOWN = 1024
 TABLES = ("errors", "means", "biases", "angles", "detection", "volumes", "li17", "cad07", "filters")
 
 
-def join(files):
-    joined = {}
-    for name in files:
-        with open(name, encoding="utf-8") as file:
-            one = json.load(file)
-        for key, value in one.items():
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("results", nargs="+", type=Path, help="visibility.json")
+    parser.add_argument("--merge", type=Path, help="file to write the joined results to")
+    parser.add_argument("--tables", type=listed, default=",".join(TABLES), help="some of the tables: %(default)s")
+
+
+def join(files: Iterable[Path]) -> dict:
+    joined: dict = {}
+    for path in files:
+        for key, value in json.loads(path.read_text(encoding="utf-8")).items():
             if isinstance(value, list) and key not in ("angles", "volumes"):
                 joined.setdefault(key, []).extend(value)
             else:
@@ -27,26 +35,22 @@ def join(files):
     return joined
 
 
-def table(head, rows):
-    print("| " + " | ".join(head) + " |")
-    print("|" + "---|" * len(head))
-    for row in rows:
-        print("| " + " | ".join(str(cell) for cell in row) + " |")
-    print()
+def table(head: Sequence[str], rows: Iterable[Iterable[object]]) -> None:
+    print(tables.markdown(head, rows) + "\n")
 
 
 class Results:
-    def __init__(self, data):
+    def __init__(self, data: dict):
         self.data = data
         self.scenes = {s["name"]: s for s in data["scenes"]}
         self.cells = {(c["scene"], c["technique"], c["resolution"]): c for c in data["cells"]}
         self.techniques = list(dict.fromkeys(c["technique"] for c in data["cells"]))
         self.resolutions = sorted({c["resolution"] for c in data["cells"]})
 
-    def total(self, cell):
+    def total(self, cell: dict) -> float:
         return cell["false_occlusion_percent"] + cell["false_visibility_percent"]
 
-    def errors(self):
+    def errors(self) -> None:
         print(f"### Errors at {SHOWN} texels: falsely hidden + falsely visible, % (silhouette, texels)\n")
         rows = []
         for technique in self.techniques:
@@ -58,7 +62,7 @@ class Results:
             rows.append(row)
         table(["technique"] + list(self.scenes), rows)
 
-    def means(self):
+    def means(self) -> None:
         print("### Mean over the scenes: total error in %, map ms + test ms, MiB\n")
         rows = []
         for technique in self.techniques:
@@ -69,13 +73,15 @@ class Results:
                 if not found:
                     row.append("-")
                     continue
-                mean = lambda value: sum(value(c) for c in found) / len(found)
-                row.append(f"{mean(self.total):.3f}; {mean(lambda c: c['map_ms']):.0f} + "
-                           f"{mean(lambda c: c['test_ms']):.1f}; {mean(lambda c: c['bytes']) / 2**20:.0f}")
+
+                def mean(value: Callable[[dict], float]) -> float:
+                    return sum(map(value, found)) / len(found)
+                row.append(f"{mean(self.total):.3f}; {mean(itemgetter('map_ms')):.0f} + "
+                           f"{mean(itemgetter('test_ms')):.1f}; {mean(itemgetter('bytes')) / 2**20:.0f}")
             rows.append(row)
         table(["technique"] + [f"{r}" for r in self.resolutions], rows)
 
-    def biases(self):
+    def biases(self) -> None:
         print("### Constant bias: falsely hidden + falsely visible, %, at 1024 texels\n")
         widths = sorted({b["bias_texels"] for b in self.data["biases"]})
         rows = []
@@ -85,7 +91,7 @@ class Results:
                                    f"{found[w]['false_visibility_percent']:.2f}" for w in widths])
         table(["texels of bias"] + [f"{w:g}" for w in widths], rows)
 
-    def angles(self):
+    def angles(self) -> None:
         print("### Total error in % (silhouette, texels) by the angle between the two cameras, 1024 texels\n")
         degrees = sorted({a["degrees"] for a in self.data["angles"]})
         techniques = list(dict.fromkeys(a["technique"] for a in self.data["angles"]))
@@ -94,7 +100,7 @@ class Results:
               [[f"`{t}`"] + [f"{self.total(found[t, d]):.2f} ({found[t, d]['silhouette_texels']:.2f})"
                              for d in degrees] for t in techniques])
 
-    def detection(self):
+    def detection(self) -> None:
         print("### Triangles seen in a texel, and share of them that maps know, %\n")
         rows = []
         for scene in self.scenes:
@@ -106,17 +112,17 @@ class Results:
                                 [f"{found[t]['found_percent']:.1f}" for t in ("sub-pixel", "coverage", "lists")])
         table(["scene", "texels", "triangles", "sub-pixel", "coverage", "lists"], rows)
 
-    def volumes(self):
+    def volumes(self) -> None:
         print("### A volume of 256^3 voxels: map ms, falsely hidden + falsely visible, %\n")
         table(["way"] + [str(r) for r in self.resolutions],
               [[way] + [f"{v['map_ms']:.0f}; {v['false_occlusion_percent']:.2f} + {v['false_visibility_percent']:.2f}"
                         for v in self.data["volumes"] if v["way"] == way] for way in ("faces", "march")])
 
-    def ms(self, scene, technique, resolution):
+    def ms(self, scene: str, technique: str, resolution: int) -> float:
         cell = self.cells[scene, technique, resolution]
         return cell["map_ms"] + cell["test_ms"]
 
-    def li17(self):
+    def li17(self) -> None:
         print("### [Li17] Table 1: ms by resolution, dense mesh (paper: Dragon)\n")
         paper = {512: (16.9, 25.7), 1024: (32.8, 42.8), 2048: (34.4, 44.1), 4096: (67.3, 78.4)}
         rows = []
@@ -142,7 +148,7 @@ class Results:
         table(["model", "vertices", "polygons"] + [f"{t} {r}" for t in ("plain", "SPSM", "coverage", "lists")
                                                     for r in (1024, 2048)] + ["paper: SM, SPSM, theirs"], rows)
 
-    def frames(self, scene, technique, lights, dynamic, close):
+    def frames(self, scene: str, technique: str, lights: int, dynamic: bool, close: bool) -> float:
         """Per second: a pass of the picture, one more a light with its test, and dynamic lights' maps."""
         view = next(v["ms"] for v in self.data["views"] if v["scene"] == scene and v["close"] == close)
         if not lights:
@@ -151,7 +157,7 @@ class Results:
         test = cell["test_ms"] * PIXELS / self.scenes[scene]["receivers"]
         return 1000 / (view + lights * (view + test + (cell["map_ms"] if dynamic else 0)))
 
-    def cad07(self, scene="assembly_250k"):
+    def cad07(self, scene: str = "assembly_250k") -> None:
         if scene not in self.scenes:
             return
         f = lambda *a: f"{self.frames(scene, *a):.1f}"
@@ -175,7 +181,7 @@ class Results:
               [[l, f("plain", l, True, True), f("recommended", l, True, True), a, b]
                for l, a, b in ((1, "45, 29-59", "33, 9-12"), (2, "25, 18-30", "18, 5-7"))])
 
-    def filters(self, scene="assembly_250k"):
+    def filters(self, scene: str = "assembly_250k") -> None:
         """Table 4, in frames a second and in milliseconds of the test alone."""
         columns = {"PCF 3x3": "pcf3", "adaptive": "pcf3-adaptive", "PCF 5x5": "pcf5", "5x5 adaptive": "pcf5-adaptive",
                    "VSM 3x3": "variance3", "VSM 5x5": "variance"}
@@ -189,21 +195,10 @@ class Results:
         table(["lights"] + list(columns) + ["paper: adaptive 3x3, 5x5; VSM 3x3, 5x5"], rows)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("results", nargs="+", help="visibility.json")
-    parser.add_argument("--merge", help="file to write the joined results to")
-    parser.add_argument("--tables", default=",".join(TABLES), help="some of the tables: %(default)s")
-    options = parser.parse_args()
+def run(options: argparse.Namespace) -> None:
     data = join(options.results)
     if options.merge:
-        with open(options.merge, "w", encoding="utf-8") as file:
-            json.dump(data, file, indent=1)
-            file.write("\n")
+        options.merge.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
     results = Results(data)
-    for part in options.tables.split(","):
+    for part in options.tables:
         getattr(results, part)()
-
-
-if __name__ == "__main__":
-    main()

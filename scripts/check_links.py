@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks that the pages of this repository can be followed: every relative link of a Markdown file leads to a file or
-folder that exists, every #anchor to a heading, every page below docs/ has its line in docs/README.md, every page that a
-comment, a script or a help text names as docs/... exists, and so does every source file that a page names with its folder.
+folder that exists, every #anchor to a heading, every page below docs/ has its line in docs/README.md or in a README.md
+that it lists, every page that a comment, a script or a help text names as docs/... exists, and so does every source file that a page names with its folder.
 Prints what is broken and fails; needs the standard library only.
 
     scripts/check_links.py
@@ -51,6 +51,10 @@ def links(page):
     return inline + re.findall(r"^\[[^\]]+\]:\s*(\S+)$", text, re.M)
 
 
+def targets(page):
+    return {(page.parent / link.partition("#")[0]).resolve() for link in links(page)}
+
+
 def broken_link(page, link):
     """What is wrong with a link, or nothing."""
     if re.match(r"[a-z]+:", link):
@@ -76,7 +80,9 @@ def main():
               for page in pages for link in links(page) if (fault := broken_link(page, link))]
 
     index = ROOT / "docs" / "README.md"
-    listed = {(index.parent / link.partition("#")[0]).resolve() for link in links(index)}
+    listed = targets(index)
+    for below in [path for path in listed if path.name == "README.md" and (ROOT / "docs") in path.parents]:
+        listed |= targets(below)
     faults += [f"docs/README.md has no line for {page.relative_to(ROOT)}"
                for page in docs if page != index and page not in listed]
 

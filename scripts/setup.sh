@@ -15,8 +15,8 @@
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 packages=(
-  # Tools: compiler, build, shader check.
-  g++ cmake ninja-build ccache git glslang-tools
+  # Tools: compiler, build, shader check; studies and the test of the docs.
+  g++ cmake ninja-build ccache git glslang-tools python3
   # OpenGL through EGL, and Mesa's software rasterizer for machines without a GPU.
   libegl-dev libopengl-dev libegl1 libegl-mesa0 libgl1-mesa-dri
   # Volumes; OpenVDB's CMake module asks for Boost.
