@@ -1,26 +1,38 @@
 #include "carving/statistic.h"
 
+#include <algorithm>
+
+#include "carving/statistic_reference.h"
+#include "core/error.h"
 #include "gpu/shader_source.h"
 
 namespace photohull::carving {
 
-const char* to_string(Statistic statistic) {
-  switch (statistic) {
-    case Statistic::kZncc:
-      return "zncc";
-    case Statistic::kGainVariance:
-      return "gain-variance";
-    case Statistic::kAdaptiveVariance:
-      return "adaptive-variance";
-    case Statistic::kRobustVariance:
-      return "robust-variance";
-    case Statistic::kHistogram:
-      return "histogram";
-    case Statistic::kCensus:
-      return "census";
-  }
-  return "?";
+std::span<const StatisticEntry> statistic_entries() {
+  static constexpr StatisticEntry kEntries[] = {
+      {Statistic::kZncc, "zncc", nullptr},
+      {Statistic::kGainVariance, "gain-variance", reference::gain_variance},
+      {Statistic::kAdaptiveVariance, "adaptive-variance", reference::adaptive_variance},
+      {Statistic::kRobustVariance, "robust-variance", reference::robust_variance},
+      {Statistic::kHistogram, "histogram", reference::histogram_consistency},
+      {Statistic::kCensus, "census", reference::census},
+  };
+  return kEntries;
 }
+
+std::vector<Statistic> all_statistics() {
+  std::vector<Statistic> all;
+  for (const StatisticEntry& entry : statistic_entries()) all.push_back(entry.statistic);
+  return all;
+}
+
+const StatisticEntry& entry_of(Statistic statistic) {
+  const auto entry = std::ranges::find(statistic_entries(), statistic, &StatisticEntry::statistic);
+  PHOTOHULL_CHECK(entry != statistic_entries().end());
+  return *entry;
+}
+
+const char* to_string(Statistic statistic) { return entry_of(statistic).name; }
 
 std::string statistic_defines(Statistic statistic, bool coverage) {
   return gpu::define("CONSISTENCY_", to_string(statistic)) +

@@ -1,7 +1,9 @@
 // The statistics by which a voxel counts as photo-consistent.
 #pragma once
 
+#include <span>
 #include <string>
+#include <vector>
 
 namespace photohull::carving {
 
@@ -14,11 +16,24 @@ enum class Statistic {
   kCensus             ///< taps brighter or darker than the patch's middle [ZabihWoodfill94]
 };
 
-inline constexpr Statistic kStatistics[] = {
-    Statistic::kZncc,           Statistic::kGainVariance, Statistic::kAdaptiveVariance,
-    Statistic::kRobustVariance, Statistic::kHistogram,    Statistic::kCensus};
+namespace reference {
+struct CommonPatches;
+struct ImageNoise;
+struct Evidence;
+}  // namespace reference
 
-/// Name on the command line: "zncc", "gain-variance", ...
+struct StatisticEntry {
+  Statistic statistic;
+  const char* name;  ///< on the command line, and of shaders/include/consistency_NAME.glsl
+  /// What the shader is compared with (statistic_reference.h). Null: photo_reference.h has it.
+  reference::Evidence (*reference)(const reference::CommonPatches& patches,
+                                   const reference::ImageNoise& noise);
+};
+
+/// In the order in which they are named.
+std::span<const StatisticEntry> statistic_entries();
+std::vector<Statistic> all_statistics();
+const StatisticEntry& entry_of(Statistic statistic);
 const char* to_string(Statistic statistic);
 
 /// Lines of "#define" for carving_score_columns. `coverage`: samples tell coverage by their alpha

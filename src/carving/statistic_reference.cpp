@@ -210,22 +210,4 @@ Evidence census(const CommonPatches& patches, const ImageNoise& noise) {
   return out;
 }
 
-Evidence measure(Statistic statistic, const CommonPatches& patches, const ImageNoise& noise) {
-  switch (statistic) {
-    case Statistic::kGainVariance:
-      return gain_variance(patches, noise);
-    case Statistic::kAdaptiveVariance:
-      return adaptive_variance(patches, noise);
-    case Statistic::kRobustVariance:
-      return robust_variance(patches, noise);
-    case Statistic::kHistogram:
-      return histogram_consistency(patches, noise);
-    case Statistic::kCensus:
-      return census(patches, noise);
-    case Statistic::kZncc:
-      break;
-  }
-  check_failed(__FILE__, __LINE__, "photo_consistency is its reference");
-}
-
 }  // namespace photohull::carving::reference

@@ -35,7 +35,4 @@ Evidence robust_variance(const CommonPatches& patches, const ImageNoise& noise);
 Evidence histogram_consistency(const CommonPatches& patches, const ImageNoise& noise);
 Evidence census(const CommonPatches& patches, const ImageNoise& noise);
 
-/// The one of them that is asked for; not Statistic::kZncc.
-Evidence measure(Statistic statistic, const CommonPatches& patches, const ImageNoise& noise);
-
 }  // namespace photohull::carving::reference

@@ -174,7 +174,7 @@ void describe_sweeps(Described& to, ReconstructOptions& o) {
                    projtex::to_string(projtex::kDefaultSampler), ")"));
   to.number("supersample", &o.supersample, from_to(1, projtex::kMaxSupersample), "",
             "sweeps: N x N samples a voxel (default: 1)");
-  to.choice("consistency", &o.consistency, carving::kStatistics,
+  to.choice("consistency", &o.consistency, carving::all_statistics(),
             concat("sweeps: what decides whether views agree on a voxel (default: ",
                    carving::to_string(carving::PhotoOptions().statistic), ")"));
   to.choice("visibility", &o.visibility, visibility::kSweepTests,

@@ -13,9 +13,14 @@ namespace {
 
 constexpr ImageNoise kNoise{1e-4, 2.25e-4};
 constexpr double kKeep = 0.7;
-constexpr Statistic kOfPatches[] = {Statistic::kGainVariance, Statistic::kAdaptiveVariance,
-                                    Statistic::kRobustVariance, Statistic::kHistogram,
-                                    Statistic::kCensus};
+
+/// Those whose references take patches.
+std::vector<StatisticEntry> of_patches() {
+  std::vector<StatisticEntry> out;
+  for (const StatisticEntry& entry : statistic_entries())
+    if (entry.reference) out.push_back(entry);
+  return out;
+}
 
 std::vector<glm::dvec3> random_patch(test::Rng& rng) {
   std::vector<glm::dvec3> patch(25);
@@ -48,15 +53,15 @@ CommonPatches different(test::Rng& rng, int n) {
 
 TEST(Statistics, AgreeOnTheSameSurfaceAndNotOnDifferentOnes) {
   test::Rng rng(3);
-  for (const Statistic statistic : kOfPatches) {
+  for (const StatisticEntry& statistic : of_patches()) {
     int kept = 0, refused = 0;
     for (int i = 0; i < 50; ++i) {
-      const Evidence good = measure(statistic, same(rng, 5), kNoise);
+      const Evidence good = statistic.reference(same(rng, 5), kNoise);
       kept += good.score >= kKeep && good.confidence > 0.5;
-      refused += measure(statistic, different(rng, 5), kNoise).score < kKeep;
+      refused += statistic.reference(different(rng, 5), kNoise).score < kKeep;
     }
-    EXPECT_EQ(kept, 50) << to_string(statistic);
-    EXPECT_GE(refused, 45) << to_string(statistic);
+    EXPECT_EQ(kept, 50) << statistic.name;
+    EXPECT_GE(refused, 45) << statistic.name;
   }
 }
 
@@ -87,7 +92,7 @@ TEST(Statistics, PlainPatchesSayNothingWhereContrastIsCompared) {
   plain.middle = 12;
   for (const Statistic statistic :
        {Statistic::kGainVariance, Statistic::kHistogram, Statistic::kCensus})
-    EXPECT_EQ(measure(statistic, plain, kNoise).confidence, 0) << to_string(statistic);
+    EXPECT_EQ(entry_of(statistic).reference(plain, kNoise).confidence, 0) << to_string(statistic);
   // Colours alone can still tell, by differing.
   plain.views[2].assign(25, glm::dvec3(0.7));
   EXPECT_LT(adaptive_variance(plain, kNoise).score, 0);
@@ -98,17 +103,17 @@ TEST(Statistics, TooFewViewsOrTapsAreNoEvidence) {
   CommonPatches few = same(rng, 4);
   for (auto& view : few.views) view.resize(12);
   few.middle = 3;
-  for (const Statistic statistic : kOfPatches) {
-    EXPECT_EQ(measure(statistic, same(rng, 1), kNoise).confidence, 0);
-    EXPECT_EQ(measure(statistic, {}, kNoise).confidence, 0);
-    EXPECT_EQ(measure(statistic, few, kNoise).confidence, 0);
+  for (const StatisticEntry& statistic : of_patches()) {
+    EXPECT_EQ(statistic.reference(same(rng, 1), kNoise).confidence, 0);
+    EXPECT_EQ(statistic.reference({}, kNoise).confidence, 0);
+    EXPECT_EQ(statistic.reference(few, kNoise).confidence, 0);
   }
 }
 
 TEST(StatisticNames, AreReadBackAndOthersRefused) {
-  for (const Statistic statistic : kStatistics)
-    EXPECT_EQ(parse_name("--consistency", to_string(statistic), kStatistics), statistic);
-  EXPECT_THROW(parse_name("--consistency", "mean", kStatistics), UsageError);
+  for (const Statistic statistic : all_statistics())
+    EXPECT_EQ(parse_name("--consistency", to_string(statistic), all_statistics()), statistic);
+  EXPECT_THROW(parse_name("--consistency", "mean", all_statistics()), UsageError);
 }
 
 }  // namespace

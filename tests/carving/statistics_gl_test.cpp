@@ -87,8 +87,8 @@ class StatisticsTest : public ::testing::TestWithParam<Statistic> {
 
   /// Of normalised cross-correlation, confidence is the texture.
   static Evidence measured(const CommonPatches& patches) {
-    if (GetParam() != Statistic::kZncc)
-      return reference::measure(GetParam(), patches, {kNoiseVariance, kLeastTexture});
+    if (const auto reference = entry_of(GetParam()).reference)
+      return reference(patches, {kNoiseVariance, kLeastTexture});
     const std::vector<reference::PatchColours> views(patches.views.begin(), patches.views.end());
     const bool few = views.empty() || views[0].size() < 13;
     const reference::Consistency c = reference::photo_consistency(views, kNoiseVariance);
@@ -158,11 +158,7 @@ std::string name_of(const ::testing::TestParamInfo<Statistic>& info) {
   return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, StatisticsTest,
-                         ::testing::Values(Statistic::kZncc, Statistic::kGainVariance,
-                                           Statistic::kAdaptiveVariance, Statistic::kRobustVariance,
-                                           Statistic::kHistogram, Statistic::kCensus),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(All, StatisticsTest, ::testing::ValuesIn(all_statistics()), name_of);
 
 }  // namespace
 }  // namespace photohull::carving
