@@ -6,11 +6,15 @@ include(CMakePackageConfigHelpers)
 
 set(PHOTOHULL_LIBRARY_MODULES core raycast gpu io io_mesh photo masks views cameras projtex visibility carving volume
   mesh eval assess render refine pipeline)
-list(TRANSFORM PHOTOHULL_LIBRARY_MODULES PREPEND photohull_ OUTPUT_VARIABLE modules)
-list(JOIN modules "," whole)
+set(modules)
+set(objects)
+foreach(module ${PHOTOHULL_LIBRARY_MODULES})
+  list(APPEND modules photohull_${module})
+  list(APPEND objects $<TARGET_OBJECTS:photohull_${module}>)
+endforeach()
 
-file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/empty.cpp CONTENT "")
-add_library(photohull_shared SHARED ${PROJECT_BINARY_DIR}/empty.cpp)
+# Of the modules' archives nothing is left to take: they bring the libraries that they are linked with.
+add_library(photohull_shared SHARED ${objects})
 set_target_properties(photohull_shared PROPERTIES
   OUTPUT_NAME photohull EXPORT_NAME photohull VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
   LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/exported_symbols.txt)
@@ -18,7 +22,7 @@ target_compile_features(photohull_shared INTERFACE cxx_std_20)
 target_include_directories(photohull_shared INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 target_link_options(photohull_shared PRIVATE -Wl,--version-script=${PROJECT_SOURCE_DIR}/cmake/exported_symbols.txt)
 target_link_libraries(photohull_shared PRIVATE ${modules} INTERFACE glm::glm)
-set_property(TARGET photohull_shared PROPERTY LINK_LIBRARY_OVERRIDE "WHOLE_ARCHIVE,${whole}")
+set_target_properties(photohull_shared PROPERTIES LINKER_LANGUAGE CXX)
 
 install(TARGETS photohull_shared EXPORT photohull LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT photohull NAMESPACE photohull:: FILE photohullTargets.cmake
