@@ -63,9 +63,10 @@ def measure(photohull: Photohull, scene: Path, method: str, photometric: str, re
     p = report.get("photometric")
     if p:
         row.update(used=p["used"], cpu=sum(s["cpu_seconds"] for s in report["stages"] if s["name"] == "photometric"))
-        if p["solved"]:
-            row.update(before=p["disagreement_before"], after=p["disagreement_after"], lenses=p["lenses"],
-                       gain_error=gain_errors(scene, p))
+        if "disagreement_before" in p:  # unless a quick look found the photographs alike
+            row.update(before=p["disagreement_before"], after=p["disagreement_after"], lenses=p["lenses"])
+            if p["solved"]:
+                row["gain_error"] = gain_errors(scene, p)
     return row
 
 
