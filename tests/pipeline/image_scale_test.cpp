@@ -110,7 +110,7 @@ TEST(KeepUnexpectedSizes, LetsDecodingTell) {
   views[2].image = folder / "broken.png";
   views[3].image = folder / "absent.png";
   std::vector<double> scales(4, 0.5);
-  keep_unexpected_sizes(views, scales);
+  keep_unexpected_sizes(file_reader(), views, scales);
   EXPECT_EQ(scales, (std::vector<double>{0.5, 1, 1, 1}));
 }
 
@@ -134,7 +134,7 @@ TEST(ReducedLoader, ReadsMasksOfTheCamerasSizeAsThoseOfScaledCopies) {
   scene.views[1].image = disc("b.png", 50, 37);
   scene.views[1].mask = disc("large.png", 101, 75);
   const std::vector<double> scales{0.3, 0.3};
-  const ViewLoader loader = reduced_loader(scene, scales);
+  const ViewLoader loader = reduced_loader(file_reader(), scene, scales);
   scale_scene(scales, scene);
   const Intrinsics& k = scene.views[0].camera.intrinsics;
   EXPECT_EQ(k.width, 15);
@@ -152,7 +152,7 @@ TEST(ReducedLoader, ReadsMasksOfTheCamerasSizeAsThoseOfScaledCopies) {
     EXPECT_NEAR(large.coverage[i], small.coverage[i], 20) << i;
   scene.views[0].camera.intrinsics = scene.views[1].camera.intrinsics =
       view(50, 37, 40).camera.intrinsics;
-  const ViewLoader whole = reduced_loader(scene, std::vector<double>{1, 1});
+  const ViewLoader whole = reduced_loader(file_reader(), scene, std::vector<double>{1, 1});
   EXPECT_EQ(whole.mask(folder / "large.png").width, 101) << "left to those who resize masks";
 }
 

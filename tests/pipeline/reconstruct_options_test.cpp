@@ -93,18 +93,18 @@ TEST_F(OptionText, ValuesThatAProgramSetsAreCheckedInTheSameWords) {
 }
 
 TEST_F(OptionText, ReportHasWhatIsGivenAndSomeDefaults) {
-  const std::string usual = option_line(options_);
+  const std::string usual = option_line(options_, load_);
   EXPECT_EQ(usual,
             "quality=normal method=refine photometric=auto mesh_error=0 unseen=auto "
             "surroundings=off masks=auto mask_offset=auto views_may_miss=auto image_scale=auto "
             "device=auto");
   options_.threads = 3;
   options_.evidence = options_.fresh = true;
-  EXPECT_EQ(option_line(options_), usual) << "what changes no result";
+  EXPECT_EQ(option_line(options_, load_), usual) << "what changes no result";
   options_.sampler = projtex::Sampler::kEwa;
   options_.box.find = true;
   options_.keep_mask_holes = true;
-  const NamedValues named = named_options(options_);
+  const NamedValues named = named_options(options_, load_);
   for (const auto& [name, value] : NamedValues{{"sampler", "ewa"},
                                                {"box", "auto"},
                                                {"mask_holes", "keep"},

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "eval/evaluate.h"
 #include "io/mesh/read_mesh.h"
+#include "pipeline/write_results.h"
 #include "random_scene.h"
 #include "support/effort.h"
 #include "support/scratch_folder.h"
