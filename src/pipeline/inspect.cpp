@@ -8,6 +8,7 @@
 #include "core/option_word.h"
 #include "pipeline/checks.h"
 #include "pipeline/memory.h"
+#include "pipeline/methods/method.h"
 #include "pipeline/plan.h"
 #include "pipeline/read_scene.h"
 
@@ -44,7 +45,7 @@ void look_ahead(const Scene& scene, const ReconstructOptions& options, io::MaskS
   const bool masks = source != io::MaskSource::kNone &&
                      std::any_of(scene.views.begin(), scene.views.end(),
                                  [](const SourceView& view) { return !view.mask.empty(); });
-  if (masks || options.effective_method() != Method::kRefine)
+  if (masks || !method_of(options).needs_no_silhouettes)
     check_cameras_outside(*scene.box, scene.box_source, scene.views);
   if (within > 0)
     out.warnings.push_back(concat(within, " of ", scene.views.size(),

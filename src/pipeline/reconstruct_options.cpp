@@ -92,10 +92,9 @@ void describe_voxels(Described& to, ReconstructOptions& o, io::LoadSceneOptions&
   to.choice("quality", &o.quality, std::array{Quality::kDraft, Quality::kNormal, Quality::kHigh},
             "voxel size from the images' pixels, and how much work is done")
       .always = true;
-  to.choice(
-        "method", &o.method,
-        std::array{Method::kHull, Method::kVoxelColoring, Method::kSpaceCarving, Method::kRefine},
-        "how space is carved (default: hull for draft, else refine)")
+  std::vector<Method> all;
+  for (const MethodEntry& entry : methods()) all.push_back(entry.method);
+  to.choice("method", &o.method, all, "how space is carved (default: hull for draft, else refine)")
       .always = true;
   to.number("resolution", &o.resolution, at_least(2), "voxels",
             "voxels along the box's longest side");
