@@ -63,6 +63,7 @@ void run(const Arguments& a) {
   check(a);
   check_output(a.scene, a.load, a.out);
   TerminalProgress progress(pipeline::total_weight(a.job));
+  progress.stage("scene", 0);
   io::LoadSceneOptions load = a.load;
   load.most_views = io::kEnoughViews;
   const pipeline::Report report = pipeline::reconstruct_to_folder(

@@ -9,7 +9,7 @@ namespace fs = std::filesystem;
 ResultFiles::ResultFiles(fs::path folder, std::vector<std::string> names)
     : folder_(std::move(folder)), names_(std::move(names)) {
   std::error_code error;
-  fs::create_directories(folder_, error);
+  made_ = fs::create_directories(folder_, error);
   // A file of the folder's name may or may not count as an error.
   std::error_code ignored;
   if (error || !fs::is_directory(folder_, ignored))
@@ -19,6 +19,13 @@ ResultFiles::ResultFiles(fs::path folder, std::vector<std::string> names)
                "); choose another one"));
   lock_.emplace(folder_, "out");
   for (const std::string& name : names_) AtomicFile probe(folder_ / name);
+}
+
+ResultFiles::~ResultFiles() {
+  files_.clear();
+  lock_.reset();
+  std::error_code ignored;  // the folder is not empty: something is in it
+  if (made_) fs::remove(folder_, ignored);
 }
 
 AtomicFile& ResultFiles::open(const std::string& name) {

@@ -22,6 +22,10 @@ class ResultFiles {
   /// another job is at work there, or when one of `names` could not be written there: better now
   /// than after the work.
   ResultFiles(std::filesystem::path folder, std::vector<std::string> names);
+  /// What was not committed goes, and a folder that it made for nothing.
+  ~ResultFiles();
+  ResultFiles(const ResultFiles&) = delete;
+  ResultFiles& operator=(const ResultFiles&) = delete;
 
   /// A new file to write to; `name` is one of the names.
   AtomicFile& open(const std::string& name);
@@ -33,6 +37,7 @@ class ResultFiles {
  private:
   std::filesystem::path folder_;
   std::vector<std::string> names_;
+  bool made_ = false;  // was there no such folder before?
   std::optional<FolderLock> lock_;
   std::list<AtomicFile> files_;
 };
