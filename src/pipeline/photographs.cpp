@@ -21,6 +21,8 @@ struct InMemory {
 
 PhotographReader memory_reader(std::shared_ptr<const InMemory> memory) {
   return {[memory](const fs::path& path) {
+            if (const auto mask = memory->masks.find(path); mask != memory->masks.end())
+              return glm::ivec2(mask->second.width, mask->second.height);
             const ColourImage& image = memory->images.at(path);
             return glm::ivec2(image.width, image.height);
           },
