@@ -5,6 +5,7 @@
 #include <ceres/rotation.h>
 
 #include <Eigen/Geometry>
+#include <memory>
 
 namespace photohull {
 namespace {
@@ -153,15 +154,12 @@ struct PriorResidual {
   }
 };
 
-}  // namespace
+using Poses = std::vector<std::array<double, 6>>;
 
-std::vector<Camera> adjust_bundle(const BundleInput& input, std::span<const Camera> start,
-                                  std::span<const Camera> prior, std::array<double, 3>& shared) {
-  std::vector<Motion> motions;
-  for (const Camera& camera : prior) motions.emplace_back(camera, input.middle);
-  std::vector<std::array<double, 6>> poses(prior.size());
-  shared = {0, 0, 0};
-  // Motions are relative to the given cameras' poses and to the present intrinsics.
+/// Where the cameras start, as motions from the given poses. The motions take the present
+/// intrinsics.
+Poses start_poses(std::span<const Camera> start, std::vector<Motion>& motions) {
+  Poses poses(motions.size());
   for (std::size_t i = 0; i < motions.size(); ++i) {
     Motion& m = motions[i];
     m.camera.intrinsics = start[i].intrinsics;
@@ -177,45 +175,74 @@ std::vector<Camera> adjust_bundle(const BundleInput& input, std::span<const Came
       poses[i][3 + k] = shift[k] / m.move;
     }
   }
-  std::vector<glm::dvec3> points = input.points;
-  ceres::Problem::Options owned;
-  ceres::Problem problem(owned);
-  auto* ordering = new ceres::ParameterBlockOrdering;
+  return poses;
+}
+
+/// What an adjustment moves: its cameras and points, and what all cameras share.
+struct Unknowns {
+  std::vector<Motion> motions;
+  Poses poses;
+  std::vector<glm::dvec3> points;
+  std::array<double, 3>& shared;
+};
+
+void add_residuals(const BundleInput& input, Unknowns& u, ceres::Problem& problem) {
   constexpr double kTail = 3;
-  for (std::size_t t = 0; t < points.size(); ++t) {
+  for (std::size_t t = 0; t < u.points.size(); ++t)
     for (const Observation& o : input.tracks[t].observations)
       problem.AddResidualBlock(
           new ceres::AutoDiffCostFunction<TrackResidual, 2, 6, 3, 3>(
-              new TrackResidual{motions[o.view], o.pixel, 1 / input.track_sigma}),
-          new ceres::CauchyLoss(kTail), poses[o.view].data(), &points[t].x, shared.data());
-    ordering->AddElementToGroup(&points[t].x, 0);
-  }
+              new TrackResidual{u.motions[o.view], o.pixel, 1 / input.track_sigma}),
+          new ceres::CauchyLoss(kTail), u.poses[o.view].data(), &u.points[t].x, u.shared.data());
   for (const FrontierPair& pair : input.tangents)
     problem.AddResidualBlock(
         new ceres::AutoDiffCostFunction<TangentResidual, 2, 6, 6, 3>(new TangentResidual{
-            motions[pair.view_a], motions[pair.view_b], pair, 1 / input.tangent_sigma}),
-        new ceres::CauchyLoss(kTail), poses[pair.view_a].data(), poses[pair.view_b].data(),
-        shared.data());
-  for (auto& pose : poses) {
+            u.motions[pair.view_a], u.motions[pair.view_b], pair, 1 / input.tangent_sigma}),
+        new ceres::CauchyLoss(kTail), u.poses[pair.view_a].data(), u.poses[pair.view_b].data(),
+        u.shared.data());
+  for (auto& pose : u.poses)
     problem.AddResidualBlock(
         new ceres::AutoDiffCostFunction<PriorResidual, 6, 6>(new PriorResidual{input.prior_sigma}),
         nullptr, pose.data());
-    ordering->AddElementToGroup(pose.data(), 1);
-    if (input.hold_poses) problem.SetParameterBlockConstant(pose.data());
-  }
+}
+
+/// Holds what is not to move.
+void hold(const BundleInput& input, Unknowns& u, ceres::Problem& problem) {
+  if (input.hold_poses)
+    for (auto& pose : u.poses) problem.SetParameterBlockConstant(pose.data());
   for (const int view : input.held)
-    problem.SetParameterBlockConstant(poses[std::size_t(view)].data());
-  if (problem.HasParameterBlock(shared.data())) {
-    ordering->AddElementToGroup(shared.data(), 1);
-    if (input.intrinsics == SharedIntrinsics::kNone)
-      problem.SetParameterBlockConstant(shared.data());
-    else if (input.intrinsics == SharedIntrinsics::kPixelCentre)
-      problem.SetManifold(shared.data(), new ceres::SubsetManifold(3, {0}));
-  }
+    problem.SetParameterBlockConstant(u.poses[std::size_t(view)].data());
+  if (!problem.HasParameterBlock(u.shared.data())) return;
+  if (input.intrinsics == SharedIntrinsics::kNone)
+    problem.SetParameterBlockConstant(u.shared.data());
+  else if (input.intrinsics == SharedIntrinsics::kPixelCentre)
+    problem.SetManifold(u.shared.data(), new ceres::SubsetManifold(3, {0}));
+}
+
+/// Points are eliminated first, where there are any.
+void order_unknowns(Unknowns& u, const ceres::Problem& problem, ceres::Solver::Options& options) {
+  options.linear_solver_type = u.points.empty() ? ceres::DENSE_QR : ceres::DENSE_SCHUR;
+  if (u.points.empty()) return;
+  options.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+  ceres::ParameterBlockOrdering& ordering = *options.linear_solver_ordering;
+  for (glm::dvec3& point : u.points) ordering.AddElementToGroup(&point.x, 0);
+  for (auto& pose : u.poses) ordering.AddElementToGroup(pose.data(), 1);
+  if (problem.HasParameterBlock(u.shared.data())) ordering.AddElementToGroup(u.shared.data(), 1);
+}
+
+}  // namespace
+
+std::vector<Camera> adjust_bundle(const BundleInput& input, std::span<const Camera> start,
+                                  std::span<const Camera> prior, std::array<double, 3>& shared) {
+  shared = {0, 0, 0};
+  Unknowns u{{}, {}, input.points, shared};
+  for (const Camera& camera : prior) u.motions.emplace_back(camera, input.middle);
+  u.poses = start_poses(start, u.motions);
+  ceres::Problem problem;
+  add_residuals(input, u, problem);
+  hold(input, u, problem);
   ceres::Solver::Options options;
-  options.linear_solver_type = points.empty() ? ceres::DENSE_QR : ceres::DENSE_SCHUR;
-  options.linear_solver_ordering.reset(ordering);
-  if (points.empty()) options.linear_solver_ordering.reset();
+  order_unknowns(u, problem, options);
   options.max_num_iterations = 30;
   options.function_tolerance = 1e-7;
   options.logging_type = ceres::SILENT;
@@ -230,7 +257,7 @@ std::vector<Camera> adjust_bundle(const BundleInput& input, std::span<const Came
   const double focal = Shared::focal(shared.data());
   for (std::size_t i = 0; i < result.size(); ++i) {
     if (std::find(input.held.begin(), input.held.end(), int(i)) == input.held.end())
-      result[i] = motions[i].moved(poses[i].data());
+      result[i] = u.motions[i].moved(u.poses[i].data());
     Intrinsics& k = result[i].intrinsics;
     k.fx *= focal, k.fy *= focal, k.skew *= focal;
     k.cx += shared[1], k.cy += shared[2];

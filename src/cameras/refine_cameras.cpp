@@ -10,6 +10,7 @@
 #include "cameras/bundle.h"
 #include "cameras/frontier.h"
 #include "cameras/gauge.h"
+#include "cameras/residuals.h"
 #include "cameras/surface_patches.h"
 #include "core/error.h"
 #include "core/median.h"
@@ -31,48 +32,6 @@ constexpr int kRounds = 8;        // at most; each one finds outliers and tangen
 constexpr double kNoWorse = 1.2;  // times the residual without what views share
 
 using Cameras = std::vector<Camera>;
-
-/// Standard deviation of one coordinate, were the residuals' lengths those of two normal ones.
-double spread_of_lengths(std::vector<double> lengths) {
-  return median(std::move(lengths)) / 1.1774;
-}
-double spread_of_distances(std::vector<double> d) { return 1.4826 * median(std::move(d)); }
-
-/// Points of tracks by the cameras, NaN where there is none, and the tracks' residuals.
-struct Triangulated {
-  std::vector<glm::dvec3> points;
-  std::vector<double> rms;
-};
-
-Triangulated triangulate_all(const Cameras& cameras, std::span<const Track> tracks) {
-  Triangulated result{std::vector<glm::dvec3>(tracks.size()), std::vector<double>(tracks.size())};
-  tbb::parallel_for(std::size_t(0), tracks.size(), [&](std::size_t i) {
-    const auto point = triangulate(cameras, tracks[i]);
-    result.points[i] = point.value_or(glm::dvec3(NAN));
-    result.rms[i] = point ? reprojection_rms(cameras, tracks[i], *point) : INFINITY;
-  });
-  return result;
-}
-
-std::vector<double> tangent_distances(const Cameras& cameras,
-                                      std::span<const FrontierPair> tangents) {
-  std::vector<double> distances;
-  for (const FrontierPair& t : tangents) {
-    const glm::dvec2 d = epipolar_distances(cameras[t.view_a], cameras[t.view_b], t);
-    distances.push_back(std::abs(d.x));
-    distances.push_back(std::abs(d.y));
-  }
-  return distances;
-}
-
-/// Mean of log(1 + r^2 / (2 sigma^2)): what grows with every residual, and with none without bound.
-double robust_cost(const std::vector<double>& residuals, double sigma) {
-  if (residuals.empty()) return 0;
-  double sum = 0;
-  for (const double r : residuals)
-    sum += std::isfinite(r) ? std::log1p(r * r / (2 * sigma * sigma)) : std::log1p(1e6);
-  return sum / double(residuals.size());
-}
 
 /// Spread evenly over any list, the same every time.
 bool is_held_out(std::size_t index) {
@@ -399,7 +358,7 @@ double tangent_disagreement(std::span<const View> views) {
 
 double tangent_disagreement(std::span<const Camera> cameras, std::span<const Outline> outlines) {
   const std::vector<double> distances =
-      tangent_distances(Cameras(cameras.begin(), cameras.end()), frontier_pairs(cameras, outlines));
+      tangent_distances(cameras, frontier_pairs(cameras, outlines));
   return distances.empty() ? NAN : median(distances);
 }
 

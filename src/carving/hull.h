@@ -46,27 +46,41 @@ struct HullReport {
   std::int64_t samples = 0;  ///< upper bound of silhouette look-ups
 };
 
+/// Where a hull is taken.
+struct HullSpace {
+  GridSpec grid;
+  Box box;  ///< world coordinates, inside the grid: nothing stands outside of it
+};
+
+/// What it is taken from; both in the same order.
+struct HullViews {
+  std::span<const Camera> cameras;
+  std::span<const Silhouette> silhouettes;
+};
+
 /// Truncated signed distance to the intersection of box, silhouette cones and (for min_views > 1)
-/// frusta. `box` in world coordinates lies inside the grid. When nothing is left the volume is
-/// empty.
-SparseVolume carve_silhouette(gpu::Context& context, const GridSpec& grid, const Box& box,
-                              std::span<const Camera> cameras,
-                              std::span<const Silhouette> silhouettes, const HullOptions& options,
-                              Progress& progress, HullReport* report = nullptr);
+/// frusta. When nothing is left the volume is empty.
+SparseVolume carve_silhouette(gpu::Context& context, const HullSpace& space, const HullViews& views,
+                              const HullOptions& options, Progress& progress,
+                              HullReport* report = nullptr);
 
 namespace reference {
 
 enum class NodeClass { kOutside, kInside, kSurface };
 
-/// What the node's cube of `edge` voxels from corner `low` (voxel coordinates, grown by `margin`)
-/// is, by looking at every pixel that its projection touches; double precision.
-NodeClass classify_node(const GridSpec& grid, const Box& box, std::span<const Camera> cameras,
-                        std::span<const Silhouette> silhouettes, const HullOptions& options,
-                        const glm::ivec3& low, int edge, double margin);
+/// A cube of `edge` voxels from corner `low` (voxel coordinates), grown by `margin`.
+struct NodeCube {
+  glm::ivec3 low{0};
+  int edge = 0;
+  double margin = 0;  ///< voxels
+};
+
+/// What the node is, by looking at every pixel that its projection touches; double precision.
+NodeClass classify_node(const HullSpace& space, const HullViews& views, const HullOptions& options,
+                        const NodeCube& node);
 
 /// Signed distance in voxels at one voxel, clamped to the band; double precision.
-double hull_distance(const GridSpec& grid, const Box& box, std::span<const Camera> cameras,
-                     std::span<const Silhouette> silhouettes, const HullOptions& options,
+double hull_distance(const HullSpace& space, const HullViews& views, const HullOptions& options,
                      const glm::ivec3& voxel);
 
 }  // namespace reference

@@ -143,11 +143,12 @@ double distance_by_evidence(const std::vector<Said>& said) {
 
 }  // namespace
 
-NodeClass classify_node(const GridSpec& grid, const Box& box, std::span<const Camera> cameras,
-                        std::span<const Silhouette> silhouettes, const HullOptions& options,
-                        const glm::ivec3& low_voxel, int edge, double margin) {
-  const glm::dvec3 low = glm::dvec3(low_voxel) - 0.5 - margin;
-  const glm::dvec3 high = glm::dvec3(low_voxel) + double(edge) - 0.5 + margin;
+NodeClass classify_node(const HullSpace& space, const HullViews& views, const HullOptions& options,
+                        const NodeCube& node) {
+  const auto& [grid, box] = space;
+  const auto& [cameras, silhouettes] = views;
+  const glm::dvec3 low = glm::dvec3(node.low) - 0.5 - node.margin;
+  const glm::dvec3 high = glm::dvec3(node.low) + double(node.edge) - 0.5 + node.margin;
   const glm::dvec3 box_low = (box.min - grid.origin) / grid.voxel_size;
   const glm::dvec3 box_high = (box.max - grid.origin) / grid.voxel_size;
   if (glm::any(glm::greaterThan(low, box_high)) || glm::any(glm::lessThan(high, box_low)))
@@ -177,9 +178,10 @@ NodeClass classify_node(const GridSpec& grid, const Box& box, std::span<const Ca
   return inside && wholly_seen >= options.min_views ? NodeClass::kInside : NodeClass::kSurface;
 }
 
-double hull_distance(const GridSpec& grid, const Box& box, std::span<const Camera> cameras,
-                     std::span<const Silhouette> silhouettes, const HullOptions& options,
+double hull_distance(const HullSpace& space, const HullViews& views, const HullOptions& options,
                      const glm::ivec3& voxel) {
+  const auto& [grid, box] = space;
+  const auto& [cameras, silhouettes] = views;
   const double band = SparseVolume::kBand;
   const glm::dvec3 world = grid.world(voxel);
   const glm::dvec3 beyond = glm::max(box.min - world, world - box.max) / grid.voxel_size;

@@ -14,8 +14,8 @@ double sweep_cosine(const projtex::GridCamera& camera, const glm::dvec3& point,
   return ray[direction.axis] * direction.sign / std::max(glm::length(ray), 1e-9);
 }
 
-shaders::LayerItem layer_item(const glm::ivec3& brick, const SweepDirection& direction,
-                              std::span<const projtex::GridCamera> cameras) {
+LayerItem layer_item(const glm::ivec3& brick, const SweepDirection& direction,
+                     std::span<const projtex::GridCamera> cameras) {
   const glm::dvec3 centre = glm::dvec3(brick * kBrickEdge) + 0.5 * (kBrickEdge - 1);
   std::vector<std::pair<double, std::uint32_t>> ranked;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
@@ -31,10 +31,9 @@ shaders::LayerItem layer_item(const glm::ivec3& brick, const SweepDirection& dir
     ranked.emplace_back(-frontal, std::uint32_t(i));
   }
   std::sort(ranked.begin(), ranked.end());
-  ranked.resize(std::min<std::size_t>(ranked.size(), shaders::kMaxLayerViews));
-  shaders::LayerItem item{};
-  item.brick = glm::ivec4(brick, int(ranked.size()));
-  for (std::size_t i = 0; i < ranked.size(); ++i) item.views[i / 4][int(i % 4)] = ranked[i].second;
+  ranked.resize(std::min<std::size_t>(ranked.size(), LayerItem::kMostViews));
+  LayerItem item{brick, int(ranked.size())};
+  for (std::size_t i = 0; i < ranked.size(); ++i) item.views[i] = ranked[i].second;
   return item;
 }
 

@@ -1,10 +1,12 @@
 // What a brick's part of a layer is judged by, for the plane sweep (internal to carving).
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
 #include <span>
 
 #include "projtex/gpu_views.h"
-#include "shared/sweep.h"
 
 namespace photohull::carving {
 
@@ -20,8 +22,17 @@ inline constexpr double kLeastSweepCosine = 0.35;
 double sweep_cosine(const projtex::GridCamera& camera, const glm::dvec3& point,
                     const SweepDirection& direction);
 
+/// A brick, and the views that its part of a layer is judged by.
+struct LayerItem {
+  static constexpr int kMostViews = 8;
+
+  glm::ivec3 brick{0};
+  int view_count = 0;
+  std::array<std::uint32_t, kMostViews> views{};  ///< indices, most frontal first
+};
+
 /// A brick with the most frontal views that look along the sweep and have it on their image.
-shaders::LayerItem layer_item(const glm::ivec3& brick, const SweepDirection& direction,
-                              std::span<const projtex::GridCamera> cameras);
+LayerItem layer_item(const glm::ivec3& brick, const SweepDirection& direction,
+                     std::span<const projtex::GridCamera> cameras);
 
 }  // namespace photohull::carving

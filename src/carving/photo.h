@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
+#include <variant>
 
 #include "carving/search_disc.h"
 #include "carving/statistic.h"
@@ -79,17 +81,20 @@ struct PhotoReport {
   double sampling_seconds = 0;  ///< spent in the kernel that takes them
 };
 
+/// What is swept through. `images` and `cameras` are in the same order and outlive the object.
+struct SweptPhotographs {
+  /// With mip levels, of which each brick takes one, or made for one of the samplers; then what
+  /// they show as background does not count.
+  std::variant<std::reference_wrapper<const projtex::ImageSet>,
+               std::reference_wrapper<const projtex::SampleImages>>
+      images;
+  std::span<const Camera> cameras;
+};
+
 /// Carves `hull` and returns the result with a sub-voxel distance where something was carved; what
-/// was not touched keeps the hull's distance. `cameras` and `images` are in the same order.
+/// was not touched keeps the hull's distance.
 SparseVolume carve_photo(gpu::Context& context, const SparseVolume& hull,
-                         const projtex::ImageSet& images, std::span<const Camera> cameras,
-                         const PhotoOptions& options, Progress& progress,
-                         PhotoReport* report = nullptr);
-/// The same with the sampler that the images were made for. What they show as background does not
-/// count.
-SparseVolume carve_photo(gpu::Context& context, const SparseVolume& hull,
-                         const projtex::SampleImages& images, std::span<const Camera> cameras,
-                         const PhotoOptions& options, Progress& progress,
-                         PhotoReport* report = nullptr);
+                         const SweptPhotographs& photographs, const PhotoOptions& options,
+                         Progress& progress, PhotoReport* report = nullptr);
 
 }  // namespace photohull::carving

@@ -53,18 +53,19 @@ std::vector<render::PooledEvidence> colour_surface(const SurfaceJob& job, TriMes
   if (mesh.triangles.empty())
     throw Error(concat("the volume holds no surface: every part is thinner than a voxel; raise ",
                        option_word("resolution")));
-  std::vector<render::PooledEvidence> evidence;
-  bake_colour(job.context, job.subject.grid, job.images, projtex::cameras_of(job.subject.views),
-              job.subject.noise_sigma,
-              method_of(job.options).by_silhouettes ? render::Shaping::kSilhouettes
-                                                    : render::Shaping::kPhotographs,
-              mesh, job.progress, nullptr, &evidence);
+  const std::vector<Camera> cameras = projtex::cameras_of(job.subject.views);
+  const render::Shaping shaping = method_of(job.options).by_silhouettes
+                                      ? render::Shaping::kSilhouettes
+                                      : render::Shaping::kPhotographs;
+  BakeReport baked =
+      bake_colour(job.context, job.subject.grid, {job.images, cameras, job.subject.noise_sigma},
+                  shaping, mesh, job.progress);
   const auto unseen = std::count(mesh.confidence.begin(), mesh.confidence.end(), 0.0f);
   findings.unseen_share = double(unseen) / double(mesh.confidence.size());
   if (findings.unseen_share > 0.5)
     job.progress.warn(concat(std::lround(100 * findings.unseen_share),
                              " % of the surface is seen by no camera: it is the hull's guess"));
-  return evidence;
+  return std::move(baked.evidence);
 }
 
 bool leaves_open(const ReconstructOptions& options, bool bounded) {

@@ -36,7 +36,7 @@ SparseVolume Hull::carve_box(const GridSpec& grid, const Box& inner) {
   const Box box{inner.min - slack, inner.max + slack};
   carving::HullReport counts;
   Progress silent(progress_.token());
-  SparseVolume volume = carving::carve_silhouette(context_, grid, box, cameras, silhouettes,
+  SparseVolume volume = carving::carve_silhouette(context_, {grid, box}, {cameras, silhouettes},
                                                   hull_options, silent, &counts);
   const std::size_t thin =
       carving::keep_thin_parts(volume, box, cameras, silhouettes, hull_options);

@@ -37,10 +37,11 @@ bool holds(const Box& a, const Box& b) { return a.contains(b.min) && a.contains(
 /// within a voxel, and was fitted where voxels are about a pixel large: directions that lie closer
 /// together tell as much of larger ones.
 std::vector<float> colour(const SurfaceJob& job, const GridSpec& grid, TriMesh& mesh) {
-  std::vector<render::PooledEvidence> evidence;
-  bake_colour(job.context, grid, job.images, projtex::cameras_of(job.subject.views),
-              job.subject.noise_sigma, render::Shaping::kPhotographs, mesh, job.progress, nullptr,
-              &evidence);
+  const std::vector<Camera> cameras = projtex::cameras_of(job.subject.views);
+  std::vector<render::PooledEvidence> evidence =
+      bake_colour(job.context, grid, {job.images, cameras, job.subject.noise_sigma},
+                  render::Shaping::kPhotographs, mesh, job.progress)
+          .evidence;
   std::vector<float> views;
   for (std::size_t i = 0; i < evidence.size(); ++i) {
     evidence[i].scatter *= float(kCoarseness * kCoarseness);

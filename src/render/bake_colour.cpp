@@ -10,31 +10,28 @@
 
 namespace photohull {
 
-void bake_colour(gpu::Context& context, const GridSpec& grid, const projtex::ImageSet& images,
-                 std::span<const Camera> cameras, double noise_sigma, render::Shaping shaping,
-                 TriMesh& mesh, Progress& progress, BakeReport* report,
-                 std::vector<render::PooledEvidence>* evidence) {
-  PHOTOHULL_CHECK_OP(int(cameras.size()), ==, images.layers());
+BakeReport bake_colour(gpu::Context& context, const GridSpec& grid,
+                       const projtex::Photographs& photographs, render::Shaping shaping,
+                       TriMesh& mesh, Progress& progress) {
+  PHOTOHULL_CHECK_OP(int(photographs.cameras.size()), ==, photographs.images.layers());
   PHOTOHULL_CHECK_OP(mesh.normals.size(), ==, mesh.positions.size());
-  PHOTOHULL_CHECK_OP(noise_sigma, >, 0.0);
-  render::BakedVertices baked =
-      render::bake_vertices(context, grid, {images, cameras, noise_sigma}, mesh, progress);
+  PHOTOHULL_CHECK_OP(photographs.noise_sigma, >, 0.0);
+  render::BakedVertices baked = render::bake_vertices(context, grid, photographs, mesh, progress);
   const std::size_t total = mesh.positions.size();
   mesh.colours = std::move(baked.colours);
   mesh.confidence.assign(total, 0);
-  std::vector<render::PooledEvidence> pooled = render::pool_evidence(mesh, baked.evidence);
-  BakeReport counts;
+  BakeReport report;
+  report.vertices = std::int64_t(total);
+  report.evidence = render::pool_evidence(mesh, baked.evidence);
   baked = {};
   for (std::size_t i = 0; i < total; ++i) {
-    mesh.confidence[i] = float(render::confidence_of(pooled[i], shaping));
-    counts.seen += pooled[i].seen;
-    counts.mean_confidence += mesh.confidence[i];
+    mesh.confidence[i] = float(render::confidence_of(report.evidence[i], shaping));
+    report.seen += report.evidence[i].seen;
+    report.mean_confidence += mesh.confidence[i];
   }
   render::fill_unseen(mesh);
-  counts.vertices = std::int64_t(total);
-  if (counts.seen > 0) counts.mean_confidence /= double(counts.seen);
-  if (report) *report = counts;
-  if (evidence) *evidence = std::move(pooled);
+  if (report.seen > 0) report.mean_confidence /= double(report.seen);
+  return report;
 }
 
 }  // namespace photohull

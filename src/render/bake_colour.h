@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "core/grid.h"
 #include "core/image.h"
@@ -10,7 +11,7 @@
 #include "core/progress.h"
 #include "gpu/context.h"
 #include "projtex/gpu_views.h"
-#include "projtex/image_set.h"
+#include "projtex/photographs.h"
 #include "render/confidence.h"
 #include "shared/depth_map.h"
 
@@ -18,8 +19,9 @@ namespace photohull {
 
 struct BakeReport {
   std::int64_t vertices = 0;
-  std::int64_t seen = 0;       ///< by at least one view
-  double mean_confidence = 0;  ///< over the seen vertices
+  std::int64_t seen = 0;                         ///< by at least one view
+  double mean_confidence = 0;                    ///< over the seen vertices
+  std::vector<render::PooledEvidence> evidence;  ///< of every vertex: what confidence came from
 };
 
 /// Fills mesh.colours and mesh.confidence.
@@ -42,15 +44,12 @@ struct BakeReport {
 /// A vertex that nobody sees has confidence 0 and takes the colours of its nearest seen neighbours
 /// along the mesh; pieces of mesh that nobody sees at all take the mean colour of the rest.
 ///
-/// `noise_sigma` is the images' noise as a standard deviation on square roots of full scale, > 0.
-/// `cameras` and `images` are in the same order; mesh.normals must be present, a zero normal makes
-/// its vertex unseen. `grid` gives the size of a voxel, about the spacing of the vertices; coarser
-/// meshes are sampled in between. `evidence` takes what confidence came from. Throws Error when the
-/// device cannot hold the data, Cancelled.
-void bake_colour(gpu::Context& context, const GridSpec& grid, const projtex::ImageSet& images,
-                 std::span<const Camera> cameras, double noise_sigma, render::Shaping shaping,
-                 TriMesh& mesh, Progress& progress, BakeReport* report = nullptr,
-                 std::vector<render::PooledEvidence>* evidence = nullptr);
+/// `photographs.noise_sigma` is > 0. mesh.normals must be present, a zero normal makes its vertex
+/// unseen. `grid` gives the size of a voxel, about the spacing of the vertices; coarser meshes are
+/// sampled in between. Throws Error when the device cannot hold the data, Cancelled.
+BakeReport bake_colour(gpu::Context& context, const GridSpec& grid,
+                       const projtex::Photographs& photographs, render::Shaping shaping,
+                       TriMesh& mesh, Progress& progress);
 
 namespace render {
 

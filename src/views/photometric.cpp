@@ -11,11 +11,11 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <numeric>
 
 #include "core/error.h"
 #include "core/median.h"
 #include "core/option_word.h"
+#include "views/photometric_overlap.h"
 
 namespace photohull {
 namespace {
@@ -56,53 +56,6 @@ struct Gauge {
     return true;
   }
 };
-
-/// Views connected by points that both see, with enough samples; the largest group.
-std::vector<bool> connected_views(const std::vector<PhotometricPoint>& points, std::size_t count,
-                                  int least_samples) {
-  std::vector<int> samples(count, 0), parent(count);
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int i) {
-    while (parent[std::size_t(i)] != i) i = parent[std::size_t(i)];
-    return i;
-  };
-  for (const PhotometricPoint& p : points)
-    for (const PhotometricSample& s : p.samples) ++samples[std::size_t(s.view)];
-  for (const PhotometricPoint& p : points) {
-    int first = -1;
-    for (const PhotometricSample& s : p.samples) {
-      if (samples[std::size_t(s.view)] < least_samples) continue;
-      if (first < 0)
-        first = root(s.view);
-      else
-        parent[std::size_t(root(s.view))] = first;
-    }
-  }
-  std::map<int, int> sizes;
-  for (std::size_t i = 0; i < count; ++i)
-    if (samples[i] >= least_samples) ++sizes[root(int(i))];
-  int best = -1;
-  for (const auto& [group, size] : sizes)
-    if (best < 0 || size > sizes[best]) best = group;
-  std::vector<bool> used(count, false);
-  if (best < 0 || sizes[best] < 2) return used;
-  for (std::size_t i = 0; i < count; ++i)
-    used[i] = samples[i] >= least_samples && root(int(i)) == best;
-  return used;
-}
-
-/// The points' samples in used views; points that are left with one say nothing and go.
-std::vector<PhotometricPoint> keep_used(const std::vector<PhotometricPoint>& points,
-                                        const std::vector<bool>& used) {
-  std::vector<PhotometricPoint> out;
-  for (const PhotometricPoint& p : points) {
-    PhotometricPoint kept{p.cluster, {}};
-    for (const PhotometricSample& s : p.samples)
-      if (used[std::size_t(s.view)]) kept.samples.push_back(s);
-    if (kept.samples.size() >= 2) out.push_back(std::move(kept));
-  }
-  return out;
-}
 
 /// The unknowns, all but the vignetting as logarithms.
 struct State {
@@ -265,6 +218,86 @@ double disagreement(const std::vector<PhotometricPoint>& points,
   return all.empty() ? 0 : median(all);
 }
 
+/// Before any view was compared: equal gains, little vignetting, and albedo as the views show it.
+State start_state(const std::vector<PhotometricPoint>& points, std::size_t views,
+                  std::size_t lenses) {
+  State start{std::vector<glm::dvec3>(views, glm::dvec3(0)),
+              {},
+              std::vector<double>(lenses, 0.05),
+              std::vector<bool>(lenses, true)};
+  for (const PhotometricPoint& p : points) {
+    glm::dvec3 sum(0);
+    for (const PhotometricSample& s : p.samples) sum += logarithm(s.colour);
+    start.albedo.push_back(sum / double(p.samples.size()));
+  }
+  return start;
+}
+
+double deviation(const Eigen::MatrixXd& covariance, Eigen::Index i) {
+  return std::sqrt(std::max(0.0, covariance(i, i)));
+}
+
+/// Solves for `state`; vignetting that is not told from none is none, and the rest is solved once
+/// more. Returns the covariance of the `gains` parameters of gains and of the vignetting.
+Eigen::MatrixXd solve_with_significant_vignetting(Solver& solver, const PhotometricOptions& options,
+                                                  Eigen::Index gains, State& state,
+                                                  std::vector<double>& vignetting_sigma) {
+  solver.run(state);
+  const Eigen::MatrixXd covariance = solver.covariance(state);
+  bool again = false;
+  for (std::size_t l = 0; l < state.vignetting.size(); ++l) {
+    vignetting_sigma[l] = deviation(covariance, gains + Eigen::Index(l));
+    if (state.vignetting[l] >
+        std::max(kVignettingSigmas * vignetting_sigma[l], options.least_vignetting))
+      continue;
+    state.vignetting[l] = vignetting_sigma[l] = 0;
+    state.vignetting_free[l] = false;
+    again = true;
+  }
+  if (!again) return covariance;
+  solver.run(state);
+  return solver.covariance(state);
+}
+
+/// Writes the gains of the `used` views with their deviations, and how large they are in all.
+void take_gains(const State& state, const std::vector<bool>& used,
+                const Eigen::MatrixXd& covariance, PhotometricCalibration& out) {
+  Eigen::Index column = 0;
+  double squares = 0, normalised = 0;
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    if (!used[i]) continue;
+    ViewGain& view = out.views[i];
+    view.solved = true;
+    view.gain = glm::exp(state.gain[i]);
+    for (int c = 0; c < 3; ++c, ++column) {
+      view.sigma[c] = deviation(covariance, column);
+      squares += state.gain[i][c] * state.gain[i][c];
+      normalised += std::pow(state.gain[i][c] / std::max(view.sigma[c], 1e-6), 2);
+    }
+  }
+  out.rms_gain = std::sqrt(squares / double(column));
+  out.rms_sigmas = std::sqrt(normalised / double(column));
+}
+
+/// With a place for each view and lens, nothing solved yet. Checks the samples.
+PhotometricCalibration unsolved(const std::vector<PhotometricPoint>& points,
+                                const std::vector<int>& lens_of_view) {
+  const std::size_t count = lens_of_view.size();
+  PhotometricCalibration out;
+  out.views.resize(count);
+  for (const int lens : lens_of_view) out.lens_count = std::max(out.lens_count, lens + 1);
+  out.vignetting.assign(std::size_t(out.lens_count), 0);
+  out.vignetting_sigma.assign(std::size_t(out.lens_count), 0);
+  for (const PhotometricPoint& p : points)
+    for (const PhotometricSample& s : p.samples) {
+      PHOTOHULL_CHECK(s.view >= 0 && std::size_t(s.view) < count);
+      PHOTOHULL_CHECK(glm::all(glm::greaterThan(s.colour, glm::dvec3(0))));
+      PHOTOHULL_CHECK(glm::all(glm::greaterThan(s.sigma, glm::dvec3(0))));
+      ++out.views[std::size_t(s.view)].samples;
+    }
+  return out;
+}
+
 }  // namespace
 
 void PhotometricOptions::validate() const {
@@ -287,18 +320,7 @@ PhotometricCalibration calibrate_photometric(const std::vector<PhotometricPoint>
                                              const Progress& progress) {
   options.validate();
   const std::size_t count = lens_of_view.size();
-  PhotometricCalibration out;
-  out.views.resize(count);
-  for (const int lens : lens_of_view) out.lens_count = std::max(out.lens_count, lens + 1);
-  out.vignetting.assign(std::size_t(out.lens_count), 0);
-  out.vignetting_sigma.assign(std::size_t(out.lens_count), 0);
-  for (const PhotometricPoint& p : all_points)
-    for (const PhotometricSample& s : p.samples) {
-      PHOTOHULL_CHECK(s.view >= 0 && std::size_t(s.view) < count);
-      PHOTOHULL_CHECK(glm::all(glm::greaterThan(s.colour, glm::dvec3(0))));
-      PHOTOHULL_CHECK(glm::all(glm::greaterThan(s.sigma, glm::dvec3(0))));
-      ++out.views[std::size_t(s.view)].samples;
-    }
+  PhotometricCalibration out = unsolved(all_points, lens_of_view);
   // Every so many points only judge.
   const auto every = std::size_t(std::lround(1 / options.held_out));
   std::vector<PhotometricPoint> points, judges;
@@ -309,56 +331,18 @@ PhotometricCalibration calibrate_photometric(const std::vector<PhotometricPoint>
   points = keep_used(points, used);
   judges = keep_used(judges, used);
 
-  State start{std::vector<glm::dvec3>(count, glm::dvec3(0)),
-              {},
-              std::vector<double>(std::size_t(out.lens_count), 0),
-              std::vector<bool>(std::size_t(out.lens_count), true)};
-  for (const PhotometricPoint& p : points) {
-    glm::dvec3 sum(0);
-    for (const PhotometricSample& s : p.samples) sum += logarithm(s.colour);
-    start.albedo.push_back(sum / double(p.samples.size()));
-  }
-  for (std::size_t l = 0; l < start.vignetting.size(); ++l) start.vignetting[l] = 0.05;
+  State start = start_state(points, count, std::size_t(out.lens_count));
   State state = start;
   Solver solver(points, lens_of_view, used, progress);
-  solver.run(state);
-  Eigen::MatrixXd covariance = solver.covariance(state);
   const Eigen::Index gains = 3 * Eigen::Index(std::count(used.begin(), used.end(), true));
-  const auto deviation = [&](Eigen::Index i) { return std::sqrt(std::max(0.0, covariance(i, i))); };
-  bool again = false;
-  for (std::size_t l = 0; l < state.vignetting.size(); ++l) {
-    out.vignetting_sigma[l] = deviation(gains + Eigen::Index(l));
-    if (state.vignetting[l] >
-        std::max(kVignettingSigmas * out.vignetting_sigma[l], options.least_vignetting))
-      continue;
-    state.vignetting[l] = out.vignetting_sigma[l] = 0;
-    state.vignetting_free[l] = false;
-    again = true;
-  }
-  if (again) {
-    solver.run(state);
-    covariance = solver.covariance(state);
-  }
+  const Eigen::MatrixXd covariance =
+      solve_with_significant_vignetting(solver, options, gains, state, out.vignetting_sigma);
 
   out.solved = true;
   out.points = int(points.size());
-  Eigen::Index column = 0;
-  double squares = 0, normalised = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!used[i]) continue;
-    ViewGain& view = out.views[i];
-    view.solved = true;
-    view.gain = glm::exp(state.gain[i]);
-    for (int c = 0; c < 3; ++c, ++column) {
-      view.sigma[c] = deviation(column);
-      squares += state.gain[i][c] * state.gain[i][c];
-      normalised += std::pow(state.gain[i][c] / std::max(view.sigma[c], 1e-6), 2);
-    }
-  }
+  take_gains(state, used, covariance, out);
   for (const PhotometricPoint& p : points) out.samples += int(p.samples.size());
   out.vignetting = state.vignetting;
-  out.rms_gain = std::sqrt(squares / double(gains));
-  out.rms_sigmas = std::sqrt(normalised / double(gains));
   for (double& v : start.vignetting) v = 0;
   out.disagreement_before = disagreement(judges, lens_of_view, start, &out.held_out_samples);
   out.disagreement_after = disagreement(judges, lens_of_view, state, &out.held_out_samples);

@@ -47,11 +47,11 @@ double by_rays(const projtex::GridCamera& camera, const dvec3& voxel, double bia
 
 }  // namespace
 
-double sweep_visible(SweepTest test, const projtex::GridCamera& camera,
-                     const shaders::DepthMapInfo& info, int axis, const dvec3& voxel, double bias,
-                     const Passed& passed) {
+double sweep_visible(SweepTest test, const projtex::GridCamera& camera, int axis,
+                     const dvec3& voxel, double bias, const Passed& passed) {
   if (test == SweepTest::kRays) return by_rays(camera, voxel, bias, passed);
   const dvec3 p = camera.projection * glm::dvec4(voxel, 1);
+  const shaders::DepthMapInfo& info = passed.info;
   const double scale = info.scale.x;
   const dvec2 at = (dvec2(p) / p.z + 0.5) * scale;
   const bool aligned = test == SweepTest::kVirtual || test == SweepTest::kPcfVirtual;

@@ -11,17 +11,17 @@
 
 namespace photohull::visibility::reference {
 
-/// What the sweep has passed: drawn into a map of `info` (row-major depths), and voxel by voxel.
+/// What the sweep has passed: drawn into a map, and voxel by voxel.
 struct Passed {
-  std::span<const double> depths;
+  shaders::DepthMapInfo info;
+  std::span<const double> depths;                ///< row-major, as `info` says
   std::function<bool(const glm::ivec3&)> voxel;  ///< false outside the grid
   glm::ivec3 voxels{0};                          ///< of the grid
 };
 
 /// The share of the part around `voxel` of a layer across `axis` that the camera sees, as
 /// include/sweep_visibility.glsl; `bias` in voxels.
-double sweep_visible(SweepTest test, const projtex::GridCamera& camera,
-                     const shaders::DepthMapInfo& info, int axis, const glm::dvec3& voxel,
-                     double bias, const Passed& passed);
+double sweep_visible(SweepTest test, const projtex::GridCamera& camera, int axis,
+                     const glm::dvec3& voxel, double bias, const Passed& passed);
 
 }  // namespace photohull::visibility::reference

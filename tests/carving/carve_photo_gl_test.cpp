@@ -74,13 +74,13 @@ class CarvePhoto : public ::testing::Test {
     for (const View& view : views_) cameras_.push_back(view.camera);
     const GridSpec grid = fit_grid(kBlock, 0.04);
     const std::vector<Silhouette> none(views_.size());
-    hull_ = carve_silhouette(context_, grid, kBlock, cameras_, none, {2}, progress_);
+    hull_ = carve_silhouette(context_, {grid, kBlock}, {cameras_, none}, {2}, progress_);
   }
   void TearDown() override { context_.check_errors("carve photo test"); }
 
   SparseVolume carve(const PhotoOptions& options = {}, PhotoReport* report = nullptr) {
     const projtex::ImageSet images(views_);
-    return carve_photo(context_, hull_, images, cameras_, options, progress_, report);
+    return carve_photo(context_, hull_, {images, cameras_}, options, progress_, report);
   }
 
   gpu::Context& context_ = test::gl_context();

@@ -33,7 +33,7 @@ class CarveSilhouette : public ::testing::Test {
   void TearDown() override { context_.check_errors("carve silhouette test"); }
 
   SparseVolume carve(const HullScene& scene, HullReport* report = nullptr) {
-    return carve_silhouette(context_, scene.grid, scene.box, scene.cameras, scene.silhouettes(),
+    return carve_silhouette(context_, {scene.grid, scene.box}, {scene.cameras, scene.silhouettes()},
                             scene.options, progress_, report);
   }
 
@@ -56,8 +56,8 @@ void expect_equals_dense(const SparseVolume& volume, const HullScene& scene) {
   int wrong_sign = 0;
   double worst = 0;
   for_each_voxel(volume.grid, [&](const ivec3& voxel) {
-    const double expected = reference::hull_distance(scene.grid, scene.box, scene.cameras,
-                                                     silhouettes, scene.options, voxel);
+    const double expected = reference::hull_distance(
+        {scene.grid, scene.box}, {scene.cameras, silhouettes}, scene.options, voxel);
     const double found = volume.at(voxel);
     if (std::abs(expected) > 2e-3) wrong_sign += (expected < 0) != (found < 0);
     if (std::abs(expected) < 0.9) worst = std::max(worst, std::abs(found - expected));

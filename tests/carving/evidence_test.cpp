@@ -39,7 +39,7 @@ struct Ball {
       const double middle = 0.5 * (low + high);
       GridSpec grid{middle * right, pixel, {1, 1, 1}};  // its first voxel is the point
       const double d =
-          reference::hull_distance(grid, kBox, cameras, silhouettes, options, {0, 0, 0});
+          reference::hull_distance({grid, kBox}, {cameras, silhouettes}, options, {0, 0, 0});
       (d < 0 ? low : high) = middle;
     }
     const double outline =

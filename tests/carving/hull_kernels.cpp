@@ -16,7 +16,7 @@ std::vector<Silhouette> HullScene::silhouettes() const {
 }
 
 double HullScene::distance(const glm::ivec3& voxel) const {
-  return reference::hull_distance(grid, box, cameras, silhouettes(), options, voxel);
+  return reference::hull_distance({grid, box}, {cameras, silhouettes()}, options, voxel);
 }
 
 HullKernels::HullKernels(gpu::Context& context, const HullScene& scene)

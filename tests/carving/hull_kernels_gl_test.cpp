@@ -83,8 +83,8 @@ class HullKernelTest : public ::testing::Test {
       const ivec3 voxel = ivec3(bricks[i / kBrickVoxels]) * kBrickEdge +
                           ivec3(offset >> 6, (offset >> 3) & 7, offset & 7);
       if (!decidable(scene, voxel)) continue;
-      const double expected = reference::hull_distance(scene.grid, scene.box, scene.cameras,
-                                                       silhouettes, scene.options, voxel);
+      const double expected = reference::hull_distance(
+          {scene.grid, scene.box}, {scene.cameras, silhouettes}, scene.options, voxel);
       out.worst = std::max(out.worst, std::abs(found[i] - expected));
       out.within_band += std::abs(expected) < SparseVolume::kBand;
     }
@@ -288,8 +288,8 @@ class ClassifyTest : public HullKernelTest {
       for (std::size_t i = 0; i < nodes.size(); ++i) {
         const int edge = kBrickEdge << level;
         const NodeClass expected =
-            reference::classify_node(scene.grid, scene.box, scene.cameras, silhouettes,
-                                     scene.options, ivec3(nodes[i]) * edge, edge, kMargin);
+            reference::classify_node({scene.grid, scene.box}, {scene.cameras, silhouettes},
+                                     scene.options, {ivec3(nodes[i]) * edge, edge, kMargin});
         const bool outside = found[i] == shaders::kNodeOutside;
         const bool inside = found[i] == shaders::kNodeInside;
         out.wrong += (outside && expected != NodeClass::kOutside) ||
@@ -386,8 +386,8 @@ TEST_F(ClassifyTest, SignsOfAllVoxelsFollowTheNodes) {
       for (int offset = 0; offset < kBrickVoxels; ++offset) {
         const ivec3 voxel =
             ivec3(nodes[i]) * kBrickEdge + ivec3(offset >> 6, (offset >> 3) & 7, offset & 7);
-        const double d = reference::hull_distance(scene.grid, scene.box, scene.cameras, silhouettes,
-                                                  scene.options, voxel);
+        const double d = reference::hull_distance(
+            {scene.grid, scene.box}, {scene.cameras, silhouettes}, scene.options, voxel);
         wrong += (found[i] == shaders::kNodeOutside) != (d > 0);
       }
       EXPECT_EQ(wrong, 0) << "node " << i;

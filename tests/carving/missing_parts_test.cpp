@@ -82,7 +82,7 @@ struct Scene {
         grid.bricks,
         [&](const dvec3& p) {
           if (kRod.distance(grid.world(p)) > 8 * kPixel) return double(SparseVolume::kBand);
-          return reference::hull_distance(grid, kBox, cameras, all, {}, glm::ivec3(p));
+          return reference::hull_distance({grid, kBox}, {cameras, all}, {}, glm::ivec3(p));
         },
         grid.origin, grid.voxel_size);
     keep_thin_parts(hull, kBox, cameras, all, {});

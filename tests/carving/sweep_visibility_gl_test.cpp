@@ -80,14 +80,13 @@ TEST_P(SweepVisibility, SharesOfTheViewsAreTheReferences) {
     for (int i = 0; i < 64; ++i) {
       double expected = 0;
       for (std::size_t v = 0; v < 2; ++v)
-        expected += visibility::reference::sweep_visible(GetParam(), cameras[v],
-                                                         kernels.depth_maps().infos()[v], 2,
-                                                         {8 + i % 8, 8 + i / 8, kLayer}, bias,
-                                                         {depths[v],
-                                                          [&](const ivec3& c) {
-                                                            return voxels.contains({c.x, c.y, c.z});
-                                                          },
-                                                          ivec3(kVoxels)});
+        expected += visibility::reference::sweep_visible(
+            GetParam(), cameras[v], 2, {8 + i % 8, 8 + i / 8, kLayer}, bias,
+            {kernels.depth_maps().infos()[v], depths[v],
+             [&](const ivec3& c) {
+               return voxels.contains({c.x, c.y, c.z});
+             },
+             ivec3(kVoxels)});
       all += 2, seen += expected, ++compared;
       different += std::abs(scores[std::size_t(i)].w - expected) > 1e-4;
     }

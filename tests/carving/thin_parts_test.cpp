@@ -30,7 +30,7 @@ struct Scene {
     return sample_volume(
         grid.bricks,
         [&](const dvec3& p) {
-          return reference::hull_distance(grid, kBox, cameras, all, {}, glm::ivec3(p));
+          return reference::hull_distance({grid, kBox}, {cameras, all}, {}, glm::ivec3(p));
         },
         grid.origin, grid.voxel_size);
   }

@@ -1,13 +1,9 @@
 // Reconstructions that work: what is written, and what the options do to it.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
-#include "core/error.h"
-#include "io/mesh/write_mesh.h"
-#include "sphere_scene.h"
+#include "reconstruct_fixture.h"
 #include "support/analytic_volumes.h"
 #include "volume/write_vdb.h"
 
@@ -18,12 +14,9 @@ using nlohmann::json;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::StartsWith;
 
-class Reconstruct : public SphereScene {
+class ReconstructBlock : public Reconstruct {
  protected:
-  TriMesh mesh() const { return read_ply(path("out/mesh.ply")); }
-  json report() const { return json::parse(read_bytes(path("out/report.json"))); }
   /// A textured block in path("block"), 24 views.
   void synthesize_block() const {
     write_bytes(path("block.json"), R"({"geometry": {"shape": "block"}, "truth_samples": 100,
@@ -31,14 +24,6 @@ class Reconstruct : public SphereScene {
         "material": {"faces": true, "contrast": 0.6}, "cameras": {"rings": [
             {"count": 12, "elevation": 10}, {"count": 12, "elevation": 40, "phase": 0.5}]}})");
     succeed({"synthesize", path("block.json"), "--out", path("block")});
-  }
-  /// The scene file lists its views from the last to the first.
-  void reverse_views() const {
-    std::istringstream in(read_bytes(path("scene_par.txt")));
-    std::string count, line, views;
-    std::getline(in, count);
-    while (std::getline(in, line)) views = line + "\n" + views;
-    write_bytes(path("scene_par.txt"), count + "\n" + views);
   }
 };
 
@@ -132,7 +117,7 @@ TEST_F(Reconstruct, OutlinesMoveByTheMaskOffset) {
     fail(2, reconstruct({"--mask-offset", text}), {std::string("--mask-offset ") + text});
 }
 
-TEST_F(Reconstruct, NoiseThatIsKnownReachesTheVerdict) {
+TEST_F(ReconstructBlock, NoiseThatIsKnownReachesTheVerdict) {
   synthesize_block();
   // The hull is the same: what differs is how much of its texture the verdict believes.
   const auto with_noise = [&](const char* noise) {
@@ -147,22 +132,6 @@ TEST_F(Reconstruct, NoiseThatIsKnownReachesTheVerdict) {
             0.8 * double(quiet["verdict"]["signals"]["textured"]));
   for (const char* text : {"-1", "256", "nan"})
     fail(2, reconstruct({"--noise", text}), {std::string("--noise ") + text});
-}
-
-TEST_F(Reconstruct, ViewsInAnotherOrderGiveTheSameBytes) {
-  succeed(reconstruct({}));
-  const std::string expected = read_bytes(path("out/mesh.ply"));
-  reverse_views();
-  succeed(reconstruct({}));
-  EXPECT_EQ(read_bytes(path("out/mesh.ply")), expected);
-}
-
-TEST_F(Reconstruct, ABoxMuchTooLargeIsMadeSmaller) {
-  const Finished run = succeed(reconstruct({"--box", "-60 -60 -60 60 60 60"}));  // cameras inside
-  EXPECT_THAT(run.err, HasSubstr("times larger than what the silhouettes leave"));
-  const auto box = report()["box"];
-  EXPECT_LT(double(box["max"][0]) - double(box["min"][0]), 10);
-  EXPECT_EQ(report()["verdict"]["level"], "good");
 }
 
 TEST_F(Reconstruct, UnseenOpenLeavesOutWhatNoCameraSees) {
@@ -221,110 +190,6 @@ TEST_F(Reconstruct, VolumeIsReadableByOpenVdbsOwnTool) {
     EXPECT_THAT(print.out, HasSubstr(text));
 }
 
-TEST_F(Reconstruct, MethodsDifferAsTheyShould) {
-  double volumes[3] = {};
-  int sweeps[3] = {};
-  int i = 0;
-  for (const char* method : {"hull", "voxel-coloring", "space-carving"}) {
-    succeed(reconstruct({"--method", method}));
-    volumes[i] = signed_volume(mesh());
-    sweeps[i++] = report()["photo"]["sweeps"];
-    EXPECT_EQ(report()["options"]["method"], method);
-  }
-  EXPECT_LE(volumes[2], volumes[0] * 1.001);
-  EXPECT_LE(volumes[1], volumes[0] * 1.001);
-  EXPECT_THAT(sweeps, ElementsAre(0, 1, testing::Ge(6)));
-}
-
-TEST_F(Reconstruct, DraftTakesLargerVoxelsAndOnlyTheHull) {
-  succeed(reconstruct({"--quality", "draft"}));
-  const double draft = report()["grid"]["voxel_size"];
-  EXPECT_EQ(report()["options"]["method"], "hull");
-  succeed(reconstruct({"--quality", "normal", "--method", "hull"}));
-  EXPECT_GT(draft, 2 * report()["grid"]["voxel_size"].get<double>());
-}
-
-TEST_F(Reconstruct, MasksMayBeFoundOrLeftOut) {
-  const Finished none = run_photohull(reconstruct({"--masks", "none", "--method", "hull"}));
-  EXPECT_EQ(none.code, 3);
-  EXPECT_THAT(none.err, HasSubstr("no view has a mask"));
-  EXPECT_EQ(report()["verdict"]["level"], "failed");
-  EXPECT_EQ(report()["masks"]["source"], "none");
-  EXPECT_THAT(none.err, HasSubstr("warning: without masks the hull is the box"));
-  EXPECT_GT(signed_volume(mesh()), 1.5 * kSphereVolume);
-  succeed(reconstruct({"--masks", "auto", "--method", "hull"}));
-  EXPECT_EQ(report()["masks"]["source"], "background model");
-  EXPECT_NEAR(signed_volume(mesh()), 1.05 * kSphereVolume, 0.15 * kSphereVolume);
-  EXPECT_EQ(open_edges(mesh()), 0u);
-}
-
-TEST_F(Reconstruct, SweepsSampleAndCompareAsTold) {
-  succeed(reconstruct({"--method", "voxel-coloring", "--sampler", "ewa", "--supersample", "2",
-                       "--consistency", "robust-variance"}));
-  EXPECT_EQ(report()["photo"]["sampler"], "ewa");
-  EXPECT_EQ(report()["photo"]["r_consistency"], 0.0);
-  EXPECT_EQ(report()["photo"]["supersample"], 2);
-  EXPECT_EQ(report()["photo"]["consistency"], "robust-variance");
-  EXPECT_NEAR(signed_volume(mesh()), kSphereVolume, 0.1 * kSphereVolume);
-  succeed(reconstruct({"--method", "voxel-coloring"}));
-  EXPECT_EQ(report()["photo"]["sampler"], "anisotropic");
-  EXPECT_EQ(report()["photo"]["consistency"], "zncc");
-}
-
-TEST_F(Reconstruct, SweepsSearchAsFarAsTold) {
-  succeed(reconstruct({"--method", "voxel-coloring", "--r-consistency", "0.5"}));
-  EXPECT_EQ(report()["photo"]["r_consistency"], 0.5);
-  EXPECT_NEAR(signed_volume(mesh()), kSphereVolume, 0.1 * kSphereVolume);
-  fail(2, reconstruct({"--method", "voxel-coloring", "--r-consistency", "9"}),
-       {"--r-consistency 9", "0 to 4 pixels"});
-  fail(2, reconstruct({"--r-consistency", "1"}), {"--r-consistency", "no plane sweep"});
-}
-
-TEST_F(Reconstruct, WithoutMasksColoursCarve) {
-  succeed(reconstruct({"--masks", "none", "--method", "space-carving"}));
-  EXPECT_GT(report()["photo"]["voxels_carved"], 100);
-  EXPECT_EQ(open_edges(mesh()), 0u);
-}
-
-TEST_F(Reconstruct, WithoutMasksPhotographsFindTheSurface) {
-  run_photohull(reconstruct({"--masks", "none", "--method", "hull"}));  // fails its own checks
-  const double hull = signed_volume(mesh());
-  succeed(reconstruct({"--masks", "none"}));
-  EXPECT_GT(open_edges(mesh()), 0u);  // nothing bounds what no photograph tells
-  succeed(reconstruct({"--masks", "none", "--unseen", "closed"}));
-  EXPECT_FALSE(report()["refine"].empty());
-  // Sixteen small pictures 50 degrees apart tell of part of the ball only.
-  EXPECT_NEAR(signed_volume(mesh()), kSphereVolume, 0.4 * kSphereVolume);
-  EXPECT_LT(signed_volume(mesh()), 0.8 * hull);
-  EXPECT_EQ(open_edges(mesh()), 0u);
-}
-
-TEST_F(Reconstruct, WithoutMasksTheVerdictSaysWhatIsExplained) {
-  const Finished run = succeed(reconstruct({"--masks", "none", "--evidence"}));
-  EXPECT_THAT(run.out, HasSubstr("of the texture that the photographs show in the box"));
-  EXPECT_THAT(listing(out()), Contains("explained.png"));
-  EXPECT_THAT(listing(out()), testing::Not(Contains("missing.png")));
-  const json verdict = report()["verdict"], photographs = verdict["photographs"];
-  EXPECT_EQ(photographs["views"].size(), std::size_t(kViews));
-  EXPECT_GT(photographs["explained"], 0.5);
-  EXPECT_EQ(verdict["explained_png_shows"].get<std::string>().rfind("view", 0), 0u);
-  succeed(reconstruct({"--evidence"}));
-  EXPECT_FALSE(report()["verdict"].contains("photographs"));
-  EXPECT_THAT(listing(out()), Contains("missing.png"));
-}
-
-TEST_F(Reconstruct, PhotographsOfOtherViewsAreNeverGood) {
-  for (int i = 0; i < kViews / 2; ++i) {
-    const std::string bytes = read_bytes(image(i));
-    write_bytes(image(i), read_bytes(image(i + kViews / 2)));
-    write_bytes(image(i + kViews / 2), bytes);
-  }
-  const Finished run = run_photohull(reconstruct({"--masks", "none"}));
-  if (run.code == 0) {
-    EXPECT_NE(report()["verdict"]["level"], "good");
-  }
-}
-
 TEST_F(Reconstruct, StronglyBlurredViewsAreLeftOut) {
   write_bytes(path("ball.json"), R"({"geometry": {"shape": "sphere"}, "truth_samples": 100,
       "image": {"width": 160, "height": 120, "samples": 2, "maps": false},
@@ -344,124 +209,6 @@ TEST_F(Reconstruct, StronglyBlurredViewsAreLeftOut) {
   EXPECT_THAT(report()["warnings"].dump(), HasSubstr("2 views are blurred beside the others"));
   EXPECT_EQ(run({"--keep-views"}).code, 0);
   EXPECT_EQ(report()["left_out"].size(), 0u);
-}
-
-TEST_F(Reconstruct, ViewsAndBoxSelect) {
-  succeed(reconstruct(
-      {"--method", "hull", "--views", "0-4,view6*", "--box", "0.1 -1.2 -0.7 1.1 0.8 1.3"}));
-  EXPECT_EQ(report()["scene"]["views"], 6);
-  EXPECT_EQ(report()["options"]["views"], "0-4,view6*");
-  EXPECT_EQ(report()["box"]["source"], "--box");
-  // The plane x = 0.1 halves the sphere; half a voxel of slack on the cut.
-  EXPECT_NEAR(signed_volume(mesh()), 0.5 * kSphereVolume, 0.12 * kSphereVolume);
-  EXPECT_EQ(open_edges(mesh()), 0u);
-}
-
-TEST_F(Reconstruct, VoxelSizeIsTaken) {
-  succeed(reconstruct({"--method", "hull", "--voxel-size", "0.08"}));
-  EXPECT_DOUBLE_EQ(report()["grid"]["voxel_size"], 0.08);
-}
-
-TEST_F(Reconstruct, SameBytesInEveryRunWhateverTheThreads) {
-  for (const std::string method : {"hull", "voxel-coloring", "space-carving", "refine"}) {
-    std::string mesh, volume;
-    for (const std::string threads : {"1", "2", "3", "2"}) {
-      succeed(reconstruct({"--method", method, "--threads", threads}));
-      if (mesh.empty()) {
-        mesh = read_bytes(path("out/mesh.ply"));
-        volume = read_bytes(path("out/volume.vdb"));
-      }
-      EXPECT_TRUE(mesh == read_bytes(path("out/mesh.ply"))) << method << ", " << threads;
-      EXPECT_TRUE(volume == read_bytes(path("out/volume.vdb"))) << method << ", " << threads;
-    }
-  }
-}
-
-TEST_F(Reconstruct, ABoxTakenExactlyCutsTheSurface) {
-  const Arguments half = {"--method", "hull", "--box", "0.1 -1.2 -0.7 1.1 0.8 1.3"};
-  const auto lowest = [&](Arguments more) {
-    more.insert(more.begin(), half.begin(), half.end());
-    succeed(reconstruct(more));
-    double least = 1e9;
-    const TriMesh cut = mesh();
-    for (std::size_t i = 0; i < cut.positions.size(); ++i) least = std::min(least, cut.world(i).x);
-    return least;
-  };
-  EXPECT_LT(lowest({}), 0.1 - 0.01);  // half a voxel of slack
-  EXPECT_NEAR(lowest({"--box-exact"}), 0.1, 1e-6);
-  EXPECT_EQ(report()["options"]["box_exact"], "true");
-  EXPECT_EQ(open_edges(mesh()), 0u);
-}
-
-TEST_F(Reconstruct, ABoxTakenExactlyIsNotMadeSmaller) {
-  const Arguments large = {"--method",     "hull", "--box", "-2.3 -2.3 -2.3 2.3 2.3 2.3",
-                           "--resolution", "200"};
-  succeed(reconstruct(large));
-  EXPECT_THAT(report()["box"]["source"], HasSubstr("made smaller by the silhouettes"));
-  for (const std::vector<std::string>& stands :
-       {std::vector<std::string>{"--box-exact"}, {"--lattice", "fixed"}}) {
-    Arguments more = large;
-    more.insert(more.end(), stands.begin(), stands.end());
-    // What few views see of so large a box may fail the result's own checks; the files are there.
-    EXPECT_THAT(run_photohull(reconstruct(more)).code, testing::AnyOf(0, 3));
-    EXPECT_EQ(report()["box"]["source"], "--box");
-    EXPECT_DOUBLE_EQ(report()["grid"]["voxel_size"], 4.6 / 200);
-  }
-}
-
-// Two boxes whose corners are whole voxels apart, and other views: the same voxels.
-TEST_F(Reconstruct, AFixedLatticeFollowsBoxAndSizeAlone) {
-  const Arguments fixed = {"--method", "hull", "--lattice", "fixed", "--voxel-size", "0.0625"};
-  const auto grid_of = [&](Arguments more) {
-    more.insert(more.begin(), fixed.begin(), fixed.end());
-    succeed(reconstruct(more));
-    return report()["grid"];
-  };
-  const json all = grid_of({"--box", "-1 -1.25 -0.75 1 1 1.5"});
-  for (int axis = 0; axis < 3; ++axis)
-    EXPECT_DOUBLE_EQ(all["origin"][axis].get<double>(),
-                     (std::array{-1.0, -1.25, -0.75})[std::size_t(axis)] - 2.5 * 0.0625);
-  EXPECT_EQ(read_vdb_surface(path("out/volume.vdb")).grid.voxel_size, 0.0625);
-  const json fewer = grid_of({"--box", "-1 -1.25 -0.75 1 1 1.5", "--views", "0-9"});
-  EXPECT_EQ(fewer["origin"], all["origin"]);
-  EXPECT_EQ(fewer["voxels"], all["voxels"]);
-  const json part = grid_of({"--box", "-0.5 -1.25 -0.75 1 1 1.5"});
-  EXPECT_DOUBLE_EQ(part["origin"][0].get<double>() - all["origin"][0].get<double>(), 0.5);
-  EXPECT_EQ(part["origin"][1], all["origin"][1]);
-}
-
-// llvmpipe with vectors half as wide stands for another device: threads run in other groups.
-TEST_F(Reconstruct, AnotherWidthOfVectorsLeavesTheHullsBytesAndTheSurface) {
-  RunOptions narrow;
-  narrow.environment = {"LP_NATIVE_VECTOR_WIDTH=128"};
-  for (const std::string method : {"hull", "voxel-coloring", "refine"}) {
-    const auto run = [&](const std::string& name, const RunOptions& options) {
-      succeed({"reconstruct", scene(), "--out", path(name), "--masks", path("cutouts"),
-               "--resolution", "32", "--device", "software", "--method", method},
-              options);
-      return path(name + "/mesh.ply");
-    };
-    const std::string wide = run("wide", {}), other = run("narrow", narrow);
-    const json report = json::parse(read_bytes(path("narrow/report.json")));
-    EXPECT_THAT(report["device"], HasSubstr("128 bits"));
-    if (method == "hull") {
-      EXPECT_TRUE(read_bytes(wide) == read_bytes(other));
-    }
-    const json apart =
-        json::parse(succeed({"evaluate", other, "--truth", wide, "--json"}).out)["recon_to_gt"];
-    const double voxel = report["grid"]["voxel_size"];
-    EXPECT_LT(apart["mean"], 0.01 * voxel) << method;
-    EXPECT_LT(apart["q95"], 0.05 * voxel) << method;
-  }
-}
-
-TEST_F(Reconstruct, ADraftSaysWhatAHullIs) {
-  const Finished run = succeed(reconstruct({"--quality", "draft", "--resolution", "32"}));
-  EXPECT_THAT(run.out, HasSubstr("verdict: good"));
-  EXPECT_THAT(run.out, HasSubstr("a visual hull is an outer bound"));
-  EXPECT_EQ(report()["verdict"]["notes"].size(), 1u);
-  succeed(reconstruct());
-  EXPECT_EQ(report()["verdict"]["notes"].size(), 0u);
 }
 
 TEST_F(Reconstruct, MakesTheOutputFolderAndReplacesEarlierResults) {

@@ -97,8 +97,8 @@ SparseVolume BowlScene::hull(const GridSpec& grid, bool masks) const {
   carving::HullOptions options;
   options.min_views = masks ? 1 : 2;
   Progress silent;
-  return carving::carve_silhouette(gl_context(), grid, box, cameras, silhouettes(masks), options,
-                                   silent);
+  return carving::carve_silhouette(gl_context(), {grid, box}, {cameras, silhouettes(masks)},
+                                   options, silent);
 }
 
 const BowlScene& bowl_scene() {

@@ -27,12 +27,13 @@ View plain_view(const Camera& camera, const glm::dvec3& colour) {
   return view;
 }
 
-void bake(const std::vector<View>& views, TriMesh& mesh, BakeReport* report = nullptr,
-          std::vector<render::PooledEvidence>* evidence = nullptr) {
+BakeReport bake(const std::vector<View>& views, TriMesh& mesh) {
   Progress silent;
   gpu::Context& context = test::gl_context();  // before the images need it
-  bake_colour(context, kGrid, projtex::ImageSet(views), cameras_of(views), kNoise,
-              render::Shaping::kPhotographs, mesh, silent, report, evidence);
+  const projtex::ImageSet images(views);
+  const std::vector<Camera> cameras = cameras_of(views);
+  return bake_colour(context, kGrid, {images, cameras, kNoise}, render::Shaping::kPhotographs, mesh,
+                     silent);
 }
 
 /// The reference's depth maps of a mesh that consists of vertices only.
@@ -92,8 +93,7 @@ TEST_P(BakeAgainstReference, AgreesOnRandomPoints) {
     if (std::uniform_int_distribution(0, 1)(rng))
       view.sharpness = std::uniform_real_distribution(0.5, 1.3)(rng);
   const auto vertices = render::to_voxels(kGrid, mesh);
-  std::vector<render::PooledEvidence> baked;  // of single points: nothing to pool
-  bake(views, mesh, nullptr, &baked);
+  const auto baked = bake(views, mesh).evidence;  // of single points: nothing to pool
   const std::vector<BakeView> expected = reference_views(views, vertices);
   int seen = 0, wrong = 0;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
@@ -129,8 +129,7 @@ TEST(BakeColour, VertexBehindTheOnlyCameraIsUnseen) {
   mesh.positions = {{0, 0, -0.5}, {0, 0, 0}, {0, 0, 0.5}};
   mesh.normals.assign(3, {0, 0, -1});
   mesh.normals[0] = {0, 0, 1};
-  BakeReport report;
-  bake({plain_view(camera, {0.2, 0.4, 0.6})}, mesh, &report);
+  const BakeReport report = bake({plain_view(camera, {0.2, 0.4, 0.6})}, mesh);
   EXPECT_EQ(mesh.confidence[0], 0);
   EXPECT_EQ(mesh.confidence[1], 0) << "at the optical centre";
   EXPECT_GT(mesh.confidence[2], 0);
@@ -212,8 +211,7 @@ TEST(BakeColour, BlurredViewsSayLess) {
 TEST(BakeColour, EmptyMesh) {
   const Camera camera = test::look_at({0, 0, 0}, kGrid.bounds().center(), 100, 32, 32);
   TriMesh mesh;
-  BakeReport report;
-  bake({plain_view(camera, {0.5, 0.5, 0.5})}, mesh, &report);
+  const BakeReport report = bake({plain_view(camera, {0.5, 0.5, 0.5})}, mesh);
   EXPECT_TRUE(mesh.colours.empty());
   EXPECT_EQ(report.vertices, 0);
 }

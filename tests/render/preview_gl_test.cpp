@@ -39,8 +39,9 @@ TriMesh baked_sphere(const std::vector<View>& views) {
   TriMesh mesh = test::sphere_mesh(kCentre, kRadius, 120);
   Progress silent;
   gpu::Context& context = test::gl_context();  // before the images need it
-  bake_colour(context, kGrid, projtex::ImageSet(views), projtex::cameras_of(views), 0.01,
-              render::Shaping::kPhotographs, mesh, silent);
+  const projtex::ImageSet images(views);
+  const std::vector<Camera> cameras = projtex::cameras_of(views);
+  bake_colour(context, kGrid, {images, cameras, 0.01}, render::Shaping::kPhotographs, mesh, silent);
   return mesh;
 }
 

@@ -2,13 +2,14 @@
 // carving).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <utility>
+#include <span>
 #include <vector>
 
+#include "carving/layer_item.h"
 #include "core/grid.h"
 #include "gpu/buffer.h"
-#include "shared/sweep.h"
 
 namespace photohull::carving {
 
@@ -34,14 +35,14 @@ struct Band {
 /// Bands of a plane of `across` x `rows` bricks, as few as storage blocks allow; no path is open.
 std::vector<Band> make_bands(int across, int rows);
 
-/// A band's part of a slab of bricks.
+/// A band's part of a slab of bricks: its items, and what the kernels find in them.
 struct BandWork {
   const Band& band;
-  std::vector<shaders::LayerItem> items;
+  std::size_t count;  ///< of the items
   gpu::Buffer item_buffer, scores;
   DeviceList selected, occluders, decided;
 
-  BandWork(const Band& of, std::vector<shaders::LayerItem> list);
+  BandWork(const Band& of, std::span<const LayerItem> items);
 };
 
 }  // namespace photohull::carving

@@ -1,8 +1,9 @@
-#include "carving/sweep_bands.h"
+#include "carving/kernels/sweep_bands.h"
 
 #include <algorithm>
 
 #include "gpu/limits.h"
+#include "shared/sweep.h"
 
 namespace photohull::carving {
 namespace {
@@ -11,6 +12,21 @@ namespace {
 constexpr std::size_t kDecidedEntries = kBrickVoxels * 2;
 static_assert(kDecidedEntries * 16 == kBrickVoxels * sizeof(shaders::Decision));
 static_assert(kDecidedEntries * 16 >= 64 * sizeof(shaders::Column));
+
+static_assert(LayerItem::kMostViews == shaders::kMaxLayerViews);
+
+gpu::Buffer to_device(std::span<const LayerItem> items) {
+  std::vector<shaders::LayerItem> out;
+  out.reserve(items.size());
+  for (const LayerItem& item : items) {
+    shaders::LayerItem entry{};
+    entry.brick = glm::ivec4(item.brick, item.view_count);
+    for (int i = 0; i < item.view_count; ++i)
+      entry.views[i / 4][i % 4] = item.views[std::size_t(i)];
+    out.push_back(entry);
+  }
+  return gpu::Buffer::of(out);
+}
 
 }  // namespace
 
@@ -27,13 +43,13 @@ std::vector<Band> make_bands(int across, int rows) {
   return bands;
 }
 
-BandWork::BandWork(const Band& of, std::vector<shaders::LayerItem> list)
+BandWork::BandWork(const Band& of, std::span<const LayerItem> items)
     : band(of),
-      items(std::move(list)),
-      item_buffer(gpu::Buffer::of(items)),
-      scores(items.size() * 64 * 16),
-      selected(items.size()),
-      occluders(items.size() * 128),
-      decided(items.size() * kDecidedEntries) {}
+      count(items.size()),
+      item_buffer(to_device(items)),
+      scores(count * 64 * 16),
+      selected(count),
+      occluders(count * 128),
+      decided(count * kDecidedEntries) {}
 
 }  // namespace photohull::carving
