@@ -77,9 +77,9 @@ TEST_F(Reconstruct, ReportHasTheDocumentedFields) {
   EXPECT_EQ(r["mesh"]["triangles"], mesh().triangles.size());
   std::vector<std::string> stages;
   for (const json& stage : r["stages"]) stages.push_back(stage["name"]);
-  EXPECT_THAT(stages,
-              ElementsAre("scene", "device", "views", "cameras", "hull", "photometric", "images",
-                          "refine", "clean", "mesh", "colour", "verdict", "files", "preview"));
+  EXPECT_THAT(stages, ElementsAre("scene", "device", "views", "cameras", "silhouettes", "hull",
+                                  "photometric", "images", "refine", "clean", "mesh", "colour",
+                                  "verdict", "preview", "files"));
 }
 
 TEST_F(Reconstruct, MeshErrorLeavesFewerTriangles) {
