@@ -12,7 +12,9 @@ namespace photohull::test {
 class Reconstruct : public SphereScene {
  protected:
   TriMesh mesh() const { return read_ply(path("out/mesh.ply")); }
-  json report() const { return json::parse(read_bytes(path("out/report.json"))); }
+  nlohmann::json report() const {
+    return nlohmann::json::parse(read_bytes(path("out/report.json")));
+  }
 };
 
 }  // namespace photohull::test
