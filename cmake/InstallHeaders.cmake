@@ -1,5 +1,6 @@
 # Copies api/photohull.h of ROOT, and all headers that it includes, into FOLDER. "core/error.h" is
 # "photohull/core/error.h" there, so that programs need no folder of ours in their search path.
+cmake_policy(VERSION 3.25)
 set(waiting api/photohull.h)
 set(done)
 while(waiting)
