@@ -74,7 +74,7 @@ std::vector<Peak> find_peaks(const Matches& matches, const PeakOptions& options)
     const double curvature = s[best - 1] - 2.0 * s[best] + s[best + 1];
     const double shift =
         curvature < 0 ? std::clamp(0.5 * (s[best - 1] - s[best + 1]) / curvature, -0.5, 0.5) : 0;
-    const double sure = (score - options.least_score) / (options.sure_score - options.least_score);
+    const double sure = (score - options.least_score) / (options.full_score - options.least_score);
     const double lead = (s[best] - second) / kDistinctBy;
     const double sharp = -curvature / 0.05;
     peaks[i].offset = float(matches.range.at(double(best) + shift));

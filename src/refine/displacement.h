@@ -23,15 +23,15 @@ struct Peak {
 };
 
 struct PeakOptions {
-  double least_score = 0.3, sure_score = 0.8, thick = 4;
+  double least_score = 0.3, full_score = 0.8, thick = 4;
 };
 
 inline void describe(Described& to, PeakOptions& o) {
   to.number("least_score", &o.least_score, from_to(-1, 1), "",
             "score of a curve's peak below which it is no evidence");
-  to.number("sure_score", &o.sure_score, from_to(-1, 1), "",
+  to.number("full_score", &o.full_score, from_to(-1, 1), "",
             "score of a curve's peak from which it has full weight");
-  to.rule(o.least_score < o.sure_score, "least_score", "must lie below", "sure_score");
+  to.rule(o.least_score < o.full_score, "least_score", "must lie below", "full_score");
   to.number("thick", &o.thick, above(0, 1000), "voxels",
             "body behind a vertex that gives full weight");
 }

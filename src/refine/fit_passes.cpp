@@ -5,9 +5,9 @@
 
 #include "refine/displacement.h"
 #include "refine/fit_patches.h"
+#include "refine/hull_prior.h"
 #include "refine/kernels/choose_views.h"
 #include "refine/kernels/fit_patches.h"
-#include "refine/rims.h"
 #include "refine/seat.h"
 #include "refine/surface.h"
 #include "refine/trust.h"
@@ -21,7 +21,7 @@ namespace {
 constexpr double kFitMembrane = 30, kFitFairing = 3;
 
 /// What fitted peaks tell, whatever their taps' spacing.
-std::vector<float> weights_told(std::span<const Peak> peaks, std::span<const float> spacings) {
+std::vector<float> information_of(std::span<const Peak> peaks, std::span<const float> spacings) {
   std::vector<float> out;
   for (std::size_t i = 0; i < peaks.size(); ++i) {
     const float square = spacings[i] * spacings[i];
@@ -66,22 +66,24 @@ class FitPass {
     fits_ = {};
     std::vector<float> trust =
         trust_thickness(volume, positions_, mesh_.normals, options_.peak.thick);
-    std::vector<float> told;  // of seating alone
-    if (seats) told = told_around(graph_, weights_told(peaks, spacings));
+    std::vector<float> information;  // of seating alone
+    if (seats) information = information_around(graph_, information_of(peaks, spacings));
     std::vector<float> tight_at;
     for (const float t : trust) tight_at.push_back(t * t);
     trust_outlines(grid_, positions_, choices_, job_.cones, options_.fit, trust);
     choices_ = {};
     // What patches cannot be trusted with stays where it is.
     for (std::size_t k = 0; k < peaks.size(); ++k) peaks[k].offset *= trust[k];
-    const double tight = job_.is_bounded() ? pull_to_hull(hull, graph_, positions_,
-                                                          {texture_, trust}, options_.rims, peaks)
-                                           : 0;
+    const double tight =
+        job_.is_bounded()
+            ? pull_to_hull(hull, graph_, positions_, {texture_, trust}, options_.hull_prior, peaks)
+            : 0;
     for (float& t : tight_at) t *= float(tight);
     RegularizeOptions smooth = options_.regularize;
     smooth.membrane = kFitMembrane, smooth.fairing = kFitFairing;
     std::vector<float> moves = regularize(graph_, peaks, positions_, mesh_.normals, trust, smooth);
-    if (seats) seat_outlines(hull, job_.cones, surfels(), {told, tight_at}, options_.seat, moves);
+    if (seats)
+      seat_outlines(hull, job_.cones, surfels(), {information, tight_at}, options_.seat, moves);
     graph_ = {};
     positions_ = {};
     return moves;
@@ -109,7 +111,7 @@ class FitPass {
 
 std::int64_t fit_passes(const RefineJob& job, const SettledBricks& settled, BoundingHull& bounding,
                         SparseVolume& volume, std::vector<FitReport>& reports, Progress& progress) {
-  const int passes = job.options.photometric;
+  const int passes = job.options.fit_passes;
   std::int64_t samples = 0;
   SparseVolume before;
   double best = -1;

@@ -128,9 +128,10 @@ std::vector<Peak> peaks_of(std::span<const PatchFit> results, std::span<const fl
     const PatchFit& r = results[i];
     if (std::abs(r.offset) >= options.largest_offset) continue;  // it wanted to go farther
     const double agreement = std::clamp(
-        (r.score - options.least_score) / (options.sure_score - options.least_score), 0.0, 1.0);
+        (r.score - options.least_score) / (options.full_score - options.least_score), 0.0, 1.0);
     const double weight =
-        agreement * std::min(r.information * options.sure * options.sure, options.most_weight);
+        agreement * std::min(r.information * options.unit_deviation * options.unit_deviation,
+                             options.most_weight);
     if (!(weight > 0)) continue;
     const double square = double(spacings[i]) * spacings[i];
     peaks[i] = {r.offset, float(weight / (square * square)), r.score};

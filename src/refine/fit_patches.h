@@ -19,9 +19,9 @@ namespace photohull::refine {
 struct FitOptions {
   int steps = 2, hold_out = 4;
   double least_spacing = 0.4, pixel_spacing = 1, noise = 0.6;
-  double least_score = 0.3, sure_score = 0.8, slope = 0.05;
+  double least_score = 0.3, full_score = 0.8, slope = 0.05;
   double largest_offset = 0.5, largest_step = 0.5, most_bend = 1;
-  double sure = 0.1, most_weight = 4;
+  double unit_deviation = 0.1, most_weight = 4;
 };
 
 inline void describe(Described& to, FitOptions& o) {
@@ -36,16 +36,16 @@ inline void describe(Described& to, FitOptions& o) {
             "share of the pixels' variance by noise that samples have");
   to.number("least_score", &o.least_score, from_to(-1, 1), "",
             "correlation with the other views below which a view has no weight");
-  to.number("sure_score", &o.sure_score, from_to(-1, 1), "",
+  to.number("full_score", &o.full_score, from_to(-1, 1), "",
             "correlation with the other views from which a view has full weight");
-  to.rule(o.least_score < o.sure_score, "least_score", "must lie below", "sure_score");
+  to.rule(o.least_score < o.full_score, "least_score", "must lie below", "full_score");
   to.number("slope", &o.slope, above(0, 1000), "", "standard deviation of the surfels' slopes");
   to.number("largest_offset", &o.largest_offset, below(0, SparseVolume::kBand), "voxels",
             "offset of a fit from which on it does not count");
   to.number("largest_step", &o.largest_step, above(0, 1000), "voxels", "longest step of a fit");
   to.number("most_bend", &o.most_bend, from_to(0, 1000), "1 / voxel",
             "largest curvature that a patch follows");
-  to.number("sure", &o.sure, from_to(0, 1000), "voxels",
+  to.number("unit_deviation", &o.unit_deviation, from_to(0, 1000), "voxels",
             "standard deviation of an offset that weighs 1");
   to.number("most_weight", &o.most_weight, above(0, 1000), "",
             "greatest weight of an offset when they are smoothed");
@@ -89,9 +89,10 @@ std::vector<float> tap_spacings(const GridSpec& grid, std::span<const glm::vec3>
                                 std::span<const ViewChoice> choices, const FitOptions& options);
 
 /// The fitted offsets as peaks, weighed by their information: 1 at a standard deviation of
-/// options.sure, never more than options.most_weight, both for taps a voxel apart. By the inverse
-/// fourth power of the spacing, the surface is smoothed over as many pixels whatever the voxels'
-/// size: more vertices share a tap's evidence, and smoothing must reach across more of them.
+/// options.unit_deviation, never more than options.most_weight, both for taps a voxel apart. By the
+/// inverse fourth power of the spacing, the surface is smoothed over as many pixels whatever the
+/// voxels' size: more vertices share a tap's evidence, and smoothing must reach across more of
+/// them.
 std::vector<Peak> peaks_of(std::span<const PatchFit> results, std::span<const float> spacings,
                            const FitOptions& options);
 

@@ -143,7 +143,7 @@ WeighedSights weigh(const Problem& problem, const dvec3& theta, Model& model) {
     double weight = 1;
     if (out.total > 0) {
       const double share = std::clamp(
-          (correlation - options.least_score) / (options.sure_score - options.least_score), 0.0,
+          (correlation - options.least_score) / (options.full_score - options.least_score), 0.0,
           1.0);
       weight = share * share;
       scores += std::max(correlation, options.least_score);

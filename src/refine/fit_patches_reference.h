@@ -35,7 +35,7 @@ struct FittedPatch {
 /// the root of the sum of its squares and the noise's.
 ///
 /// Views count in their order with w_v = t^2, t the correlation of x_v with the mean of those
-/// before it, mapped from [least_score, sure_score] to [0, 1]; the first in front of whose camera
+/// before it, mapped from [least_score, full_score] to [0, 1]; the first in front of whose camera
 /// the patch lies has w = 1. The cost is half the sum over views of w_v |x_v - mean|^2; its
 /// gradient and Gauss-Newton matrix for fixed w, with the slopes kept near 0 by a prior and
 /// Levenberg's damping, give the steps. One that lowers the score, the mean over the views of the

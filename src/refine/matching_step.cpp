@@ -6,9 +6,9 @@
 
 #include "refine/close_unseen.h"
 #include "refine/displacement.h"
+#include "refine/hull_prior.h"
 #include "refine/kernels/choose_views.h"
 #include "refine/look_through.h"
-#include "refine/rims.h"
 #include "refine/surface.h"
 #include "refine/trust.h"
 #include "volume/distance_from_mesh.h"
@@ -90,7 +90,7 @@ class MatchingStep {
     for (std::size_t i = 0; i < peaks_.size(); ++i) peaks_[i].weight *= trust[i];
     // Not at first: what no silhouette shows is still to be found under the hull.
     if (!place_.first_level && job_.is_bounded())
-      pull_to_hull(hull, graph_, positions_, {texture_, trust}, options_.rims, peaks_);
+      pull_to_hull(hull, graph_, positions_, {texture_, trust}, options_.hull_prior, peaks_);
     std::vector<float> moves =
         regularize(graph_, peaks_, positions_, mesh_.normals, trust, options_.regularize);
     const auto told = std::count_if(peaks_.begin(), peaks_.end(),

@@ -17,10 +17,10 @@
 #include "refine/close_unseen.h"
 #include "refine/displacement.h"
 #include "refine/fit_patches.h"
+#include "refine/hull_prior.h"
 #include "refine/look_through.h"
 #include "refine/match.h"
 #include "refine/restore.h"
-#include "refine/rims.h"
 #include "refine/seat.h"
 #include "refine/settle.h"
 #include "refine/thin_hull.h"
@@ -62,14 +62,14 @@ struct RefineOptions {
   bool closing = true;
   CloseOptions close;
   RestoreOptions restore;
-  RimOptions rims;
+  HullPriorOptions hull_prior;
   ThinHullOptions thin;
   UnprovenOptions unproven;
   MatchOptions match;
   LookOptions look;
   SeatOptions seat;
   SettleOptions settle;
-  int photometric = 1;
+  int fit_passes = 1;
   FitOptions fit;
   PeakOptions peak;
   RegularizeOptions regularize;
@@ -107,14 +107,14 @@ inline void describe(Described& to, RefineOptions& o) {
   to.flag("closing", &o.closing, "close surface that no camera sees smoothly");
   to.group("close", o.close);
   to.group("restore", o.restore);
-  to.group("rims", o.rims);
+  to.group("hull_prior", o.hull_prior);
   to.group("thin", o.thin);
   to.group("unproven", o.unproven);
   to.group("match", o.match);
   to.group("look", o.look);
   to.group("seat", o.seat);
   to.group("settle", o.settle);
-  to.number("photometric", &o.photometric, from_to(0, 100), "",
+  to.number("fit_passes", &o.fit_passes, from_to(0, 100), "",
             "passes of fitting patches to the photographs, at the end; fewer when they stop "
             "helping");
   to.group("fit", o.fit);

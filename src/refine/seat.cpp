@@ -57,7 +57,7 @@ std::vector<Peak> asked(const SparseVolume& hull, std::span<const Contact> conta
 
 }  // namespace
 
-std::vector<float> told_around(const VertexGraph& graph, std::span<const float> weights) {
+std::vector<float> information_around(const VertexGraph& graph, std::span<const float> weights) {
   // The mean of the roots, squared: 4 at one surfel in ten and nothing at the others is 0.04.
   std::vector<float> mean, next(weights.size());
   for (const float weight : weights) mean.push_back(std::sqrt(std::max(weight, 0.0f)));
@@ -92,7 +92,7 @@ void seat_outlines(const SparseVolume& hull, const SilhouetteCones& cones,
         asked(hull, find_contacts(hull.grid, mesh, moved, normals, cones, options.reach), moved,
               beliefs.tight, options);
     for (std::size_t i = 0; i < n; ++i) {
-      const float own = beliefs.told[i] + kHold;
+      const float own = beliefs.information[i] + kHold;
       peaks[i].offset =
           (peaks[i].offset + own * (photographs[i] - moves[i])) / (peaks[i].weight + own);
       peaks[i].weight += own;
@@ -102,7 +102,7 @@ void seat_outlines(const SparseVolume& hull, const SilhouetteCones& cones,
   }
   for (std::size_t i = 0; i < n; ++i) {
     const double under = -hull.interpolated(glm::dvec3(positions[i])) - moves[i];
-    const double known = kUnsure / std::sqrt(double(beliefs.told[i]) + kHold);
+    const double known = kUnsure / std::sqrt(double(beliefs.information[i]) + kHold);
     if (under < std::min(options.margin * double(beliefs.tight[i]), known))
       moves[i] += float(options.margin);
   }

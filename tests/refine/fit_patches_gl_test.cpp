@@ -166,7 +166,7 @@ TEST_F(FitPatches, AgreesWithoutSteps) {
   views_ = test::random_views(rng_, 9);
   views_.pop_back();  // the one amid the points
   options_.steps = 0;
-  options_.least_score = -0.9, options_.sure_score = 0.3;  // all take part
+  options_.least_score = -0.9, options_.full_score = 0.3;  // all take part
   options_.slope = 0.02;
   const std::vector<Probe> probes = random_probes(250);
   EXPECT_LE(compare(probes, run(probes)),
@@ -313,8 +313,8 @@ TEST_F(FitPatches, PeaksWeighInformationByPixel) {
     return PatchFit{{0, 0, 1}, offset, information, score, 0, 0};
   };
   options_.largest_offset = 0.5;
-  options_.sure = 0.1, options_.most_weight = 4;
-  options_.least_score = 0.1, options_.sure_score = 0.9;
+  options_.unit_deviation = 0.1, options_.most_weight = 4;
+  options_.least_score = 0.1, options_.full_score = 0.9;
   const std::vector<Peak> peaks = peaks_of(
       std::vector{fit_of(0.25f, 100, 0.9f), fit_of(0.25f, 100, 0.9f), fit_of(0.25f, 1e6, 0.9f),
                   fit_of(0.25f, 0, 0.9f), fit_of(0.25f, 100, 0.5f), fit_of(0.5f, 100, 0.9f)},

@@ -104,10 +104,10 @@ TEST_F(RefineSurface, VotingFindsWhatTheSearchAloneCannotReach) {
 }
 
 TEST_F(RefineSurface, FittingThePhotographsBringsItNearer) {
-  options_.photometric = 0;
+  options_.fit_passes = 0;
   const double matched = test::mean_error(run(8));
   EXPECT_TRUE(report_.fits.empty());
-  options_.photometric = 2;
+  options_.fit_passes = 2;
   EXPECT_LT(test::mean_error(run(8)), matched);
   ASSERT_FALSE(report_.fits.empty());
   EXPECT_TRUE(report_.fits[0].kept);
@@ -117,11 +117,11 @@ TEST_F(RefineSurface, FittingThePhotographsBringsItNearer) {
 
 TEST_F(RefineSurface, TheLastPassSeatsItOnTheOutlinesWhateverTheOthersGained) {
   options_.seat.passes = 0;
-  options_.photometric = 1;
+  options_.fit_passes = 1;
   const double fitted = test::mean_error(run(8));
   options_.seat = {};
   for (const int passes : {1, 3}) {
-    options_.photometric = passes;
+    options_.fit_passes = passes;
     EXPECT_LT(test::mean_error(run(8)), 0.95 * fitted) << passes;
     ASSERT_FALSE(report_.fits.empty());
     EXPECT_TRUE(report_.fits.back().kept);
@@ -153,11 +153,11 @@ TEST_F(RefineSurface, BadOptionsAreNamed) {
       [](RefineOptions& o) { o.restore.least_views = 0; },
       [](RefineOptions& o) { o.match.best_pairs = 0; },
       [](RefineOptions& o) { o.match.nearest_angle = o.match.farthest_angle; },
-      [](RefineOptions& o) { o.peak.sure_score = o.peak.least_score; },
-      [](RefineOptions& o) { o.photometric = -1; },
+      [](RefineOptions& o) { o.peak.full_score = o.peak.least_score; },
+      [](RefineOptions& o) { o.fit_passes = -1; },
       [](RefineOptions& o) { o.fit.slope = 0; },
       [](RefineOptions& o) { o.fit.largest_offset = 3; },
-      [&](RefineOptions& o) { o.fit.sure = nan; },
+      [&](RefineOptions& o) { o.fit.unit_deviation = nan; },
       [](RefineOptions& o) { o.regularize.robust = 0; }};
   for (std::size_t i = 0; i < mistakes.size(); ++i) {
     options_ = {};

@@ -103,7 +103,7 @@ TEST(ToldAround, SingleClaimsCountLittle) {
   }
   std::vector<float> single(kCount, 0), all(kCount, 0.4f);
   for (std::size_t i = 0; i < kCount; i += 10) single[i] = 4;
-  const auto of_single = told_around(ring, single), of_all = told_around(ring, all);
+  const auto of_single = information_around(ring, single), of_all = information_around(ring, all);
   for (std::size_t i = 0; i < kCount; ++i) {
     EXPECT_NEAR(of_all[i], 0.4, 1e-5);
     EXPECT_LT(of_single[i], 0.2);  // their mean is 0.4 as well

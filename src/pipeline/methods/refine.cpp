@@ -34,7 +34,7 @@ Parameters parameters_of(const SurfaceJob& job) {
   refine.noise_sigma = job.subject.noise_sigma;
   if (job.options.quality == Quality::kHigh) {
     refine.fine_iterations = kHighIterations;
-    refine.photometric = kHighPasses;
+    refine.fit_passes = kHighPasses;
     refine.fit.steps = kHighSteps;
   }
   if (job.subject.mask_confidence < 1) {

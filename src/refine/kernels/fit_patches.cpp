@@ -33,7 +33,7 @@ shaders::FitParameters parameters_of(std::size_t surfels, double noise_sigma, co
   p.counts = {int(surfels), 0, o.steps, 0};
   p.search = {float(o.least_spacing), float(o.pixel_spacing), float(o.largest_offset),
               float(o.largest_step)};
-  p.robust = {float(o.noise * noise_sigma * noise_sigma), float(o.least_score), float(o.sure_score),
+  p.robust = {float(o.noise * noise_sigma * noise_sigma), float(o.least_score), float(o.full_score),
               float(o.slope)};
   return p;
 }

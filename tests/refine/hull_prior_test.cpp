@@ -1,4 +1,4 @@
-#include "refine/rims.h"
+#include "refine/hull_prior.h"
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ SparseVolume ball() {
 }
 
 /// The peak of a vertex so far under the ball's surface, after the hull has had its say.
-Peak pulled(float under, const Peak& peak, float texture, const RimOptions& options = {},
+Peak pulled(float under, const Peak& peak, float texture, const HullPriorOptions& options = {},
             float trust = 1) {
   const std::vector<vec3> positions = {vec3(12) + (8 - under) * glm::normalize(vec3(1, 2, -0.5))};
   std::vector<Peak> peaks = {peak};
@@ -39,7 +39,7 @@ Peak pulled(float under, const Peak& peak, float texture, const RimOptions& opti
 TEST(PullToHull, WithoutEvidenceTheHullIsThePlace) {
   const Peak peak = pulled(0.5f, {}, 0);
   EXPECT_NEAR(peak.offset, 0.5, 0.1);
-  EXPECT_NEAR(peak.weight, 0.5 * RimOptions().weight, 0.1 * RimOptions().weight);
+  EXPECT_NEAR(peak.weight, 0.5 * HullPriorOptions().weight, 0.1 * HullPriorOptions().weight);
 }
 
 TEST(PullToHull, WhatLiesDeeperIsNotItsBusiness) {
@@ -92,7 +92,7 @@ TEST(PullToHull, AHullThatIsLooseElsewhereIsNotBelieved) {
     pull_to_hull(ball(), apart, positions, {texture, trust}, {}, peaks);
     return peaks[0].weight;
   };
-  EXPECT_NEAR(plain(0.1f), 0.8 * RimOptions().weight, 0.1 * RimOptions().weight);
+  EXPECT_NEAR(plain(0.1f), 0.8 * HullPriorOptions().weight, 0.1 * HullPriorOptions().weight);
   EXPECT_LT(plain(3), 0.001 * plain(0.1f));
 }
 

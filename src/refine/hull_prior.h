@@ -11,14 +11,14 @@
 
 namespace photohull::refine {
 
-struct RimOptions {
-  double weight = 30, told = 0.2;
+struct HullPriorOptions {
+  double weight = 30, evidence = 0.2;
 };
 
-inline void describe(Described& to, RimOptions& o) {
+inline void describe(Described& to, HullPriorOptions& o) {
   to.number("weight", &o.weight, from_to(0, 1000), "",
             "weight of a tight hull among the peaks, where nothing has texture; 0: none");
-  to.number("told", &o.told, above(0, 1000), "",
+  to.number("evidence", &o.evidence, above(0, 1000), "",
             "mean weight of the peaks around at which the hull has lost its say, too");
 }
 
@@ -38,6 +38,6 @@ struct PatchQuality {
 /// Returns how far the hull can be believed, [0, 1].
 double pull_to_hull(const SparseVolume& hull, const VertexGraph& graph,
                     std::span<const glm::vec3> positions, const PatchQuality& patches,
-                    const RimOptions& options, std::vector<Peak>& peaks);
+                    const HullPriorOptions& options, std::vector<Peak>& peaks);
 
 }  // namespace photohull::refine

@@ -1,5 +1,5 @@
 // Rims of silhouettes as a constraint on the surface [Furukawa09].
-#include "refine/rims.h"
+#include "refine/hull_prior.h"
 
 #include <tbb/parallel_for.h>
 
@@ -11,9 +11,10 @@ namespace photohull::refine {
 namespace {
 
 constexpr int kRounds = 10;  // of averaging with the neighbours: three or four voxels around
-constexpr float kSure = 1, kToldAround = 0.7f;  // weights of peaks that the hull is measured by
-constexpr double kReach = 1;                    // voxels under the hull: it has lost its say there
-constexpr double kAssumed = 100;                // of them that lie on it, where none are known
+constexpr float kFullWeight = 1,
+                kEvidenceAround = 0.7f;  // weights of peaks that the hull is measured by
+constexpr double kReach = 1;             // voxels under the hull: it has lost its say there
+constexpr double kAssumed = 100;         // of them that lie on it, where none are known
 
 /// Weights of the peaks, none counted for more than 1, averaged over the surface around.
 std::vector<float> evidence_around(const VertexGraph& graph, const std::vector<Peak>& peaks) {
@@ -33,10 +34,10 @@ std::vector<float> evidence_around(const VertexGraph& graph, const std::vector<P
 /// How far the hull may be believed where nothing checks it, [0, 1]: by the share of what
 /// photographs tell surely that lies on it.
 double tightness(const SparseVolume& hull, std::span<const glm::vec3> positions,
-                 const std::vector<Peak>& peaks, const std::vector<float>& told) {
+                 const std::vector<Peak>& peaks, const std::vector<float>& evidence) {
   double sure = kAssumed, on_hull = kAssumed;
   for (std::size_t i = 0; i < peaks.size(); ++i) {
-    if (!(peaks[i].weight >= kSure && told[i] >= kToldAround)) continue;
+    if (!(peaks[i].weight >= kFullWeight && evidence[i] >= kEvidenceAround)) continue;
     sure += 1;
     on_hull += -hull.interpolated(glm::dvec3(positions[i])) - peaks[i].offset < kReach;
   }
@@ -47,15 +48,15 @@ double tightness(const SparseVolume& hull, std::span<const glm::vec3> positions,
 
 double pull_to_hull(const SparseVolume& hull, const VertexGraph& graph,
                     std::span<const glm::vec3> positions, const PatchQuality& patches,
-                    const RimOptions& options, std::vector<Peak>& peaks) {
-  const std::vector<float> told = evidence_around(graph, peaks);
-  const double tight = tightness(hull, positions, peaks, told);
+                    const HullPriorOptions& options, std::vector<Peak>& peaks) {
+  const std::vector<float> evidence = evidence_around(graph, peaks);
+  const double tight = tightness(hull, positions, peaks, evidence);
   const double strongest = options.weight * tight;
   tbb::parallel_for(std::size_t(0), peaks.size(), [&](std::size_t i) {
     const float under = float(-hull.interpolated(glm::dvec3(positions[i])));
     const float share = 1 - std::clamp(under, 0.0f, float(kReach)) / float(kReach);
     Peak& peak = peaks[i];
-    const float open = std::max(0.0f, 1 - told[i] / float(options.told));
+    const float open = std::max(0.0f, 1 - evidence[i] / float(options.evidence));
     const float thick = patches.trust[i] * patches.trust[i];
     const float weight = float(strongest) * thick * share * open * (1 - patches.texture[i]);
     if (!(weight > 0)) return;
