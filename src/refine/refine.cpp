@@ -88,9 +88,8 @@ class SurfaceRefiner {
     report.resumed = int(report.levels.size());
     if (report.resumed > 0)
       progress_.note(concat("an interrupted run of this job had done ", report.resumed, " of ",
-                            grids_.size(),
-                            " levels of the refinement: going on from there (--fresh "
-                            "starts anew)"));
+                            grids_.size(), " levels of the refinement: going on from there (",
+                            option_word("fresh"), " starts anew)"));
   }
 
   LevelReport refine_level(std::size_t level, std::vector<FitReport>& fits) {

@@ -66,8 +66,8 @@ void write_commands(std::ostream& out) {
          "that read a scene have the\noptions above that say how it is read.\n";
   write_command<eval::EvaluateOptions>(
       "`photohull evaluate`", {"thresholds", "absolute", "samples", "seed", "min_views"}, out);
-  write_command<eval::PhotoOptions>("`photohull evaluate --photos`", {"least_angle", "window"},
-                                    out);
+  write_command<eval::PhotoOptions>("`photohull evaluate`: photographs that were held out",
+                                    {"least_angle", "window"}, out);
   write_command<PrepareOptions>("`photohull masks`", {"grabcut"}, out);
   write_command<RefineCamerasOptions>("`photohull refine-cameras`", {}, out);
   write_command<BoardSpec>("`photohull calibrate`: the board", {}, out);
