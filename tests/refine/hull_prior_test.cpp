@@ -64,7 +64,7 @@ TEST(PullToHull, WherePhotographsTellAroundTheHullHasNoSay) {
   const auto middle = [&](float weight_beside) {
     std::vector<Peak> peaks(3);
     peaks[0].weight = peaks[2].weight = weight_beside;
-    pull_to_hull(ball(), row, positions, {texture, trust}, {.told = 0.5}, peaks);
+    pull_to_hull(ball(), row, positions, {texture, trust}, {.evidence = 0.5}, peaks);
     return peaks[1];
   };
   EXPECT_GT(middle(0).weight, 2);
