@@ -63,7 +63,7 @@ void keep(const CheckpointFile& file, const Checkpoint& checkpoint, Progress& pr
 class SurfaceRefiner {
  public:
   SurfaceRefiner(RefineJob job, std::vector<GridSpec> grids, Progress& progress)
-      : job_(std::move(job)), grids_(std::move(grids)), progress_(progress) {}
+      : job_(job), grids_(std::move(grids)), progress_(progress) {}
 
   SparseVolume run(const CheckpointFile* checkpoint, RefineReport& report) {
     if (checkpoint) resume(*checkpoint, report);
@@ -216,7 +216,7 @@ SparseVolume refine_surface(gpu::Context& context, const RefineScene& scene,
       grids_to(scene.finest, scene.cameras, job.is_bounded(), options.levels);
   RefineReport counts;
   SparseVolume volume =
-      SurfaceRefiner(std::move(job), std::move(grids), progress).run(checkpoint, counts);
+      SurfaceRefiner(job, std::move(grids), progress).run(checkpoint, counts);
   if (report) *report = std::move(counts);
   return volume;
 }
