@@ -215,8 +215,7 @@ SparseVolume refine_surface(gpu::Context& context, const RefineScene& scene,
   std::vector<GridSpec> grids =
       grids_to(scene.finest, scene.cameras, job.is_bounded(), options.levels);
   RefineReport counts;
-  SparseVolume volume =
-      SurfaceRefiner(job, std::move(grids), progress).run(checkpoint, counts);
+  SparseVolume volume = SurfaceRefiner(job, std::move(grids), progress).run(checkpoint, counts);
   if (report) *report = std::move(counts);
   return volume;
 }
