@@ -16,8 +16,8 @@ namespace {
 // 0.34 at 54 to 72, 0.39 to 0.55 at 42 to 49, 0.76 and more below 13. Cut: at most 0.04 in right
 // boxes, 0.04 to 0.10 in those of 0.7 of the size, 0.13 to 0.31 in those of half of it. Bare: at
 // most 0.44 in right boxes with right cameras, 0.84 and more where F is below 6. From behind, on
-// bench/verdict_scenes.py, seed 1, and rendered scenes: at most 0.024 where F is above 91, 0.087 to
-// 0.119 at 68 to 78. Bare from within a room that lacks walls (72): 0.11.
+// `python3 -m bench verdict_scenes`, seed 1, and rendered scenes: at most 0.024 where F is above
+// 91, 0.087 to 0.119 at 68 to 78. Bare from within a room that lacks walls (72): 0.11.
 constexpr Limits kUnexplained{0.25, 0.7};  // of the places of which something is known
 constexpr Limits kBare{0.8, INFINITY};     // of all texture
 constexpr double kBehind = 0.08;           // of the surface in the photographs, from behind

@@ -20,9 +20,9 @@ constexpr Limits kUnseen{0.5, 0.8};           // of the surface
 constexpr Limits kAtBox{0.08, INFINITY};      // of the surface
 constexpr Limits kExcess{0.06, 0.3};          // of the surface's projection
 // Of the surface: texture that is not found again, and what else has little confidence. Fitted on
-// bench/verdict_scenes.py, seed 1 (docs/measurements/stability.md): at most 0.25 where F at 0.5 %
-// is above 95, 0.31 to 0.41 at 60 to 69. Rendered and real scenes of that quality have up to 0.26,
-// without silhouettes.
+// `python3 -m bench verdict_scenes`, seed 1 (docs/measurements/stability.md): at most 0.25 where F
+// at 0.5 % is above 95, 0.31 to 0.41 at 60 to 69. Rendered and real scenes of that quality have up
+// to 0.26, without silhouettes.
 constexpr Limits kUnconfirmed{0.27, INFINITY};
 constexpr double kUnsureWeight = 0.7;  // of what has little confidence, beside what is not found
 constexpr double kGoesOn = 0.15;       // of a hull's surface, beyond the box's sides

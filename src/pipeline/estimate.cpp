@@ -5,8 +5,8 @@
 namespace photohull::pipeline {
 namespace {
 
-// Fitted on the runs of docs/guide/limits.md by `bench/estimates.py --fit`; what faces cost stands
-// in the methods' entries. Bytes:
+// Fitted on the runs of docs/guide/limits.md by `python3 -m bench estimates --fit`; what faces cost
+// stands in the methods' entries. Bytes:
 constexpr double kBaseBytes = 305e6;  // libraries, the driver's compiler, batches of rays
 constexpr double kPixelBytes = 8;     // colour and coverage; around the box outlines and mip chain
 

@@ -58,7 +58,7 @@ std::vector<render::PooledEvidence> colour_surface(const SurfaceJob& job, TriMes
                                       ? render::Shaping::kSilhouettes
                                       : render::Shaping::kPhotographs;
   BakeReport baked =
-      bake_colour(job.context, job.subject.grid, {job.images, cameras, job.subject.noise_sigma},
+      bake_colour(job.context, job.subject.grid, {*job.images, cameras, job.subject.noise_sigma},
                   shaping, mesh, job.progress);
   const auto unseen = std::count(mesh.confidence.begin(), mesh.confidence.end(), 0.0f);
   findings.unseen_share = double(unseen) / double(mesh.confidence.size());

@@ -3,19 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
-#include <map>
 #include <utility>
 
 #include "carving/fit_grid.h"
 #include "core/error.h"
 #include "core/image_scale.h"
-#include "io/image_file.h"
 
 namespace photohull::pipeline {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr double kFewestPixels = 640.0 * 480.0;
 constexpr double kRounding = 1 + 1e-9;  // a voxel of exactly so many pixels has them

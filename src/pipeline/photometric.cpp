@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "core/describe.h"
 #include "core/error.h"
 #include "core/option_word.h"
 #include "views/photometric_check.h"

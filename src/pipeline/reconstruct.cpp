@@ -169,12 +169,11 @@ class Carver {
  private:
   SurfaceJob job() {
     return {run_.options, run_.photographs, subject_, *run_.context,
-            hull_,        *images_,         bounded_, run_.progress};
+            hull_,        images_.get(),    bounded_, run_.progress};
   }
 
   SparseVolume carve_surface() {
     SparseVolume hull = run_.clock.run("hull", Weights::kHull, [&] { return carve_hull(); });
-    run_.clock.count_samples(hull_.findings().samples);
     alike_ = any_mask(subject_.views);
     if (alike_) make_alike([&] { return make_alike_on_hull(photometric_job(), hull_, subject_); });
     forget_masks(run_.options, subject_.views);
@@ -190,7 +189,7 @@ class Carver {
     };
     if (method_.stage) {
       surface = run_.clock.run(method_.stage, method_.weight, work);
-      run_.clock.count_samples(surface.findings.samples);
+      run_.clock.count_samples(method_.stage, surface.findings.samples);
     } else {
       surface = work();
     }
@@ -249,7 +248,7 @@ class Carver {
     if (bounded_ || !has_surroundings(run_.options, subject_.box_found, subject_.views)) return {};
     Around around = run_.clock.run("surroundings", Weights::kSurroundings,
                                    [&] { return make_surroundings(job(), mesh, open); });
-    run_.clock.count_samples(around.samples);
+    run_.clock.count_samples("surroundings", around.samples);
     run_.report.surroundings = around.findings;
     return around;
   }
@@ -278,6 +277,7 @@ class Carver {
     run_.report.voxels_kept = std::int64_t(out.volume.inside_voxels());
     run_.report.bricks_stored = std::int64_t(out.volume.bricks.size());
     run_.report.hull = hull_.findings();
+    run_.clock.count_samples("hull", hull_.findings().samples);  // later stages carve hulls, too
     keep_only_preview_photograph(out.mesh, subject_.views);
     out.preview = run_.clock.run("preview", Weights::kPreview, [&] {
       return render_preview(*run_.context, out.mesh, subject_.views);

@@ -37,8 +37,11 @@ class StageClock {
   }
 
   const std::vector<StageTime>& stages() const { return stages_; }
-  /// Of the stage that ended last.
-  void count_samples(std::int64_t samples) { stages_.back().samples = samples; }
+  /// Of a stage that has ended.
+  void count_samples(const std::string& name, std::int64_t samples) {
+    for (StageTime& stage : stages_)
+      if (stage.name == name) stage.samples = samples;
+  }
 
  private:
   /// Notes the time from its construction to its end, whatever the work's result type is.

@@ -39,7 +39,7 @@ bool holds(const Box& a, const Box& b) { return a.contains(b.min) && a.contains(
 std::vector<float> colour(const SurfaceJob& job, const GridSpec& grid, TriMesh& mesh) {
   const std::vector<Camera> cameras = projtex::cameras_of(job.subject.views);
   std::vector<render::PooledEvidence> evidence =
-      bake_colour(job.context, grid, {job.images, cameras, job.subject.noise_sigma},
+      bake_colour(job.context, grid, {*job.images, cameras, job.subject.noise_sigma},
                   render::Shaping::kPhotographs, mesh, job.progress)
           .evidence;
   std::vector<float> views;

@@ -14,7 +14,8 @@ constexpr double kPriorDeviation = 0.1;  // between views that say nothing
 constexpr double kLeastFine = 1e-3;      // variance below which fine detail is none
 constexpr double kLeastDeviation = 0.01, kLeastScatter = 0.05;  // bend the logarithms
 
-// Fitted by `bench/fit_confidence.py` on half of the synthetic scenes (docs/guide/evaluate.md).
+// Fitted by `python3 -m bench fit_confidence` on half of the synthetic scenes
+// (docs/guide/evaluate.md).
 constexpr double kConstant = -6.55, kByDisagreement = -2.50, kByScatter = 0.61, kByShare = -1.74;
 constexpr double kSilhouettesOnly = -1.67;
 constexpr double kLeastConfidence = 1e-3;  // of what is seen

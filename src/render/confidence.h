@@ -39,7 +39,7 @@ std::vector<PooledEvidence> pool_evidence(const TriMesh& mesh,
 
 /// The chance that a vertex lies within a voxel of the true surface, in (0, 1); 0 where nobody sees
 /// it. A logistic function that falls with disagreement and share and rises with scatter, the
-/// same for all scenes [NiculescuMizilCaruana05]; fitted by bench/fit_confidence.py.
+/// same for all scenes [NiculescuMizilCaruana05]; fitted by `python3 -m bench fit_confidence`.
 double confidence_of(const PooledEvidence& evidence, Shaping shaping);
 
 }  // namespace photohull::render

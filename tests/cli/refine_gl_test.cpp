@@ -38,7 +38,11 @@ TEST_F(Refine, StagesAndResult) {
   EXPECT_EQ(r["options"]["method"], "refine");
   EXPECT_GT(r["hull"]["nodes_tested"], 0);
   std::vector<std::string> stages;
-  for (const json& stage : r["stages"]) stages.push_back(stage["name"]);
+  for (const json& stage : r["stages"]) {
+    stages.push_back(stage["name"]);
+    const bool looks = stage["name"] == "hull" || stage["name"] == "refine";
+    EXPECT_EQ(stage["samples"] > 0, looks) << stage["name"];
+  }
   EXPECT_THAT(stages, ElementsAre("scene", "device", "views", "cameras", "silhouettes", "hull",
                                   "photometric", "images", "refine", "clean", "mesh", "colour",
                                   "verdict", "preview", "files"));

@@ -25,8 +25,9 @@ struct SurfaceJob {
   const Subject& subject;
   gpu::Context& context;
   Hull& hull;
-  const projtex::ImageSet& images;  ///< of the subject's views
-  bool bounded = true;              ///< do silhouettes bound the surface?
+  const projtex::ImageSet*
+      images;           ///< of the subject's views; null once the surface has its colours
+  bool bounded = true;  ///< do silhouettes bound the surface?
   Progress& progress;
 };
 

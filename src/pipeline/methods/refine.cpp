@@ -104,7 +104,7 @@ Surface carve(const SurfaceJob& job, SparseVolume) {
   out.volume = refine::refine_surface(
       job.context,
       {job.subject.grid, [&](const GridSpec& grid) { return job.hull.carve(grid); }, silhouettes,
-       job.images, cameras},
+       *job.images, cameras},
       parameters_of(job).refine, job.progress, &counts, checkpoint ? &*checkpoint : nullptr);
   out.findings = findings_of(counts);
   check_found(job, out.volume, counts);
@@ -121,7 +121,7 @@ SparseVolume carve_around(const SurfaceJob& job, const AroundBox& around, std::i
   SparseVolume volume = refine::refine_surface(
       job.context,
       {around.grid, [&](const GridSpec& coarse) { return job.hull.carve_box(coarse, around.box); },
-       silhouettes, job.images, cameras},
+       silhouettes, *job.images, cameras},
       options, job.progress, &counts);
   samples += findings_of(counts).samples;
   return volume;

@@ -16,7 +16,7 @@ SparseVolume sweep(projtex::Sampler sampler, const SparseVolume& hull,
                    carving::PhotoReport& counts) {
   const std::vector<Camera> cameras = projtex::cameras_of(job.subject.views);
   if (sampler == projtex::Sampler::kMipmap)
-    return carving::carve_photo(job.context, hull, {job.images, cameras}, photo, job.progress,
+    return carving::carve_photo(job.context, hull, {*job.images, cameras}, photo, job.progress,
                                 &counts);
   const projtex::SampleImages sampled(job.subject.views, sampler);
   return carving::carve_photo(job.context, hull, {sampled, cameras}, photo, job.progress, &counts);
