@@ -1,6 +1,6 @@
-// What is carved: views with their silhouettes, the box and the lattice. The stages from the hull on
-// work with it. Only two change it: gains divide the photographs' pixels, and pixels and masks that
-// are not needed any more are freed.
+// What is carved: views with their silhouettes, the box and the lattice. The stages from the hull
+// on work with it. Only two change it: gains divide the photographs' pixels, and pixels and masks
+// that are not needed any more are freed.
 #pragma once
 
 #include <optional>
