@@ -43,15 +43,15 @@ Overlap overlap(const Mask& mask, const Mask& truth) {
 }
 
 /// A view's name without its ending: masks of a folder are found by it (docs/guide/masks.md).
-std::string stem_of(const View& view) { return fs::path(view.name).stem().string(); }
+std::string stem_of(const PreparedView& view) { return fs::path(view.name).stem().string(); }
 
 /// The file of each view's mask: called as the photograph, or where several photographs would share
 /// that name, with their folders and endings before .png.
-std::vector<fs::path> mask_files(const fs::path& folder, std::span<const View> views) {
+std::vector<fs::path> mask_files(const fs::path& folder, std::span<const PreparedView> views) {
   std::map<std::string, int> count;
-  for (const View& view : views) ++count[stem_of(view)];
+  for (const PreparedView& view : views) ++count[stem_of(view)];
   std::vector<fs::path> files;
-  for (const View& view : views) {
+  for (const PreparedView& view : views) {
     const bool alone = count[stem_of(view)] == 1;
     const fs::path name = alone ? fs::path(stem_of(view)) : fs::path(view.name).relative_path();
     files.push_back(folder / (name.string() + ".png"));
@@ -67,7 +67,7 @@ std::vector<Overlap> compare(const Arguments& a, const PreparedViews& prepared) 
   reading.load.mask_directory = *a.compare;
   const Scene truth = io::load_scene(reading.scene, reading.load);
   std::vector<Overlap> out;
-  for (const View& view : prepared.views) {
+  for (const PreparedView& view : prepared.views) {
     const auto same = std::find_if(truth.views.begin(), truth.views.end(),
                                    [&](const SourceView& v) { return v.name == view.name; });
     PHOTOHULL_CHECK(same != truth.views.end());
@@ -109,7 +109,7 @@ void print(const Arguments& a, const PreparedViews& prepared, const std::vector<
   std::printf("%-24s %-18s %10s %8s%s\n", "view", "mask from", "confidence", "object",
               known.empty() ? "" : "      IoU   missed");
   for (std::size_t i = 0; i < prepared.views.size(); ++i) {
-    const View& view = prepared.views[i];
+    const PreparedView& view = prepared.views[i];
     double object = 0;
     for (const std::uint8_t c : view.mask.coverage) object += c / 255.0;
     if (!view.mask.empty()) object /= double(view.mask.coverage.size());

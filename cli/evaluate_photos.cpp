@@ -80,7 +80,7 @@ pipeline::Photometric parse_photometric(const std::string& text) {
 std::string make_alike(pipeline::Photometric photometric, const TriMesh& mesh,
                        PreparedViews& prepared, const Progress& progress) {
   std::vector<double> noise;
-  for (const View& view : prepared.views) noise.push_back(estimate_image_noise(view.image));
+  for (const PreparedView& view : prepared.views) noise.push_back(estimate_image_noise(view.image));
   std::nth_element(noise.begin(), noise.begin() + long(noise.size() / 2), noise.end());
   const pipeline::PhotometricOutcome found = pipeline::correct_photometric(
       photometric, mesh, mean_edge(mesh), noise[noise.size() / 2], prepared.views, progress);
@@ -88,7 +88,7 @@ std::string make_alike(pipeline::Photometric photometric, const TriMesh& mesh,
   return found.line;
 }
 
-void write_picture(AtomicFile& file, const std::string& mesh_name, const View& view,
+void write_picture(AtomicFile& file, const std::string& mesh_name, const PreparedView& view,
                    const eval::PhotoMaps& maps, const eval::PhotoScore& score) {
   char figures[64];
   std::snprintf(figures, sizeof figures, "ZNCC %.3f", score.zncc().value_or(0));

@@ -1,7 +1,7 @@
 #version 450 core
 #extension GL_GOOGLE_include_directive : require
-// Plane sweep, step 3: photo-consistency of the selected voxels, by the statistic that CONSISTENCY_...
-// chooses over the patches around the voxel on the reference plane, of the views that see the voxel
+// Plane sweep, step 3: photo-consistency of the selected voxels, by a statistic
+// over the patches around the voxel on the reference plane, of the views that see the voxel
 // [KutulakosSeitz00]. Normalised cross-correlation unless another is chosen. One thread a selected
 // column. References: those of the statistics.
 #include "include/dispatch.glsl"
@@ -14,19 +14,8 @@
 #include "include/search_patches.glsl"
 #endif
 
-#if defined(CONSISTENCY_GAIN_VARIANCE)
-#include "include/consistency_gain_variance.glsl"
-#elif defined(CONSISTENCY_ADAPTIVE_VARIANCE)
-#include "include/consistency_adaptive_variance.glsl"
-#elif defined(CONSISTENCY_ROBUST_VARIANCE)
-#include "include/consistency_robust_variance.glsl"
-#elif defined(CONSISTENCY_HISTOGRAM)
-#include "include/consistency_histogram.glsl"
-#elif defined(CONSISTENCY_CENSUS)
-#include "include/consistency_census.glsl"
-#else
+// The correlation, or the statistic that the host names instead (carving/statistic.h).
 #include "include/consistency_zncc.glsl"
-#endif
 
 layout(local_size_x = 64) in;
 // Per selected column: x: score in [-1, 1]; y: views used; z: confidence; w: views that see it, by their shares

@@ -70,8 +70,8 @@ struct Eye {
 
 class Explainer {
  public:
-  Explainer(const TriMesh& mesh, const RayScene& rays, const Box& box, std::span<const View> views,
-            const ExplainOptions& options)
+  Explainer(const TriMesh& mesh, const RayScene& rays, const Box& box,
+            std::span<const PreparedView> views, const ExplainOptions& options)
       : mesh_(mesh),
         rays_(rays),
         box_(box),
@@ -292,7 +292,7 @@ class Explainer {
   const TriMesh& mesh_;
   const RayScene& rays_;
   const Box& box_;
-  std::span<const View> views_;
+  std::span<const PreparedView> views_;
   bool surface_alone_;
   double spacing_;  ///< pixels
   double least_deviation_;
@@ -338,7 +338,7 @@ double Explained::share_textured(Place place) const {
 }
 
 Explained explain_photographs(const TriMesh& mesh, const RayScene& rays, const Box& box,
-                              std::span<const View> views, const ExplainOptions& options) {
+                              std::span<const PreparedView> views, const ExplainOptions& options) {
   PHOTOHULL_CHECK(options.voxel_size > 0 && options.pixel_size > 0);
   const Explainer explainer(mesh, rays, box, views, options);
   Explained out;

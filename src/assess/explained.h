@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/box.h"
-#include "core/image.h"
 #include "core/mesh.h"
+#include "core/prepared_view.h"
 #include "raycast/ray_scene.h"
 
 namespace photohull::assess {
@@ -84,6 +84,6 @@ struct ExplainOptions {
 /// The mesh needs triangles and normals. Equal input gives equal output, whatever the number of
 /// threads.
 Explained explain_photographs(const TriMesh& mesh, const RayScene& rays, const Box& box,
-                              std::span<const View> views, const ExplainOptions& options);
+                              std::span<const PreparedView> views, const ExplainOptions& options);
 
 }  // namespace photohull::assess

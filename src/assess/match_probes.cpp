@@ -90,8 +90,8 @@ struct ProbeResult {
 
 class Matcher {
  public:
-  Matcher(std::span<const View> views, std::span<const SilhouetteDistance* const> silhouettes,
-          const MatchOptions& options)
+  Matcher(std::span<const PreparedView> views,
+          std::span<const SilhouetteDistance* const> silhouettes, const MatchOptions& options)
       : views_(views), silhouettes_(silhouettes), options_(options), grey_(views.size()) {
     tbb::parallel_for(std::size_t(0), views.size(),
                       [&](std::size_t i) { grey_[i] = smoothed(grey_image(views[i].image)); });
@@ -175,7 +175,7 @@ class Matcher {
     return match;
   }
 
-  std::span<const View> views_;
+  std::span<const PreparedView> views_;
   std::span<const SilhouetteDistance* const> silhouettes_;
   const MatchOptions& options_;
   std::vector<GreyImage> grey_;
@@ -239,7 +239,8 @@ void sum_up_cameras(std::span<const ProbeResult> results, std::size_t views,
 
 }  // namespace
 
-MatchEvidence match_probes(std::span<const SurfaceProbe> probes, std::span<const View> views,
+MatchEvidence match_probes(std::span<const SurfaceProbe> probes,
+                           std::span<const PreparedView> views,
                            std::span<const SilhouetteDistance* const> silhouettes,
                            const MatchOptions& options) {
   const Matcher matcher(views, silhouettes, options);

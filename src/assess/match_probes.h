@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "assess/surface_probes.h"
-#include "core/image.h"
+#include "core/prepared_view.h"
 #include "core/silhouette.h"
 
 namespace photohull::assess {
@@ -50,7 +50,8 @@ struct MatchOptions {
 /// agree, where a pixel of both views is below `coarsest` at the probe. Patches that reach over the
 /// silhouette (where views have one) are left out. `silhouettes` holds a distance or nullptr for
 /// each view.
-MatchEvidence match_probes(std::span<const SurfaceProbe> probes, std::span<const View> views,
+MatchEvidence match_probes(std::span<const SurfaceProbe> probes,
+                           std::span<const PreparedView> views,
                            std::span<const SilhouetteDistance* const> silhouettes,
                            const MatchOptions& options);
 

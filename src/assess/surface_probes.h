@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/camera.h"
 #include "core/image.h"
 #include "core/mesh.h"
 #include "core/silhouette.h"

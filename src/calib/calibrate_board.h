@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/camera.h"
 #include "core/describe.h"
 #include "core/image.h"
 

@@ -14,12 +14,12 @@ constexpr int kFewestPairs = 3;
 
 }  // namespace
 
-CameraDiagnosis diagnose_cameras(std::span<const View> views, const std::optional<Box>& box,
+CameraDiagnosis diagnose_cameras(std::span<const PreparedView> views, const std::optional<Box>& box,
                                  Progress& progress) {
   using namespace diagnosis;
   CameraDiagnosis d;
   Cameras cameras;
-  for (const View& view : views) cameras.push_back(view.camera);
+  for (const PreparedView& view : views) cameras.push_back(view.camera);
   const std::vector<PairMatches> matches =
       match_without_cameras(views, pairs_to_match(cameras), progress);
   progress.update(0.4);
@@ -67,7 +67,8 @@ CameraDiagnosis diagnose_cameras(std::span<const View> views, const std::optiona
   return d;
 }
 
-std::vector<ViewFit> fit_silhouettes(std::span<const Camera> cameras, std::span<const View> views) {
+std::vector<ViewFit> fit_silhouettes(std::span<const Camera> cameras,
+                                     std::span<const PreparedView> views) {
   return fit_silhouettes(cameras, outlines_of(views));
 }
 
@@ -82,7 +83,8 @@ std::vector<ViewFit> fit_silhouettes(std::span<const Camera> cameras,
   return fits;
 }
 
-std::vector<double> outlines_off(std::span<const Camera> cameras, std::span<const View> views) {
+std::vector<double> outlines_off(std::span<const Camera> cameras,
+                                 std::span<const PreparedView> views) {
   return outlines_off(fit_silhouettes(cameras, views));
 }
 

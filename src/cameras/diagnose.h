@@ -9,7 +9,7 @@
 
 #include "cameras/frontier.h"
 #include "core/box.h"
-#include "core/image.h"
+#include "core/prepared_view.h"
 #include "core/progress.h"
 
 namespace photohull {
@@ -87,13 +87,14 @@ struct CameraDiagnosis {
 /// tangents (frontier_pairs), and whether the box is where matched points are. The shift's standard
 /// deviation comes from leaving out one view after the other (the jackknife). Views are
 /// undistorted. Costs about half a second a view. Throws Cancelled.
-CameraDiagnosis diagnose_cameras(std::span<const View> views, const std::optional<Box>& box,
+CameraDiagnosis diagnose_cameras(std::span<const PreparedView> views, const std::optional<Box>& box,
                                  Progress& progress);
 
 /// Each view's silhouette against the others', by the tangents that planes through two cameras
 /// have in common (frontier_pairs). Needs no texture, and a tenth of a second.
 /// `cameras`: one for each view, in place of the view's own.
-std::vector<ViewFit> fit_silhouettes(std::span<const Camera> cameras, std::span<const View> views);
+std::vector<ViewFit> fit_silhouettes(std::span<const Camera> cameras,
+                                     std::span<const PreparedView> views);
 /// The same, of outlines that are known (outlines_of).
 std::vector<ViewFit> fit_silhouettes(std::span<const Camera> cameras,
                                      std::span<const Outline> outlines);
@@ -106,7 +107,8 @@ inline constexpr double kSuspiciousTangents = 0.25;
 /// than a quarter are, nobody can say who is right, and all are 0. A shift d
 /// moves a tangent by d |cos a|, where a is the angle between the shift and the tangent's normal;
 /// the median over all directions is d / sqrt(2).
-std::vector<double> outlines_off(std::span<const Camera> cameras, std::span<const View> views);
+std::vector<double> outlines_off(std::span<const Camera> cameras,
+                                 std::span<const PreparedView> views);
 /// The same, of fits that are known (fit_silhouettes).
 std::vector<double> outlines_off(std::span<const ViewFit> fits);
 

@@ -62,7 +62,7 @@ BoxFit fit_box(const Cameras& cameras, const std::vector<PairMatches>& matches, 
 
 // Faults and notes in words.
 void describe_readings(CameraDiagnosis& d);
-void describe_views(std::span<const View> views, CameraDiagnosis& d);
+void describe_views(std::span<const PreparedView> views, CameraDiagnosis& d);
 void describe_pixel_centre(CameraDiagnosis& d);
 void describe_box(std::size_t views, CameraDiagnosis& d);
 

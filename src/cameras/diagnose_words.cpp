@@ -77,7 +77,7 @@ void describe_readings(CameraDiagnosis& d) {
                               percent(best.explained), ": they are wrong in another way"));
 }
 
-void describe_views(std::span<const View> views, CameraDiagnosis& d) {
+void describe_views(std::span<const PreparedView> views, CameraDiagnosis& d) {
   int unknown = 0;
   for (std::size_t i = 0; i < views.size(); ++i) {
     const ViewFit& fit = d.views[i];

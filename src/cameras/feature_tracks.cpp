@@ -29,7 +29,7 @@ struct Match {
 };
 
 /// Pairs of views that see about the same: each view with those of the most similar direction.
-std::vector<std::pair<int, int>> neighbour_pairs(std::span<const View> views,
+std::vector<std::pair<int, int>> neighbour_pairs(std::span<const PreparedView> views,
                                                  const TrackOptions& options) {
   const double least = std::cos(options.largest_angle * std::numbers::pi / 180);
   std::vector<std::pair<int, int>> pairs;
@@ -142,8 +142,9 @@ std::optional<PatchPlace> place_in(const Camera& a, const glm::dvec2& pixel, con
 }
 
 /// Features of neighbouring views that are each other's best matches.
-std::vector<Match> match_all(std::span<const View> views, const std::vector<Features>& features,
-                             const TrackOptions& options, Progress& progress) {
+std::vector<Match> match_all(std::span<const PreparedView> views,
+                             const std::vector<Features>& features, const TrackOptions& options,
+                             Progress& progress) {
   const std::vector<std::pair<int, int>> pairs =
       options.pairs.empty() ? neighbour_pairs(views, options) : options.pairs;
   std::vector<std::vector<Match>> found(pairs.size());
@@ -182,7 +183,7 @@ void remove_repeated(std::span<const Track> given, std::vector<Track>& found) {
 }
 
 /// Aligns the other views' patches to that of the view in the middle; those that do not agree go.
-void polish(std::span<const View> views, std::span<const Camera> cameras,
+void polish(std::span<const PreparedView> views, std::span<const Camera> cameras,
             const std::vector<Features>& features, const TrackOptions& options, Track& track) {
   constexpr double kFarthest = 3;  // pixels from the feature found
   std::vector<Observation>& o = track.observations;
@@ -215,7 +216,7 @@ void polish(std::span<const View> views, std::span<const Camera> cameras,
 
 }  // namespace
 
-std::vector<Track> find_tracks(std::span<const View> views, const TrackOptions& options,
+std::vector<Track> find_tracks(std::span<const PreparedView> views, const TrackOptions& options,
                                Progress& progress, std::span<const Track> given, bool search) {
   std::vector<Features> features(views.size());
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
@@ -234,7 +235,7 @@ std::vector<Track> find_tracks(std::span<const View> views, const TrackOptions& 
   }
   progress.update(0.8);
   std::vector<Camera> cameras;
-  for (const View& view : views) cameras.push_back(view.camera);
+  for (const PreparedView& view : views) cameras.push_back(view.camera);
   tbb::parallel_for(std::size_t(0), tracks.size(), [&](std::size_t t) {
     if (!progress.cancelled()) polish(views, cameras, features, options, tracks[t]);
   });
@@ -243,7 +244,7 @@ std::vector<Track> find_tracks(std::span<const View> views, const TrackOptions& 
   return tracks;
 }
 
-std::vector<Track> undistorted_tracks(const Scene& scene, std::span<const View> views) {
+std::vector<Track> undistorted_tracks(const Scene& scene, std::span<const PreparedView> views) {
   PHOTOHULL_CHECK_OP(scene.views.size(), ==, views.size());
   std::vector<Track> tracks;
   for (const SceneTrack& given : scene.tracks) {

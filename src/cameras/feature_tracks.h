@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/image.h"
+#include "core/prepared_view.h"
 #include "core/progress.h"
 #include "core/scene.h"
 
@@ -40,11 +40,11 @@ struct TrackOptions {
 /// `given`: tracks that another program found, in pixels of the views; aligned in the same way, and
 /// those that do not agree dropped. With `search` false there are no others; else found ones that
 /// repeat a given one are left out.
-std::vector<Track> find_tracks(std::span<const View> views, const TrackOptions& options,
+std::vector<Track> find_tracks(std::span<const PreparedView> views, const TrackOptions& options,
                                Progress& progress, std::span<const Track> given = {},
                                bool search = true);
 
 /// The scene's own tracks in pixels of its undistorted views.
-std::vector<Track> undistorted_tracks(const Scene& scene, std::span<const View> views);
+std::vector<Track> undistorted_tracks(const Scene& scene, std::span<const PreparedView> views);
 
 }  // namespace photohull

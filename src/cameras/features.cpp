@@ -7,7 +7,7 @@
 
 namespace photohull {
 
-Features detect_features(const View& view, int count) {
+Features detect_features(const PreparedView& view, int count) {
   // Its image is doubled first, which in this version of OpenCV moves it by a quarter pixel.
   constexpr double kShift = 0.25;
   constexpr double kContrast = 0.01;  // low, for plain surfaces: matches are checked in many ways

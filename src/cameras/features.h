@@ -4,7 +4,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "core/image.h"
+#include "core/prepared_view.h"
 #include "photo/align_patch.h"
 
 namespace photohull {
@@ -16,6 +16,6 @@ struct Features {
 };
 
 /// The `count` strongest features, on the object where the view has a mask.
-Features detect_features(const View& view, int count);
+Features detect_features(const PreparedView& view, int count);
 
 }  // namespace photohull

@@ -52,7 +52,7 @@ PairMatches match(const Features& a, const Features& b, int view_a, int view_b) 
 
 }  // namespace
 
-std::vector<PairMatches> match_without_cameras(std::span<const View> views,
+std::vector<PairMatches> match_without_cameras(std::span<const PreparedView> views,
                                                std::span<const std::pair<int, int>> pairs,
                                                Progress& progress) {
   std::vector<Features> features(views.size());

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/image.h"
+#include "core/prepared_view.h"
 #include "core/progress.h"
 
 namespace photohull {
@@ -19,7 +19,7 @@ struct PairMatches {
 /// SIFT features [Lowe04] that are each other's nearest, as far as some fundamental matrix has them
 /// on its epipolar lines [Hartley04, chapter 11]: the views' poses are not used. Pairs where that
 /// leaves fewer than 16 matches, or fewer than half of them, do not appear. Throws Cancelled.
-std::vector<PairMatches> match_without_cameras(std::span<const View> views,
+std::vector<PairMatches> match_without_cameras(std::span<const PreparedView> views,
                                                std::span<const std::pair<int, int>> pairs,
                                                Progress& progress);
 

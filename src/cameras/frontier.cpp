@@ -127,7 +127,7 @@ Outline outline_of(const Mask& mask, std::span<const LinePoint> lines) {
   return {convex_hull(std::move(points)), mask.width, mask.height};
 }
 
-std::vector<Outline> outlines_of(std::span<const View> views) {
+std::vector<Outline> outlines_of(std::span<const PreparedView> views) {
   std::vector<Outline> outlines(views.size());
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
     if (!views[i].mask.empty()) outlines[i] = outline_of(views[i].mask);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/image.h"
+#include "core/prepared_view.h"
 #include "core/silhouette.h"
 
 namespace photohull {
@@ -21,7 +22,7 @@ Outline outline_of(const Mask& mask);
 /// `lines`: of the mask (find_lines).
 Outline outline_of(const Mask& mask, std::span<const LinePoint> lines);
 /// One for each view, empty where it has no mask.
-std::vector<Outline> outlines_of(std::span<const View> views);
+std::vector<Outline> outlines_of(std::span<const PreparedView> views);
 
 /// Where a tangent plane through two cameras touches each one's silhouette.
 struct FrontierPair {

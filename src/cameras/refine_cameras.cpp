@@ -50,7 +50,7 @@ std::vector<T> some(const std::vector<T>& list, std::size_t most) {
 class CameraRefiner {
  public:
   /// `given`: what the result is compared with, and held near to; `start`: where it begins.
-  CameraRefiner(std::span<const View> views, Cameras given, Cameras start,
+  CameraRefiner(std::span<const PreparedView> views, Cameras given, Cameras start,
                 const RefineCamerasOptions& options, std::vector<Track> tracks, Progress& progress)
       : options_(options),
         progress_(progress),
@@ -284,7 +284,7 @@ class CameraRefiner {
 };
 
 /// Patches of the surface of the hull that these cameras cut.
-std::vector<Track> hull_patches(const Cameras& cameras, std::span<const View> views,
+std::vector<Track> hull_patches(const Cameras& cameras, std::span<const PreparedView> views,
                                 std::span<const GreyImage> images, const Box& box,
                                 Progress& progress) {
   constexpr int kCells = 96, kPoints = 4000;
@@ -307,15 +307,15 @@ std::vector<Track> joined(std::vector<Track> a, const std::vector<Track>& b) {
 
 }  // namespace
 
-CameraRefinement refine_cameras(std::span<const View> views, const RefineCamerasOptions& options,
-                                Progress& progress) {
+CameraRefinement refine_cameras(std::span<const PreparedView> views,
+                                const RefineCamerasOptions& options, Progress& progress) {
   if (views.size() < 3)
     throw Error(
         concat("cameras are refined against each other, which needs three views or more; "
                "there are ",
                views.size()));
   Cameras given;
-  for (const View& view : views) given.push_back(view.camera);
+  for (const PreparedView& view : views) given.push_back(view.camera);
   std::span<const Track> others;
   if (options.source != TrackSource::kFound) others = options.given;
   const std::vector<Track> features =
@@ -350,9 +350,9 @@ CameraRefinement refine_cameras(std::span<const View> views, const RefineCameras
   return result;
 }
 
-double tangent_disagreement(std::span<const View> views) {
+double tangent_disagreement(std::span<const PreparedView> views) {
   Cameras cameras;
-  for (const View& view : views) cameras.push_back(view.camera);
+  for (const PreparedView& view : views) cameras.push_back(view.camera);
   return tangent_disagreement(cameras, outlines_of(views));
 }
 

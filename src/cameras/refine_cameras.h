@@ -77,13 +77,13 @@ struct CameraRefinement {
 /// error of what all views share, kWhereAlike takes the latter if by the Bayesian information
 /// criterion [Schwarz78] it spares the poses enough motion. Views are undistorted. Throws
 /// Cancelled, and Error for fewer than three views.
-CameraRefinement refine_cameras(std::span<const View> views, const RefineCamerasOptions& options,
-                                Progress& progress);
+CameraRefinement refine_cameras(std::span<const PreparedView> views,
+                                const RefineCamerasOptions& options, Progress& progress);
 
 /// Median distance in pixels of the outlines' tangents from each other's epipolar lines, over all
 /// pairs of views with masks (frontier_pairs); NaN where there is no pair. Says in some hundredths
 /// of a second whether refine_cameras may pay.
-double tangent_disagreement(std::span<const View> views);
+double tangent_disagreement(std::span<const PreparedView> views);
 /// The same, of outlines that are known (outlines_of).
 double tangent_disagreement(std::span<const Camera> cameras, std::span<const Outline> outlines);
 

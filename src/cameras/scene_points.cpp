@@ -20,7 +20,7 @@ constexpr double kLargestTurn = 60;               // degrees between the axes of
 constexpr int kRanks[] = {0, 1, 2, 3, 5, 8, 12};  // of the neighbours by distance: gaps grow
 
 /// Pairs of views that may show the same, ascending.
-std::vector<std::pair<int, int>> neighbours(std::span<const View> views) {
+std::vector<std::pair<int, int>> neighbours(std::span<const PreparedView> views) {
   std::vector<std::pair<int, int>> pairs;
   for (int i = 0; i < int(views.size()); ++i) {
     const Camera& camera = views[std::size_t(i)].camera;
@@ -55,13 +55,13 @@ bool is_sure(std::span<const Camera> cameras, const Track& track, const glm::dve
 
 }  // namespace
 
-std::vector<ScenePoint> find_scene_points(std::span<const View> views, Progress& progress) {
+std::vector<ScenePoint> find_scene_points(std::span<const PreparedView> views, Progress& progress) {
   TrackOptions options;
   options.features = kFeatures;
   options.epipolar = kEpipolar;
   options.pairs = neighbours(views);
   std::vector<Camera> cameras;
-  for (const View& view : views) cameras.push_back(view.camera);
+  for (const PreparedView& view : views) cameras.push_back(view.camera);
   std::vector<ScenePoint> points;
   for (const Track& track : find_tracks(views, options, progress)) {
     const auto point = triangulate(cameras, track);

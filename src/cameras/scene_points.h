@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/image.h"
+#include "core/prepared_view.h"
 #include "core/progress.h"
 
 namespace photohull {
@@ -22,6 +22,6 @@ struct ScenePoint {
 /// that look the same way within 60 degrees, with gaps that grow, so that views of a video find
 /// partners at a distance, too. Meant for reduced photographs: the time grows with their pixels.
 /// Same result whatever the number of threads. Throws Cancelled.
-std::vector<ScenePoint> find_scene_points(std::span<const View> views, Progress& progress);
+std::vector<ScenePoint> find_scene_points(std::span<const PreparedView> views, Progress& progress);
 
 }  // namespace photohull

@@ -14,7 +14,8 @@ namespace {
 /// Occupied voxels of a visual hull, x fastest.
 class Hull {
  public:
-  Hull(std::span<const Camera> cameras, std::span<const View> views, const Box& box, int cells) {
+  Hull(std::span<const Camera> cameras, std::span<const PreparedView> views, const Box& box,
+       int cells) {
     const glm::dvec3 size = box.max - box.min;
     step_ = std::max({size.x, size.y, size.z}) / cells;
     for (int i = 0; i < 3; ++i) n_[i] = std::max(1, int(std::ceil(size[i] / step_)));
@@ -44,7 +45,7 @@ class Hull {
 
  private:
   /// The outline at one half: lines do not count, for patches need surface several pixels wide.
-  static bool is_filled(std::span<const Camera> cameras, std::span<const View> views,
+  static bool is_filled(std::span<const Camera> cameras, std::span<const PreparedView> views,
                         const glm::dvec3& p) {
     constexpr int kEnough = 2;
     int background = 0, seen = 0;
@@ -217,10 +218,11 @@ std::optional<PatchPlace> place_on_plane(const Camera& a, const glm::dvec2& pixe
   return PatchPlace{*middle, glm::dmat2(*x - *middle, *y - *middle)};
 }
 
-std::vector<SurfacePoint> hull_points(std::span<const Camera> cameras, std::span<const View> views,
-                                      const Box& box, int cells, int count) {
-  const bool masks =
-      std::any_of(views.begin(), views.end(), [](const View& v) { return !v.mask.empty(); });
+std::vector<SurfacePoint> hull_points(std::span<const Camera> cameras,
+                                      std::span<const PreparedView> views, const Box& box,
+                                      int cells, int count) {
+  const bool masks = std::any_of(views.begin(), views.end(),
+                                 [](const PreparedView& v) { return !v.mask.empty(); });
   if (!masks) return {};
   const std::vector<SurfacePoint> all = Hull(cameras, views, box, cells).surface();
   std::vector<SurfacePoint> chosen;

@@ -18,8 +18,9 @@ struct SurfacePoint {
 /// Points spread over the visual hull [Laurentini94] of the views' masks by these cameras, within
 /// the box, on a grid of `cells` along its longest side; at most `count`. A voxel is empty when two
 /// views see background there, or when no view with a mask sees it. None without masks.
-std::vector<SurfacePoint> hull_points(std::span<const Camera> cameras, std::span<const View> views,
-                                      const Box& box, int cells, int count);
+std::vector<SurfacePoint> hull_points(std::span<const Camera> cameras,
+                                      std::span<const PreparedView> views, const Box& box,
+                                      int cells, int count);
 
 struct PatchOptions {
   int radius = 11;               ///< pixels: larger than a feature's, for faint structure

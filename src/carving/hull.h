@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/camera.h"
 #include "core/grid.h"
 #include "core/image.h"
 #include "core/progress.h"

@@ -116,9 +116,9 @@ std::optional<Box> tighter(const Box& box, const std::vector<CameraSilhouette>& 
 
 }  // namespace
 
-bool box_is_oversized(const Box& box, std::span<const View> views) {
+bool box_is_oversized(const Box& box, std::span<const PreparedView> views) {
   int masked = 0, small = 0;
-  for (const View& view : views) {
+  for (const PreparedView& view : views) {
     if (view.mask.empty()) continue;
     ++masked;
     small += foreground_size(with_lines(view.mask)) < kFilled * picture_size(box, view.camera);
@@ -127,9 +127,9 @@ bool box_is_oversized(const Box& box, std::span<const View> views) {
   return masked > 0 && 2 * small > masked;
 }
 
-Box object_box(const Box& box, std::span<const View> views) {
+Box object_box(const Box& box, std::span<const PreparedView> views) {
   std::vector<CameraSilhouette> silhouettes;
-  for (const View& view : views)
+  for (const PreparedView& view : views)
     if (!view.mask.empty())
       silhouettes.push_back({&view.camera, silhouette_distance(with_lines(view.mask))});
   if (silhouettes.size() < 2) return box;

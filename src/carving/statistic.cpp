@@ -9,13 +9,10 @@
 namespace photohull::carving {
 
 std::span<const StatisticEntry> statistic_entries() {
+  using namespace reference;
   static constexpr StatisticEntry kEntries[] = {
-      {Statistic::kZncc, "zncc", nullptr},
-      {Statistic::kGainVariance, "gain-variance", reference::gain_variance},
-      {Statistic::kAdaptiveVariance, "adaptive-variance", reference::adaptive_variance},
-      {Statistic::kRobustVariance, "robust-variance", reference::robust_variance},
-      {Statistic::kHistogram, "histogram", reference::histogram_consistency},
-      {Statistic::kCensus, "census", reference::census},
+#define PHOTOHULL_STATISTIC(value, name, of_patches) {Statistic::value, name, of_patches},
+#include "carving/statistics.def"
   };
   return kEntries;
 }
@@ -35,7 +32,8 @@ const StatisticEntry& entry_of(Statistic statistic) {
 const char* to_string(Statistic statistic) { return entry_of(statistic).name; }
 
 std::string statistic_defines(Statistic statistic, bool coverage) {
-  return gpu::define("CONSISTENCY_", to_string(statistic)) +
+  return gpu::include_instead("include/consistency_zncc.glsl",
+                              concat("include/consistency_", to_string(statistic), ".glsl")) +
          (coverage ? gpu::define("SAMPLE_", "coverage") : "");
 }
 

@@ -2,12 +2,8 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
+#include <glm/glm.hpp>
 #include <vector>
-
-#include "core/camera.h"
-#include "core/scene.h"
-#include "core/silhouette.h"
 
 namespace photohull {
 
@@ -36,30 +32,6 @@ struct Mask {
   std::vector<std::uint8_t> coverage;  ///< width * height
 
   bool empty() const { return coverage.empty(); }
-};
-
-/// What carving goes by of a view. Without a mask all of it is empty.
-struct ViewSilhouette {
-  SilhouetteDistance distance;   ///< of `widened` where there is one, else of the mask
-  std::vector<LinePoint> lines;  ///< parts of the mask narrower than about two pixels
-  /// The mask with room around its lines and its outline, and with what other views put into it;
-  /// empty where nothing changed.
-  Mask widened;
-  /// Coverage is the chance that the object is there (masks that were made from the background),
-  /// not the share of a pixel.
-  bool likelihood = false;
-};
-
-/// A photograph ready for carving: undistorted, with its mask.
-struct View {
-  std::string name;
-  Camera camera;  ///< pinhole; intrinsics match the image's size
-  ColourImage image;
-  Mask mask;
-  /// Share of fine detail beside views of the same (views/sharpness.h): 1 as sharp as they are.
-  double sharpness = 1;
-  SourceView source{};  ///< the photograph as the scene lists it, at the scale that it was read at
-  ViewSilhouette silhouette{};
 };
 
 /// sRGB transfer function (IEC 61966-2-1), encoded value in [0, 1] to linear light and back.

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/image.h"
+#include "core/prepared_view.h"
 
 namespace photohull {
 
@@ -26,7 +26,7 @@ struct MaskJudgement {
 ///  - mask coverage of unknown pixels is 255: what was not photographed must not be carved.
 ///  - without masks, `mask.empty()`.
 struct PreparedViews {
-  std::vector<View> views;
+  std::vector<PreparedView> views;
   std::string mask_source;  ///< "mask files", "alpha channels", "background model", "none", ...
   std::vector<MaskJudgement> masks;
   double mask_confidence = 0;  ///< [0, 1]: the least of the views' that have masks, 0 without masks

@@ -47,7 +47,7 @@ struct PanelColours {
   glm::dvec3 photo, prediction, difference, agreement;
 };
 
-PanelColours colours_at(const View& view, const PhotoMaps& maps, int x, int y) {
+PanelColours colours_at(const PreparedView& view, const PhotoMaps& maps, int x, int y) {
   const std::size_t i = std::size_t(y) * std::size_t(maps.prediction.width) + std::size_t(x);
   const PixelState state = maps.prediction.state[i];
   const glm::vec3 photo(view.image.linear(x, y)), predicted(maps.prediction.colour[i]);
@@ -75,7 +75,8 @@ void draw_text(cv::Mat& image, const std::string& text, int x, int baseline) {
 
 }  // namespace
 
-ErrorImage draw_agreement(const View& view, const PhotoMaps& maps, const std::string& title) {
+ErrorImage draw_agreement(const PreparedView& view, const PhotoMaps& maps,
+                          const std::string& title) {
   PHOTOHULL_CHECK_OP(view.image.width, ==, maps.prediction.width);
   PHOTOHULL_CHECK_OP(view.image.height, ==, maps.prediction.height);
   const cv::Rect frame = frame_of(maps);

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/image.h"
+#include "core/prepared_view.h"
 #include "eval/error_image.h"
 #include "eval/photo_agreement.h"
 
@@ -14,6 +14,7 @@ namespace photohull::eval {
 /// too bright, blue: too dark, full at 0.2 of the square root of linear light; green: the mesh does
 /// not cover the foreground, yellow: it covers background); the ZNCC of the windows (white 1, black
 /// 0 and below; slate where nothing is judged). `title` is ASCII. `view` is the one of the maps.
-ErrorImage draw_agreement(const View& view, const PhotoMaps& maps, const std::string& title);
+ErrorImage draw_agreement(const PreparedView& view, const PhotoMaps& maps,
+                          const std::string& title);
 
 }  // namespace photohull::eval

@@ -66,7 +66,7 @@ bool is_known(const ColourImage& image, std::size_t i) {
 }
 
 /// Pixels that the mask covers by half or more, of those that were photographed.
-std::vector<std::uint8_t> foreground_of(const View& view, PhotoScore& score) {
+std::vector<std::uint8_t> foreground_of(const PreparedView& view, PhotoScore& score) {
   std::vector<std::uint8_t> out(std::size_t(view.image.width) * std::size_t(view.image.height), 0);
   score.masked = !view.mask.empty();
   add_rows(view.image, score, [&](std::size_t first, std::size_t last, PhotoScore& row) {
@@ -86,7 +86,7 @@ glm::vec3 encoded(const glm::vec3& linear) {
 }
 
 /// Coverage of the photograph by the prediction and the difference of their colours.
-void count_pixels(const View& view, const PhotoMaps& maps, PhotoScore& score) {
+void count_pixels(const PreparedView& view, const PhotoMaps& maps, PhotoScore& score) {
   add_rows(view.image, score, [&](std::size_t first, std::size_t last, PhotoScore& row) {
     for (std::size_t i = first; i < last; ++i) {
       const PixelState state = maps.prediction.state[i];
@@ -104,7 +104,7 @@ void count_pixels(const View& view, const PhotoMaps& maps, PhotoScore& score) {
   });
 }
 
-PicturePair pair_of(const View& view, const PhotoMaps& maps) {
+PicturePair pair_of(const PreparedView& view, const PhotoMaps& maps) {
   PicturePair pair{view.image.width, view.image.height, {}, {}, maps.foreground, {}};
   const std::size_t size = maps.foreground.size();
   pair.photo.resize(size), pair.prediction.resize(size), pair.predicted.resize(size);
@@ -126,7 +126,7 @@ void add_scores(const PhotoMaps& maps, PhotoScore& score) {
   }
 }
 
-PhotoScore judge_view(const View& view, const PhotoOptions& options,
+PhotoScore judge_view(const PreparedView& view, const PhotoOptions& options,
                       const std::function<void()>& row_done, PhotoMaps& maps) {
   PhotoScore score;
   score.view = view.name;
@@ -205,7 +205,7 @@ void PhotoScore::add(const PhotoScore& o) {
   score_sum += o.score_sum, squared_sum += o.squared_sum, absolute_sum += o.absolute_sum;
 }
 
-PhotoAgreement judge_by_photographs(const TriMesh& mesh, std::span<const View> views,
+PhotoAgreement judge_by_photographs(const TriMesh& mesh, std::span<const PreparedView> views,
                                     std::span<const std::size_t> held_out,
                                     std::span<const std::size_t> lenders,
                                     const PhotoOptions& options, Progress* given,

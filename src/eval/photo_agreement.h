@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "core/image.h"
 #include "core/mesh.h"
+#include "core/prepared_view.h"
 #include "core/progress.h"
 #include "eval/predict_photo.h"
 
@@ -87,7 +87,7 @@ struct PhotoMaps {
 /// Equal input gives equal output, whatever the number of threads. Throws Error when the mesh has
 /// no faces or a coordinate that is not finite, or when no held-out view sees it; UsageError for
 /// options out of range or lists that are empty or overlap; Cancelled.
-PhotoAgreement judge_by_photographs(const TriMesh& mesh, std::span<const View> views,
+PhotoAgreement judge_by_photographs(const TriMesh& mesh, std::span<const PreparedView> views,
                                     std::span<const std::size_t> held_out,
                                     std::span<const std::size_t> lenders,
                                     const PhotoOptions& options = {}, Progress* progress = nullptr,

@@ -63,7 +63,7 @@ std::optional<glm::vec3> sample(const Pixels& pixels, const ColourImage& image,
 }
 
 struct Lender {
-  const View* view;
+  const PreparedView* view;
   glm::dvec3 centre;
 };
 
@@ -77,7 +77,7 @@ struct Candidate {
 /// What the rays of one prediction share.
 class Predictor {
  public:
-  Predictor(const TriMesh& mesh, const RayScene& rays, std::span<const View> views,
+  Predictor(const TriMesh& mesh, const RayScene& rays, std::span<const PreparedView> views,
             std::span<const std::size_t> lenders, const PredictOptions& options)
       : mesh_(mesh),
         rays_(rays),
@@ -175,7 +175,7 @@ void PredictOptions::validate() const {
 }
 
 Prediction predict_photo(const TriMesh& mesh, const RayScene& rays, const Camera& camera,
-                         std::span<const View> views, std::span<const std::size_t> lenders,
+                         std::span<const PreparedView> views, std::span<const std::size_t> lenders,
                          const PredictOptions& options, const std::function<void()>& row_done) {
   options.validate();
   const Predictor predictor(mesh, rays, views, lenders, options);

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/describe.h"
-#include "core/image.h"
 #include "core/mesh.h"
+#include "core/prepared_view.h"
 #include "raycast/ray_scene.h"
 
 namespace photohull::eval {
@@ -53,7 +53,7 @@ struct Prediction {
 /// the predicted one aliases. Works in parallel over rows; the result is the same whatever the
 /// number of threads. `row_done` is called, from any thread, after each row and may throw.
 Prediction predict_photo(const TriMesh& mesh, const RayScene& rays, const Camera& camera,
-                         std::span<const View> views, std::span<const std::size_t> lenders,
+                         std::span<const PreparedView> views, std::span<const std::size_t> lenders,
                          const PredictOptions& options, const std::function<void()>& row_done);
 
 }  // namespace photohull::eval

@@ -16,7 +16,21 @@ int find_shader(std::string_view path) {
   return int(it - shaders.begin());
 }
 
-void append_file(std::string_view path, std::set<int>& seen, std::string& out) {
+constexpr std::string_view kIncludeInstead = "#pragma include_instead ";
+
+/// The file that is included where `path` is, by lines of include_instead.
+std::string_view included(std::string_view path, std::string_view defines) {
+  for (std::size_t at = defines.find(kIncludeInstead); at != std::string_view::npos;
+       at = defines.find(kIncludeInstead, at + 1)) {
+    const std::string_view rest = defines.substr(at + kIncludeInstead.size());
+    const std::size_t space = rest.find(' ');
+    if (rest.substr(0, space) == path) return rest.substr(space + 1, rest.find('\n') - space - 1);
+  }
+  return path;
+}
+
+void append_file(std::string_view path, std::string_view defines, std::set<int>& seen,
+                 std::string& out) {
   const int number = find_shader(path);
   if (!seen.insert(number).second) return;
   out += concat("#line 1 ", number, "\n");
@@ -32,7 +46,7 @@ void append_file(std::string_view path, std::set<int>& seen, std::string& out) {
     } else if (row.starts_with("#include")) {
       const std::size_t open = row.find('"'), close = row.rfind('"');
       PHOTOHULL_CHECK(open != close);
-      append_file(row.substr(open + 1, close - open - 1), seen, out);
+      append_file(included(row.substr(open + 1, close - open - 1), defines), defines, seen, out);
       out += concat("#line ", line + 1, " ", number, "\n");
     } else {
       out += row;
@@ -46,7 +60,7 @@ std::string expand_shader(std::string_view path, std::string_view defines) {
   std::string out = "#version 450 core\n";
   out += defines;
   std::set<int> seen;
-  append_file(path, seen, out);
+  append_file(path, defines, seen, out);
   return out;
 }
 
@@ -59,6 +73,10 @@ std::string define(std::string_view prefix, std::string_view name) {
   std::string line = "#define " + std::string(prefix);
   for (const char c : name) line += c == '-' ? '_' : c >= 'a' && c <= 'z' ? char(c - 'a' + 'A') : c;
   return line + '\n';
+}
+
+std::string include_instead(std::string_view file, std::string_view other) {
+  return concat(kIncludeInstead, file, " ", other, "\n");
 }
 
 }  // namespace photohull::gpu

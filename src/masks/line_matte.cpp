@@ -82,7 +82,7 @@ cv::Mat matte(const Pixels& pixels, const std::vector<dvec3>& palette, const cv:
 }  // namespace
 
 void restore_lines(const std::vector<LinePoint>& lines, std::span<const dvec2> places,
-                   const SilhouetteDistance& distance, View& view) {
+                   const SilhouetteDistance& distance, PreparedView& view) {
   PHOTOHULL_CHECK(distance.width == view.image.width && distance.height == view.image.height);
   const Pixels pixels(view.image);
   cv::Mat marks(distance.height, distance.width, CV_8U, cv::Scalar(0));

@@ -111,7 +111,7 @@ bool MaskBias::counts() const {
          agreement >= kLeastAgreement;
 }
 
-MaskBias measure_mask_bias(std::span<const View> views,
+MaskBias measure_mask_bias(std::span<const PreparedView> views,
                            std::span<const SilhouetteDistance* const> silhouettes) {
   int longest = 0;
   for (const SilhouetteDistance* s : silhouettes)

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "core/image.h"
+#include "core/prepared_view.h"
 #include "core/silhouette.h"
 
 namespace photohull {
@@ -23,7 +24,7 @@ struct MaskBias {
 /// of the image's longer side) on both sides are tried. Where the photographs' strongest slope lies
 /// is compared with where the masks' own coverage has it, for parts narrower than two pixels have
 /// it beside their outline. `silhouettes` are those of the views' masks, null for views without.
-MaskBias measure_mask_bias(std::span<const View> views,
+MaskBias measure_mask_bias(std::span<const PreparedView> views,
                            std::span<const SilhouetteDistance* const> silhouettes);
 
 /// Moves the contour outward by `pixels` (inward where negative), in the mask and its distances.

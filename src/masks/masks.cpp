@@ -118,7 +118,7 @@ void make_opaque(ColourImage& image) {
   image.has_alpha = false;
 }
 
-MaskOrigin take_given_mask(const SourceView& source, const ViewLoader& loader, View& view,
+MaskOrigin take_given_mask(const SourceView& source, const ViewLoader& loader, PreparedView& view,
                            bool& from_ones) {
   MaskOrigin origin = MaskOrigin::kNone;
   if (!source.mask.empty()) {
@@ -166,7 +166,7 @@ void describe_masks(const std::vector<MaskOrigin>& origins, PreparedViews& views
 
 void check_masks(PreparedViews& views) {
   std::size_t masks = 0, empty = 0, inverted = 0, closed_in = 0;
-  for (const View& view : views.views) {
+  for (const PreparedView& view : views.views) {
     if (view.mask.empty()) continue;
     ++masks;
     const auto is_foreground = [](std::uint8_t coverage) { return coverage >= 128; };

@@ -15,7 +15,7 @@ enum class MaskOrigin { kNone, kFile, kAlpha, kPlate, kBackground };
 /// pixels of `view.image`; a file that is a scaled copy (core/scaled_size.h) is resampled to them.
 /// `from_ones`: FileMask's, of a file. Throws Error for a mask of another size and what the loader
 /// throws.
-MaskOrigin take_given_mask(const SourceView& source, const ViewLoader& loader, View& view,
+MaskOrigin take_given_mask(const SourceView& source, const ViewLoader& loader, PreparedView& view,
                            bool& from_ones);
 
 /// Sets the alpha of an image that has such a channel to 1: from here on it tells what is known.

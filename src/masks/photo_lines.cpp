@@ -192,7 +192,8 @@ double overlap(double a, double b, double half) {
 
 }  // namespace
 
-std::vector<LinePoint> find_photo_lines(const View& view, const SilhouetteDistance& distance,
+std::vector<LinePoint> find_photo_lines(const PreparedView& view,
+                                        const SilhouetteDistance& distance,
                                         const PhotoLineOptions& options) {
   PHOTOHULL_CHECK(!view.mask.empty());
   PHOTOHULL_CHECK(distance.width == view.image.width && distance.height == view.image.height);

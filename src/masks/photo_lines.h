@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/image.h"
+#include "core/prepared_view.h"
 #include "core/silhouette.h"
 
 namespace photohull {
@@ -24,7 +25,8 @@ struct PhotoLineOptions {
 /// the object's colours to it. Textures of a background have such lines, too: they say where the
 /// object may be, and views must confirm each other (carving/confirm_lines.h). `distance` is that
 /// of the view's mask; the view must have one.
-std::vector<LinePoint> find_photo_lines(const View& view, const SilhouetteDistance& distance,
+std::vector<LinePoint> find_photo_lines(const PreparedView& view,
+                                        const SilhouetteDistance& distance,
                                         const PhotoLineOptions& options);
 
 /// Puts lines back into the view's mask. Where the background around them is plain, their coverage
@@ -33,7 +35,7 @@ std::vector<LinePoint> find_photo_lines(const View& view, const SilhouetteDistan
 /// line, it is that of a band as wide as the line. `places`: pixels where other views show that
 /// there are lines. Lowers nothing.
 void restore_lines(const std::vector<LinePoint>& lines, std::span<const glm::dvec2> places,
-                   const SilhouetteDistance& distance, View& view);
+                   const SilhouetteDistance& distance, PreparedView& view);
 
 /// Raises the coverage to that of bands as wide as the lines. Lowers nothing.
 void draw_lines(const std::vector<LinePoint>& lines, Mask& mask);

@@ -41,14 +41,14 @@ std::string how_to_refuse() {
   return concat(" (", option_word("refine_cameras", "off"), " takes them as they are)");
 }
 
-RefineCamerasOptions refine_options(const Scene& scene, std::span<const View> views) {
+RefineCamerasOptions refine_options(const Scene& scene, std::span<const PreparedView> views) {
   RefineCamerasOptions o;
   o.given = undistorted_tracks(scene, views);
   o.box = scene.box;
   return o;
 }
 
-void use_cameras(const CameraRefinement& found, std::vector<View>& views) {
+void use_cameras(const CameraRefinement& found, std::vector<PreparedView>& views) {
   std::vector<SourceView> sources = sources_of(views);
   pipeline::apply(found, sources);
   for (std::size_t i = 0; i < views.size(); ++i) {
@@ -76,7 +76,7 @@ void refine_those_off(const std::vector<double>& off, const Scene& scene, Agreei
   use_cameras(found, out.views);
 }
 
-bool masks_are_eaten(std::span<const View> views) {
+bool masks_are_eaten(std::span<const PreparedView> views) {
   std::vector<SilhouetteDistance> distances(views.size());
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
     if (!views[i].mask.empty()) distances[i] = silhouette_distance(views[i].mask);
@@ -90,8 +90,8 @@ bool masks_are_eaten(std::span<const View> views) {
 /// Do the silhouettes leave no more of their foreground unexplained with these cameras? Tips below
 /// the masks' sampling end too early, each view's elsewhere: outlines that are made to agree at
 /// them leave the rest contradicting each other.
-bool fill_no_less(std::span<const Camera> refined, const Box& given, const std::vector<View>& views,
-                  Progress& progress) {
+bool fill_no_less(std::span<const Camera> refined, const Box& given,
+                  const std::vector<PreparedView>& views, Progress& progress) {
   const Box box =
       carving::box_is_oversized(given, views) ? carving::object_box(given, views) : given;
   std::vector<Mask> masks(views.size());
@@ -122,7 +122,7 @@ bool fill_no_less(std::span<const Camera> refined, const Box& given, const std::
 
 /// Features of a view whose camera is right lie where those of other views say, whatever its mask.
 std::set<std::string> confirmed_by_features(const CameraRefinement& found, bool used,
-                                            std::span<const View> views) {
+                                            std::span<const PreparedView> views) {
   std::set<std::string> right;
   for (std::size_t i = 0; i < views.size(); ++i) {
     const ViewAgreement& v = found.views[i];
@@ -171,7 +171,7 @@ void refine_all(const ReconstructOptions& options, const Scene& scene, AgreeingC
 }  // namespace
 
 AgreeingCameras agree_cameras(const ReconstructOptions& options, const Scene& scene,
-                              std::vector<View> views, Progress& progress) {
+                              std::vector<PreparedView> views, Progress& progress) {
   AgreeingCameras out{std::move(views), {}, {}};
   if (!options.refine_cameras) {
     out.findings.mask_disagreement = tangent_disagreement(out.views);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/box.h"
-#include "core/image.h"
+#include "core/prepared_view.h"
 #include "core/progress.h"
 #include "core/scene.h"
 #include "pipeline/findings.h"
@@ -15,7 +15,8 @@
 namespace photohull::pipeline {
 
 struct AgreeingCameras {
-  std::vector<View> views;      ///< as given, with their cameras and those of their sources refined
+  std::vector<PreparedView>
+      views;                    ///< as given, with their cameras and those of their sources refined
   std::set<std::string> right;  ///< names of views whose features confirm their cameras
   CameraFindings findings;
 };
@@ -23,6 +24,6 @@ struct AgreeingCameras {
 /// By default only where silhouettes tell at once that the cameras disagree. `scene`: that of the
 /// views, with the tracks that it lists and a box. Throws Error, Cancelled.
 AgreeingCameras agree_cameras(const ReconstructOptions& options, const Scene& scene,
-                              std::vector<View> views, Progress& progress);
+                              std::vector<PreparedView> views, Progress& progress);
 
 }  // namespace photohull::pipeline

@@ -82,8 +82,8 @@ std::vector<std::size_t> telling_views(const Scene& scene) {
   return chosen;
 }
 
-View load(const SourceView& source, double scale) {
-  View view{source.name, source.camera, io::read_image(source.image, scale), {}};
+PreparedView load(const SourceView& source, double scale) {
+  PreparedView view{source.name, source.camera, io::read_image(source.image, scale), {}};
   view.camera.intrinsics = scaled_intrinsics(view.camera.intrinsics, scale);
   make_opaque(view.image);
   undistort(source.distortion, 2, view);
@@ -198,7 +198,7 @@ void draw_corners(cv::Mat& panel, const Placed& placed, const Box& box, const cv
 }
 
 /// The photograph's own pixels around the box's middle, magnified, under a grid of voxels.
-void draw_inset(cv::Mat& panel, const View& view, const Box& box, double voxel_size,
+void draw_inset(cv::Mat& panel, const PreparedView& view, const Box& box, double voxel_size,
                 const cv::Rect& place) {
   const auto middle = view.camera.project(box.center());
   const double depth = view.camera.to_camera(box.center()).z;
@@ -244,7 +244,8 @@ cv::Rect place_on_panel(const Camera& camera, const Box& box) {
           std::max(1, int(factor * size.y))};
 }
 
-cv::Mat draw_photograph(const View& view, std::size_t index, const Box& box, double voxel_size) {
+cv::Mat draw_photograph(const PreparedView& view, std::size_t index, const Box& box,
+                        double voxel_size) {
   cv::Mat panel(kPanelHeight, kPanelWidth, CV_8UC3, kPaper);
   const cv::Rect place = place_on_panel(view.camera, box);
   cv::Mat small;

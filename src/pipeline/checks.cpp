@@ -144,7 +144,7 @@ void check_memory(std::int64_t bytes, std::int64_t limit) {
                      ", or use fewer ", option_word("views")));
 }
 
-std::string explain_empty_hull(const Box& box, std::span<const View> views,
+std::string explain_empty_hull(const Box& box, std::span<const PreparedView> views,
                                std::span<const carving::Silhouette> silhouettes,
                                double voxel_size) {
   std::vector<int> removed(views.size());

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "carving/hull.h"
+#include "core/prepared_view.h"
 #include "core/scene.h"
 
 namespace photohull::pipeline {
@@ -39,7 +40,7 @@ void check_memory(std::int64_t bytes, std::int64_t limit);
 
 /// Why nothing of the box is left: voxels that are too large, or the views whose silhouettes alone
 /// remove the most of it. `silhouettes`: one for each view, as the hull had them.
-std::string explain_empty_hull(const Box& box, std::span<const View> views,
+std::string explain_empty_hull(const Box& box, std::span<const PreparedView> views,
                                std::span<const carving::Silhouette> silhouettes, double voxel_size);
 
 }  // namespace photohull::pipeline

@@ -42,7 +42,7 @@ std::vector<double> reduced_scales(const Scene& scene) {
 
 /// The scene file's points, with the kept views that show them where it lists tracks.
 std::vector<ScenePoint> listed_points(const Scene& scene, const std::vector<std::size_t>& kept) {
-  std::vector<View> views;
+  std::vector<PreparedView> views;
   std::vector<Camera> cameras;
   for (const SourceView& v : scene.views) {
     views.push_back({v.name, v.camera, {}, {}});

@@ -65,7 +65,7 @@ Scene undistort_scene(const Scene& scene, const fs::path& folder, Progress& prog
     progress.check_cancelled();
     progress.update(double(i) / double(scene.views.size()));
     const SourceView& source = scene.views[i];
-    View view{source.name, source.camera, loader.image(source.image), {}};
+    PreparedView view{source.name, source.camera, loader.image(source.image), {}};
     bool from_ones = false;  // either way the mask is written with 255
     take_given_mask(source, loader, view, from_ones);
     make_opaque(view.image);

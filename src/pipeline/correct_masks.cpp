@@ -25,11 +25,11 @@ std::string how_to_refuse() {
   return concat(" (", option_word("mask_offset", "0"), " takes the masks as they are)");
 }
 
-std::vector<std::vector<LinePoint>> lines_in_photographs(const std::vector<View>& views,
+std::vector<std::vector<LinePoint>> lines_in_photographs(const std::vector<PreparedView>& views,
                                                          const PhotoLineOptions& options) {
   std::vector<std::vector<LinePoint>> found(views.size());
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
-    const View& view = views[i];
+    const PreparedView& view = views[i];
     if (!view.mask.empty() && !view.silhouette.likelihood)
       found[i] = find_photo_lines(view, view.silhouette.distance, options);
   });
@@ -38,7 +38,7 @@ std::vector<std::vector<LinePoint>> lines_in_photographs(const std::vector<View>
 
 /// Parts twice as wide as what was taken from every outline are not in the masks any more. Were
 /// there such lines in most views?
-bool restore_eaten(double eaten, const SilhouetteJob& job, std::vector<View>& views,
+bool restore_eaten(double eaten, const SilhouetteJob& job, std::vector<PreparedView>& views,
                    SilhouetteFindings& findings, Progress& progress) {
   PhotoLineOptions options;
   options.noise_sigma = job.photographs.noise_sigma;
@@ -57,7 +57,7 @@ bool restore_eaten(double eaten, const SilhouetteJob& job, std::vector<View>& vi
                          confirmed.places.size(), " px of them in all views): they were put back",
                          how_to_refuse()));
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
-    View& view = views[i];
+    PreparedView& view = views[i];
     if (view.mask.empty() || view.silhouette.likelihood) return;
     std::vector<glm::dvec2> places;
     for (const glm::dvec3& p : confirmed.places)
@@ -70,15 +70,15 @@ bool restore_eaten(double eaten, const SilhouetteJob& job, std::vector<View>& vi
 }
 
 /// Pixels by which outlines are to be moved outward.
-double measured_offset(const std::vector<View>& views) {
+double measured_offset(const std::vector<PreparedView>& views) {
   const MaskBias bias = measure_mask_bias(views, distances_of(views));
   return bias.counts() ? bias.pixels : 0;
 }
 
 }  // namespace
 
-bool correct_masks(const SilhouetteJob& job, std::vector<View>& views, SilhouetteFindings& findings,
-                   Progress& progress) {
+bool correct_masks(const SilhouetteJob& job, std::vector<PreparedView>& views,
+                   SilhouetteFindings& findings, Progress& progress) {
   const std::optional<double>& given = job.options.mask_offset;
   // The user counts in the files' pixels.
   const double scale = job.photographs.largest_scale;
@@ -90,7 +90,7 @@ bool correct_masks(const SilhouetteJob& job, std::vector<View>& views, Silhouett
         concat("the masks are about ", std::round(10 * std::abs(findings.mask_offset)) / 10,
                " px too ", offset > 0 ? "small" : "large",
                ": outlines are taken from where the photographs' edges are", how_to_refuse()));
-  for (View& view : views)
+  for (PreparedView& view : views)
     if (!view.mask.empty()) move_outline(offset, view.mask, view.silhouette.distance);
   return offset > 0 && restore_eaten(offset, job, views, findings, progress);
 }

@@ -67,14 +67,15 @@ void draw_square(const ColourImage& image, const assess::PlaceAt& place, int ste
 
 }  // namespace
 
-MissingPicture draw_explained(std::span<const View> views, const assess::Explained& explained) {
+MissingPicture draw_explained(std::span<const PreparedView> views,
+                              const assess::Explained& explained) {
   const std::vector<assess::ExplainedView>& all = explained.views;
   const auto worst = std::max_element(all.begin(), all.end(), [](const auto& a, const auto& b) {
     return wrong_places(a) < wrong_places(b);
   });
   if (worst == all.end() || wrong_places(*worst) + worst->told() + worst->count(Place::kBare) == 0)
     return {};
-  const View& view = views[std::size_t(worst - all.begin())];
+  const PreparedView& view = views[std::size_t(worst - all.begin())];
   const ColourImage& image = view.image;
   MissingPicture picture{view.name, image.width, image.height, {}};
   picture.rgb.reserve(3 * std::size_t(image.width) * std::size_t(image.height));

@@ -14,6 +14,7 @@ namespace photohull::pipeline {
 /// where one view alone sees it, violet where nothing is and nothing was found, blue what lies
 /// outside the box. What is explained is left as it is; what is plain, or was not looked at, is
 /// darkened. Empty where no view has textured places.
-MissingPicture draw_explained(std::span<const View> views, const assess::Explained& explained);
+MissingPicture draw_explained(std::span<const PreparedView> views,
+                              const assess::Explained& explained);
 
 }  // namespace photohull::pipeline

@@ -50,7 +50,7 @@ Extents measure_extents(const Scene& scene) {
 }
 
 std::optional<Box> suggest_box(const Scene& scene) {
-  std::vector<View> views;
+  std::vector<PreparedView> views;
   std::vector<Camera> cameras;
   for (const SourceView& view : scene.views) {
     views.push_back({view.name, view.camera, {}, {}});

@@ -52,9 +52,9 @@ std::optional<glm::dvec3> nearest_to_lines(const std::vector<glm::dvec3>& throug
   return glm::inverse(normal) * right;
 }
 
-std::vector<Camera> cameras_of(std::span<const View> views) {
+std::vector<Camera> cameras_of(std::span<const PreparedView> views) {
   std::vector<Camera> cameras;
-  for (const View& view : views) cameras.push_back(view.camera);
+  for (const PreparedView& view : views) cameras.push_back(view.camera);
   return cameras;
 }
 
@@ -82,10 +82,10 @@ std::optional<Foreground> foreground_of(const Mask& mask) {
   return found;
 }
 
-std::optional<FoundBox> box_of_silhouettes(std::span<const View> views) {
+std::optional<FoundBox> box_of_silhouettes(std::span<const PreparedView> views) {
   std::vector<glm::dvec3> through, along;
   std::size_t masked = 0, bounded = 0;
-  for (const View& view : views) {
+  for (const PreparedView& view : views) {
     if (view.mask.empty()) continue;
     const auto foreground = foreground_of(view.mask);
     if (!foreground) continue;
@@ -357,7 +357,7 @@ FoundBox find_box(const BoxEvidence& evidence, Progress& progress) {
                        option_word("box")));
   const std::vector<Camera> cameras = cameras_of(evidence.views);
   const bool masks = std::any_of(evidence.views.begin(), evidence.views.end(),
-                                 [](const View& v) { return !v.mask.empty(); });
+                                 [](const PreparedView& v) { return !v.mask.empty(); });
   if (masks && evidence.given_masks)
     if (auto found = box_of_silhouettes(evidence.views)) return *found;
   const bool listed = evidence.points.size() >= kEnough;

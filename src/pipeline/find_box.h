@@ -8,7 +8,7 @@
 
 #include "cameras/scene_points.h"
 #include "core/box.h"
-#include "core/image.h"
+#include "core/prepared_view.h"
 #include "core/progress.h"
 
 namespace photohull::pipeline {
@@ -23,7 +23,7 @@ struct FoundBox {
 
 /// What is known before the photographs' features are.
 struct BoxEvidence {
-  std::span<const View> views;       ///< undistorted; reduced ones do (some 800 pixels)
+  std::span<const PreparedView> views;  ///< undistorted; reduced ones do (some 800 pixels)
   bool given_masks = false;          ///< else they were made from the background, and may be wrong
   std::vector<ScenePoint> points{};  ///< of the scene file; those without views count once
 };

@@ -4,7 +4,7 @@
 
 namespace photohull::pipeline {
 
-FoundSilhouettes find_silhouettes(const SilhouetteJob& job, std::vector<View> views,
+FoundSilhouettes find_silhouettes(const SilhouetteJob& job, std::vector<PreparedView> views,
                                   Progress& progress) {
   using namespace silhouettes;
   FoundSilhouettes out{std::move(views), 0, {}};

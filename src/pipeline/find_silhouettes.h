@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/box.h"
-#include "core/image.h"
+#include "core/prepared_view.h"
 #include "core/progress.h"
 #include "pipeline/findings.h"
 #include "pipeline/reconstruct_options.h"
@@ -15,8 +15,8 @@
 namespace photohull::pipeline {
 
 struct FoundSilhouettes {
-  std::vector<View> views;   ///< those that are left, with silhouettes
-  double full_evidence = 0;  ///< pixels (carving::HullOptions)
+  std::vector<PreparedView> views;  ///< those that are left, with silhouettes
+  double full_evidence = 0;         ///< pixels (carving::HullOptions)
   SilhouetteFindings findings;
 };
 
@@ -33,7 +33,7 @@ struct SilhouetteJob {
 /// and outlines are traced; views that contradict all others go; outlines that are off get as much
 /// room; stems get the room that voxels need; what most masks show is put into those that leave it
 /// out.
-FoundSilhouettes find_silhouettes(const SilhouetteJob& job, std::vector<View> views,
+FoundSilhouettes find_silhouettes(const SilhouetteJob& job, std::vector<PreparedView> views,
                                   Progress& progress);
 
 }  // namespace photohull::pipeline

@@ -23,7 +23,7 @@ constexpr double kMoreLikelyRight = 0.5;  // confidence is the chance to be righ
 
 std::int64_t fit_stems(const SurfaceJob& job, TriMesh& mesh) {
   std::vector<carving::StemView> views;
-  for (const View& view : job.subject.views)
+  for (const PreparedView& view : job.subject.views)
     if (!view.mask.empty()) views.push_back({view.camera, &view.mask, &view.silhouette.lines});
   return std::int64_t(
       carving::fit_stems(views, job.subject.grid.voxel_size, mesh, tuned(job.options).stems));

@@ -61,7 +61,7 @@ std::string job_identity(const ReconstructOptions& options, const Photographs& p
   add_file("/proc/self/exe", text);  // versions change less often than programs
   add_file(photographs.scene.path, text);
   text << photographs.digest << '\n';
-  for (const View& view : subject.views) {
+  for (const PreparedView& view : subject.views) {
     add_file(view.source.image, text);
     add_file(view.source.mask, text);
     add_file(view.source.plate, text);

@@ -33,7 +33,7 @@ Judgement judge_result(const SurfaceJob& job, const Judged& judged, bool picture
   std::vector<assess::SilhouetteFit> fits;
   const assess::Signals signals = gather_signals(result, &fits);
   std::vector<std::string> names;
-  for (const View& view : subject.views) names.push_back(view.name);
+  for (const PreparedView& view : subject.views) names.push_back(view.name);
   Judgement out;
   out.findings.verdict = assess::judge(signals, names);
   out.findings.json = to_json(out.findings.verdict, signals, subject.views);

@@ -23,14 +23,15 @@ constexpr double kBlurred = 0.75, kBlurredWithoutMasks = 0.69;
 constexpr std::size_t kMostNamed = 5;
 constexpr double kFarOff = 0.005;  // of the image's longer side: this view is wrong
 
-void drop_view(int index, std::vector<View>& views, SilhouetteFindings& findings) {
+void drop_view(int index, std::vector<PreparedView>& views, SilhouetteFindings& findings) {
   findings.left_out.push_back(views[std::size_t(index)].name);
   views.erase(views.begin() + index);
 }
 
 /// Views whose outlines' tangents are far from all others', who agree; none where these are more
 /// than a quarter.
-std::vector<int> views_off_tangents(std::span<const View> views, std::span<const ViewFit> fits) {
+std::vector<int> views_off_tangents(std::span<const PreparedView> views,
+                                    std::span<const ViewFit> fits) {
   std::vector<int> off;
   std::size_t known = 0;
   for (std::size_t i = 0; i < fits.size(); ++i) {
@@ -44,7 +45,7 @@ std::vector<int> views_off_tangents(std::span<const View> views, std::span<const
 
 /// Views with their outlines, from which some go.
 struct Kept {
-  std::vector<View>& views;
+  std::vector<PreparedView>& views;
   Outlines& outlines;
   SilhouetteFindings& findings;
 };
@@ -54,7 +55,7 @@ struct Kept {
 void leave_out(std::span<const int> wrong, const std::set<std::string>& right_cameras,
                const std::string& why, const Kept& kept, Progress& progress) {
   for (auto i = wrong.rbegin(); i != wrong.rend(); ++i) {
-    View& view = kept.views[std::size_t(*i)];
+    PreparedView& view = kept.views[std::size_t(*i)];
     if (right_cameras.contains(view.name)) {
       progress.warn(concat("the mask of ", view.name, " is left out: ", why,
                            "; the view stays, for features say that its camera is right"));
@@ -70,7 +71,7 @@ void leave_out(std::span<const int> wrong, const std::set<std::string>& right_ca
   }
 }
 
-std::string names_of(std::span<const int> some, const std::vector<View>& views) {
+std::string names_of(std::span<const int> some, const std::vector<PreparedView>& views) {
   std::string names;
   for (std::size_t i = 0; i < std::min(some.size(), kMostNamed); ++i)
     names += concat(i ? ", " : "", views[std::size_t(some[i])].name);
@@ -79,7 +80,7 @@ std::string names_of(std::span<const int> some, const std::vector<View>& views) 
 
 }  // namespace
 
-void leave_out_blurred(const SilhouetteJob& job, std::vector<View>& views,
+void leave_out_blurred(const SilhouetteJob& job, std::vector<PreparedView>& views,
                        SilhouetteFindings& findings, Progress& progress) {
   const std::vector<double> sharpness =
       relative_sharpness(views, job.box, job.photographs.noise_sigma);
@@ -103,8 +104,8 @@ void leave_out_blurred(const SilhouetteJob& job, std::vector<View>& views,
   for (auto i = blurred.rbegin(); i != blurred.rend(); ++i) drop_view(*i, views, findings);
 }
 
-void leave_out_wrong_views(const SilhouetteJob& job, std::vector<View>& views, Outlines& outlines,
-                           SilhouetteFindings& findings, Progress& progress) {
+void leave_out_wrong_views(const SilhouetteJob& job, std::vector<PreparedView>& views,
+                           Outlines& outlines, SilhouetteFindings& findings, Progress& progress) {
   const Kept kept{views, outlines, findings};
   const bool keep = job.options.keep_views;
   if (!keep)

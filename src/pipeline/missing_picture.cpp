@@ -24,7 +24,7 @@ MissingPicture draw_missing(const CheckedResult& result,
   });
   if (worst == fits.end() || worst->foreground == 0) return {};
   const auto v = std::size_t(worst - fits.begin());
-  const View& view = result.views[v];
+  const PreparedView& view = result.views[v];
   const SilhouetteDistance& used = view.silhouette.distance;
   SilhouetteDistance own;
   if (!view.silhouette.widened.empty()) own = silhouette_distance(view.mask);

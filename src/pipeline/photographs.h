@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/camera.h"
 #include "core/file_mask.h"
 #include "core/image.h"
 #include "core/scene.h"

@@ -35,7 +35,7 @@ TriMesh with_normals(TriMesh mesh) {
   return mesh;
 }
 
-std::string to_json(const PhotometricCalibration& c, const std::vector<View>& views,
+std::string to_json(const PhotometricCalibration& c, const std::vector<PreparedView>& views,
                     const std::vector<int>& lenses, bool used) {
   ordered_json j = {{"solved", c.solved},
                     {"significant", c.significant},
@@ -94,7 +94,8 @@ const char* to_string(Photometric photometric) {
 }
 
 std::optional<PhotometricOutcome> find_alike(const TriMesh& mesh, double voxel_size,
-                                             double noise_sigma, const std::vector<View>& views,
+                                             double noise_sigma,
+                                             const std::vector<PreparedView>& views,
                                              const Progress& progress) {
   const bool complete = mesh.normals.size() == mesh.positions.size();
   const PhotometricCheck c = check_photometric(
@@ -126,7 +127,7 @@ std::optional<PhotometricOutcome> find_alike(const TriMesh& mesh, double voxel_s
 
 PhotometricOutcome correct_photometric(Photometric photometric, const TriMesh& mesh,
                                        double voxel_size, double noise_sigma,
-                                       std::vector<View>& views, const Progress& progress) {
+                                       std::vector<PreparedView>& views, const Progress& progress) {
   PHOTOHULL_CHECK(photometric != Photometric::kOff);
   const std::vector<PhotometricFrame> frames = frames_of(views);
   const std::vector<int> lenses = shared_lenses(frames);

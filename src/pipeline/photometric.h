@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/image.h"
 #include "core/mesh.h"
+#include "core/prepared_view.h"
 #include "core/scene.h"
 #include "views/photometric.h"
 
@@ -29,7 +29,8 @@ struct PhotometricOutcome {
 /// the outcome says so and the photographs stay. Where they do, or where these points cannot tell,
 /// nothing is returned, and correct_photometric has to tell. Throws Error, Cancelled.
 std::optional<PhotometricOutcome> find_alike(const TriMesh& mesh, double voxel_size,
-                                             double noise_sigma, const std::vector<View>& views,
+                                             double noise_sigma,
+                                             const std::vector<PreparedView>& views,
                                              const Progress& progress);
 
 /// Measures the views' gains on the mesh (`voxel_size` in world units: about its
@@ -38,6 +39,6 @@ std::optional<PhotometricOutcome> find_alike(const TriMesh& mesh, double voxel_s
 /// cropped. Not to be called with kOff. Throws Error, Cancelled.
 PhotometricOutcome correct_photometric(Photometric photometric, const TriMesh& mesh,
                                        double voxel_size, double noise_sigma,
-                                       std::vector<View>& views, const Progress& progress);
+                                       std::vector<PreparedView>& views, const Progress& progress);
 
 }  // namespace photohull::pipeline

@@ -26,7 +26,7 @@ CoarseHull coarse_hull(int voxels, Hull& hull, const Subject& subject) {
 
 /// A quick look before gains are solved for.
 std::optional<AlikeViews> are_alike(const PhotometricJob& job, const TriMesh& mesh,
-                                    double voxel_size, const std::vector<View>& views) {
+                                    double voxel_size, const std::vector<PreparedView>& views) {
   if (job.options.photometric != Photometric::kAuto) return std::nullopt;
   const auto found = find_alike(mesh, voxel_size, job.noise_sigma, views, job.progress);
   if (!found) return std::nullopt;
@@ -34,7 +34,7 @@ std::optional<AlikeViews> are_alike(const PhotometricJob& job, const TriMesh& me
 }
 
 AlikeViews correct(const PhotometricJob& job, const TriMesh& mesh, double voxel_size,
-                   std::vector<View>& views) {
+                   std::vector<PreparedView>& views) {
   const PhotometricOutcome found = correct_photometric(job.options.photometric, mesh, voxel_size,
                                                        job.noise_sigma, views, job.progress);
   if (!found.warning.empty()) job.progress.warn(found.warning);
@@ -53,7 +53,7 @@ AlikeViews make_alike_on_hull(const PhotometricJob& job, Hull& hull, Subject& su
 }
 
 AlikeViews make_alike_on(const PhotometricJob& job, const TriMesh& mesh, double voxel_size,
-                         std::vector<View>& views) {
+                         std::vector<PreparedView>& views) {
   if (auto alike = are_alike(job, mesh, voxel_size, views)) return *alike;
   return correct(job, mesh, voxel_size, views);
 }

@@ -27,6 +27,6 @@ AlikeViews make_alike_on_hull(const PhotometricJob& job, Hull& hull, Subject& su
 
 /// The same on a surface with voxels of `voxel_size` world units.
 AlikeViews make_alike_on(const PhotometricJob& job, const TriMesh& mesh, double voxel_size,
-                         std::vector<View>& views);
+                         std::vector<PreparedView>& views);
 
 }  // namespace photohull::pipeline

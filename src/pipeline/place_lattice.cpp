@@ -28,7 +28,7 @@ double longest_side(const Box& box) {
 }  // namespace
 
 std::optional<Box> smaller_box(const ReconstructOptions& options, const Box& box,
-                               const std::vector<View>& views) {
+                               const std::vector<PreparedView>& views) {
   if (options.box_stands() || !carving::box_is_oversized(box, views)) return std::nullopt;
   const Box object = carving::object_box(box, views);
   if (longest_side(box) / longest_side(object) < kOversized) return std::nullopt;
@@ -36,7 +36,7 @@ std::optional<Box> smaller_box(const ReconstructOptions& options, const Box& box
 }
 
 SourcedBox tighten_box(const ReconstructOptions& options, const SourcedBox& given,
-                       const std::vector<View>& views, Progress& progress) {
+                       const std::vector<PreparedView>& views, Progress& progress) {
   const std::optional<Box> object = smaller_box(options, given.box, views);
   if (!object) return given;
   const double factor = longest_side(given.box) / longest_side(*object);
@@ -48,7 +48,7 @@ SourcedBox tighten_box(const ReconstructOptions& options, const SourcedBox& give
 }
 
 GridSpec place_lattice(const ReconstructOptions& options, const SourcedBox& box,
-                       const std::vector<View>& views) {
+                       const std::vector<PreparedView>& views) {
   const bool masks = any_mask(views);
   if (masks || !method_of(options).needs_no_silhouettes)
     check_cameras_outside(box.box, box.source, sources_of(views));
@@ -64,16 +64,16 @@ GridSpec place_lattice(const ReconstructOptions& options, const SourcedBox& box,
 }
 
 bool has_surroundings(const ReconstructOptions& options, bool box_found,
-                      const std::vector<View>& views) {
+                      const std::vector<PreparedView>& views) {
   if (!method_of(options).carve_around) return false;
   if (options.surroundings != Surroundings::kAuto) return options.surroundings == Surroundings::kOn;
   const auto masked = std::count_if(views.begin(), views.end(),
-                                    [](const View& view) { return !view.mask.empty(); });
+                                    [](const PreparedView& view) { return !view.mask.empty(); });
   return box_found && 2 * std::size_t(masked) < views.size();
 }
 
-std::vector<View> crop_views(std::vector<View> views, const Box& box) {
-  for (View& view : views) crop_to_box(box, kCropMargin, view);
+std::vector<PreparedView> crop_views(std::vector<PreparedView> views, const Box& box) {
+  for (PreparedView& view : views) crop_to_box(box, kCropMargin, view);
   return views;
 }
 

@@ -18,7 +18,7 @@
 namespace photohull::pipeline {
 namespace {
 
-double median_noise(std::span<const View> views) {
+double median_noise(std::span<const PreparedView> views) {
   std::vector<double> values(views.size());
   tbb::parallel_for(std::size_t(0), views.size(),
                     [&](std::size_t i) { values[i] = estimate_image_noise(views[i].image); });
@@ -68,11 +68,12 @@ Decoded decode_as_needed(const Photographs& photographs, ReadScene& read,
 }
 
 /// The background of a photograph taken from within the box is what is looked for.
-void forget_masks_made_within(const Scene& scene, std::vector<View>& views, Progress& progress) {
+void forget_masks_made_within(const Scene& scene, std::vector<PreparedView>& views,
+                              Progress& progress) {
   const std::size_t within = cameras_within(*scene.box, scene.views);
-  const auto made = [](const View& view) { return view.silhouette.likelihood; };
+  const auto made = [](const PreparedView& view) { return view.silhouette.likelihood; };
   if (within == 0 || std::none_of(views.begin(), views.end(), made)) return;
-  for (View& view : views) {
+  for (PreparedView& view : views) {
     if (made(view)) view.mask = {};
     view.silhouette.likelihood = false;
   }
@@ -81,7 +82,7 @@ void forget_masks_made_within(const Scene& scene, std::vector<View>& views, Prog
 }
 
 /// Returns how many there were.
-int mend_given_masks(std::span<const MaskJudgement> masks, std::vector<View>& views,
+int mend_given_masks(std::span<const MaskJudgement> masks, std::vector<PreparedView>& views,
                      Progress& progress) {
   std::vector<MendedMask> mended(views.size());
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
@@ -123,7 +124,7 @@ PreparedScene prepare_scene(const Photographs& photographs, ReadScene read,
   found.mask_source = prepared.mask_source;
   found.mask_confidence = prepared.mask_confidence;
   for (std::size_t i = 0; i < out.views.size(); ++i) {
-    View& view = out.views[i];
+    PreparedView& view = out.views[i];
     view.source = out.scene.views[i];
     view.silhouette.likelihood = !view.mask.empty() && !was_given(prepared.masks[i]);
     found.masks.push_back({view.name, prepared.masks[i].source, prepared.masks[i].confidence});

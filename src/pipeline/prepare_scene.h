@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "core/image.h"
+#include "core/prepared_view.h"
 #include "core/progress.h"
 #include "pipeline/findings.h"
 #include "pipeline/photographs.h"
@@ -13,8 +13,8 @@
 namespace photohull::pipeline {
 
 struct PreparedScene {
-  Scene scene;              ///< at the scale that its photographs were read at
-  std::vector<View> views;  ///< one for each of the scene's
+  Scene scene;                      ///< at the scale that its photographs were read at
+  std::vector<PreparedView> views;  ///< one for each of the scene's
   ViewFindings findings;
 };
 

@@ -73,9 +73,9 @@ Prepared prepare(Run& run) {
   const SourcedBox box =
       tighten_box(options, {*scene.scene.box, scene.scene.box_source}, agreeing.views, progress);
   const GridSpec grid = place_lattice(options, box, agreeing.views);
-  std::vector<View> views = has_surroundings(options, box_found, agreeing.views)
-                                ? std::move(agreeing.views)
-                                : crop_views(std::move(agreeing.views), box.box);
+  std::vector<PreparedView> views = has_surroundings(options, box_found, agreeing.views)
+                                        ? std::move(agreeing.views)
+                                        : crop_views(std::move(agreeing.views), box.box);
   const bool masks = any_mask(views);
   FoundSilhouettes found = run.clock.run("silhouettes", Weights::kSilhouettes, [&] {
     return find_silhouettes({options, box.box, agreeing.right, scene.findings}, std::move(views),
@@ -95,15 +95,15 @@ Prepared prepare(Run& run) {
 
 /// Masks are done with when neither sweeps nor stems need them any more. What was made of them
 /// stays.
-void forget_masks(const ReconstructOptions& options, std::vector<View>& views) {
+void forget_masks(const ReconstructOptions& options, std::vector<PreparedView>& views) {
   // The other samplers weight by the masks, and lines get their width from them.
   const bool needed = !method_of(options).from_hull ||
                       sampler_of(options) != projtex::Sampler::kMipmap ||
-                      std::any_of(views.begin(), views.end(), [](const View& view) {
+                      std::any_of(views.begin(), views.end(), [](const PreparedView& view) {
                         return !view.silhouette.lines.empty() || !view.silhouette.widened.empty();
                       });
   if (needed) return;
-  for (View& view : views) std::vector<std::uint8_t>().swap(view.mask.coverage);
+  for (PreparedView& view : views) std::vector<std::uint8_t>().swap(view.mask.coverage);
 }
 
 void warn_of_surroundings(const ReconstructOptions& options, bool bounded, Progress& progress) {
@@ -126,7 +126,7 @@ Evidence keep_evidence(const TriMesh& mesh, const std::vector<render::PooledEvid
 }
 
 /// The other photographs' pixels have done their work; memory peaks in the stages to come.
-void keep_only_preview_photograph(const TriMesh& mesh, std::vector<View>& views) {
+void keep_only_preview_photograph(const TriMesh& mesh, std::vector<PreparedView>& views) {
   const int kept = render::choose_main_view(mesh, views);
   for (int i = 0; i < int(views.size()); ++i)
     if (i != kept) std::vector<std::uint8_t>().swap(views[std::size_t(i)].image.bytes);

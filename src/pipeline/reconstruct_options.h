@@ -20,7 +20,10 @@
 namespace photohull::pipeline {
 
 enum class Quality { kDraft, kNormal, kHigh };
-enum class Method { kHull, kVoxelColoring, kSpaceCarving, kRefine };
+enum class Method {
+#define PHOTOHULL_METHOD(value, entry) value,
+#include "pipeline/methods/methods.def"
+};
 
 /// Surface that no camera sees: closed as the hull has it, or left out of mesh.ply. Without
 /// silhouettes what is open also leaves out surface that is more likely wrong than right. Auto is

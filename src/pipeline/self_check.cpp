@@ -85,7 +85,7 @@ assess::Signals gather_signals(const CheckedResult& result,
                                std::vector<assess::SilhouetteFit>* fits) {
   const TriMesh& mesh = *result.mesh;
   std::vector<Camera> cameras;
-  for (const View& view : result.views) cameras.push_back(view.camera);
+  for (const PreparedView& view : result.views) cameras.push_back(view.camera);
   const RayScene rays(mesh);
   const std::vector<assess::SurfaceProbe> probes =
       assess::probe_surface(mesh, rays, cameras, kProbes, kLift * result.voxel_size);
@@ -141,7 +141,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json explained_json(const assess::Explained& e, std::span<const View> views) {
+ordered_json explained_json(const assess::Explained& e, std::span<const PreparedView> views) {
   using assess::Place;
   ordered_json j = {{"places", e.looked_at()},
                     {"plain", e.count(Place::kPlain) / std::max(1.0, double(e.looked_at()))},
@@ -166,7 +166,7 @@ ordered_json explained_json(const assess::Explained& e, std::span<const View> vi
 }  // namespace
 
 std::string to_json(const assess::Verdict& verdict, const assess::Signals& s,
-                    std::span<const View> views) {
+                    std::span<const PreparedView> views) {
   ordered_json j = {{"level", assess::to_string(verdict.level)},
                     {"reasons", verdict.reasons},
                     {"notes", verdict.notes},

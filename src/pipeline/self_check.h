@@ -7,8 +7,8 @@
 
 #include "assess/silhouette_check.h"
 #include "assess/verdict.h"
-#include "core/image.h"
 #include "core/mesh.h"
+#include "core/prepared_view.h"
 #include "core/scene.h"
 
 namespace photohull::pipeline {
@@ -23,7 +23,7 @@ struct CheckedResult {
   bool hull = false;                ///< made by silhouettes alone
   bool bounded = false;             ///< do silhouettes bound it, so that it is judged by them?
   double share_beyond = 1;          ///< Hull::share_beyond
-  std::span<const View> views;
+  std::span<const PreparedView> views;
   double mask_confidence = 0;
   double noise_sigma = 0;     ///< of the images, on square roots of full scale
   double stems = 0;           ///< share of the mesh's vertices that lines placed
@@ -40,6 +40,6 @@ assess::Signals gather_signals(const CheckedResult& result,
 
 /// JSON: level, reasons and signals.
 std::string to_json(const assess::Verdict& verdict, const assess::Signals& signals,
-                    std::span<const View> views);
+                    std::span<const PreparedView> views);
 
 }  // namespace photohull::pipeline

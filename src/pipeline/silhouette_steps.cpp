@@ -34,7 +34,7 @@ void warn_of_room(const std::vector<OutlineRoom>& room, Progress& progress) {
 }
 
 void count_explained(std::span<const carving::ForegroundCounts> found,
-                     const std::vector<View>& views, ThinFindings& counts) {
+                     const std::vector<PreparedView>& views, ThinFindings& counts) {
   double worst = 0;
   for (std::size_t i = 0; i < views.size(); ++i) {
     const carving::ForegroundCounts& v = found[i];
@@ -46,13 +46,13 @@ void count_explained(std::span<const carving::ForegroundCounts> found,
 
 }  // namespace
 
-void measure_distances(std::vector<View>& views) {
+void measure_distances(std::vector<PreparedView>& views) {
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
     if (!views[i].mask.empty()) views[i].silhouette.distance = silhouette_distance(views[i].mask);
   });
 }
 
-Outlines trace_outlines(std::vector<View>& views) {
+Outlines trace_outlines(std::vector<PreparedView>& views) {
   Outlines outlines(views.size());
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
     const Mask& mask = views[i].mask;
@@ -65,7 +65,7 @@ Outlines trace_outlines(std::vector<View>& views) {
   return outlines;
 }
 
-Room bear_disagreement(const SilhouetteJob& job, const std::vector<View>& views,
+Room bear_disagreement(const SilhouetteJob& job, const std::vector<PreparedView>& views,
                        const Outlines& outlines, bool restored, SilhouetteFindings& findings,
                        Progress& progress) {
   Room room{std::vector<double>(views.size(), 0), 0};
@@ -81,7 +81,7 @@ Room bear_disagreement(const SilhouetteJob& job, const std::vector<View>& views,
   return room;
 }
 
-void give_room(const Room& room, std::vector<View>& views, SilhouetteFindings& findings) {
+void give_room(const Room& room, std::vector<PreparedView>& views, SilhouetteFindings& findings) {
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
     ViewSilhouette& s = views[i].silhouette;
     const double pixels = room.pixels[i];
@@ -91,12 +91,13 @@ void give_room(const Room& room, std::vector<View>& views, SilhouetteFindings& f
     s.distance = silhouette_distance(s.widened);
     if (pixels > 0) move_outline(pixels, s.widened, s.distance);
   });
-  for (const View& view : views)
+  for (const PreparedView& view : views)
     findings.thin.line_pixels += std::int64_t(view.silhouette.lines.size());
 }
 
-void explain_foreground(const SilhouetteJob& job, double full_evidence, std::vector<View>& views,
-                        SilhouetteFindings& findings, Progress& progress) {
+void explain_foreground(const SilhouetteJob& job, double full_evidence,
+                        std::vector<PreparedView>& views, SilhouetteFindings& findings,
+                        Progress& progress) {
   if (job.options.views_may_miss || !any_mask(views)) return;
   const std::vector<Camera> cameras = projtex::cameras_of(views);
   const carving::MissingParts found = carving::find_missing_parts(
@@ -110,7 +111,7 @@ void explain_foreground(const SilhouetteJob& job, double full_evidence, std::vec
     s.widened = std::move(mask);
   });
   if (full_evidence > 0)
-    for (View& view : views) {
+    for (PreparedView& view : views) {
       ViewSilhouette& s = view.silhouette;
       if (!view.mask.empty() && s.likelihood)
         weigh_by_certainty(s.widened.empty() ? view.mask : s.widened, s.distance);

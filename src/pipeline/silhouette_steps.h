@@ -11,23 +11,23 @@ namespace photohull::pipeline::silhouettes {
 /// The outlines of the views' masks, one each; empty where there is no mask.
 using Outlines = std::vector<Outline>;
 
-void measure_distances(std::vector<View>& views);
+void measure_distances(std::vector<PreparedView>& views);
 
 /// Tells the views how sharp they are beside the others, and leaves strongly blurred ones out.
-void leave_out_blurred(const SilhouetteJob& job, std::vector<View>& views,
+void leave_out_blurred(const SilhouetteJob& job, std::vector<PreparedView>& views,
                        SilhouetteFindings& findings, Progress& progress);
 
 /// Masks that are all too small carve the object itself away, and those that are too large leave it
 /// too thick. True where stems that eaten masks had lost were put back.
-bool correct_masks(const SilhouetteJob& job, std::vector<View>& views, SilhouetteFindings& findings,
-                   Progress& progress);
+bool correct_masks(const SilhouetteJob& job, std::vector<PreparedView>& views,
+                   SilhouetteFindings& findings, Progress& progress);
 
 /// Fills the silhouettes' lines.
-Outlines trace_outlines(std::vector<View>& views);
+Outlines trace_outlines(std::vector<PreparedView>& views);
 
 /// One view that is far off carves away what all others have. Its outline goes with it.
-void leave_out_wrong_views(const SilhouetteJob& job, std::vector<View>& views, Outlines& outlines,
-                           SilhouetteFindings& findings, Progress& progress);
+void leave_out_wrong_views(const SilhouetteJob& job, std::vector<PreparedView>& views,
+                           Outlines& outlines, SilhouetteFindings& findings, Progress& progress);
 
 /// Pixels around each view's outline.
 struct Room {
@@ -37,15 +37,16 @@ struct Room {
 
 /// The outline of a view that is off by a pixel would carve a pixel off the object, whatever all
 /// others show. So it gets as much room as outlines tell that it is off.
-Room bear_disagreement(const SilhouetteJob& job, const std::vector<View>& views,
+Room bear_disagreement(const SilhouetteJob& job, const std::vector<PreparedView>& views,
                        const Outlines& outlines, bool restored, SilhouetteFindings& findings,
                        Progress& progress);
 
 /// Gives stems and wires the room that voxels need; their width is known from the lines.
-void give_room(const Room& room, std::vector<View>& views, SilhouetteFindings& findings);
+void give_room(const Room& room, std::vector<PreparedView>& views, SilhouetteFindings& findings);
 
 /// Puts what masks show and not all views bear into the silhouettes that leave it out.
-void explain_foreground(const SilhouetteJob& job, double full_evidence, std::vector<View>& views,
-                        SilhouetteFindings& findings, Progress& progress);
+void explain_foreground(const SilhouetteJob& job, double full_evidence,
+                        std::vector<PreparedView>& views, SilhouetteFindings& findings,
+                        Progress& progress);
 
 }  // namespace photohull::pipeline::silhouettes

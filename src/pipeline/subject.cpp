@@ -4,13 +4,14 @@
 
 namespace photohull::pipeline {
 
-bool any_mask(std::span<const View> views) {
-  return std::any_of(views.begin(), views.end(), [](const View& v) { return !v.mask.empty(); });
+bool any_mask(std::span<const PreparedView> views) {
+  return std::any_of(views.begin(), views.end(),
+                     [](const PreparedView& v) { return !v.mask.empty(); });
 }
 
-std::vector<carving::Silhouette> silhouettes_of(std::span<const View> views) {
+std::vector<carving::Silhouette> silhouettes_of(std::span<const PreparedView> views) {
   std::vector<carving::Silhouette> out;
-  for (const View& view : views) {
+  for (const PreparedView& view : views) {
     const ViewSilhouette& s = view.silhouette;
     if (view.mask.empty())
       out.push_back({&view.mask});
@@ -21,18 +22,18 @@ std::vector<carving::Silhouette> silhouettes_of(std::span<const View> views) {
   return out;
 }
 
-std::vector<const SilhouetteDistance*> distances_of(std::span<const View> views) {
+std::vector<const SilhouetteDistance*> distances_of(std::span<const PreparedView> views) {
   std::vector<const SilhouetteDistance*> out;
-  for (const View& view : views) {
+  for (const PreparedView& view : views) {
     const SilhouetteDistance& distance = view.silhouette.distance;
     out.push_back(distance.pixels.empty() ? nullptr : &distance);
   }
   return out;
 }
 
-std::vector<SourceView> sources_of(std::span<const View> views) {
+std::vector<SourceView> sources_of(std::span<const PreparedView> views) {
   std::vector<SourceView> out;
-  for (const View& view : views) out.push_back(view.source);
+  for (const PreparedView& view : views) out.push_back(view.source);
   return out;
 }
 

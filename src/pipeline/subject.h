@@ -11,7 +11,7 @@
 #include "carving/hull.h"
 #include "core/box.h"
 #include "core/grid.h"
-#include "core/image.h"
+#include "core/prepared_view.h"
 #include "core/scene.h"
 
 namespace photohull::pipeline {
@@ -22,21 +22,21 @@ struct Subject {
   bool box_found = false;   ///< not given
   std::optional<Box> seen;  ///< around what the photographs show, where the box was found
   GridSpec grid;
-  std::vector<View> views;     ///< undistorted, and around the box alone but for surroundings
-  double noise_sigma = 0;      ///< of the photographs, square-root-encoded units of full scale
-  double mask_confidence = 0;  ///< [0, 1]: the least of the views' that have masks
-  double full_evidence = 0;    ///< pixels (carving::HullOptions)
+  std::vector<PreparedView> views;  ///< undistorted, and around the box alone but for surroundings
+  double noise_sigma = 0;           ///< of the photographs, square-root-encoded units of full scale
+  double mask_confidence = 0;       ///< [0, 1]: the least of the views' that have masks
+  double full_evidence = 0;         ///< pixels (carving::HullOptions)
 };
 
-bool any_mask(std::span<const View> views);
+bool any_mask(std::span<const PreparedView> views);
 
 /// Parts of the views, which must outlive them: what the hull and the refinement go by.
-std::vector<carving::Silhouette> silhouettes_of(std::span<const View> views);
+std::vector<carving::Silhouette> silhouettes_of(std::span<const PreparedView> views);
 
 /// nullptr for views without mask.
-std::vector<const SilhouetteDistance*> distances_of(std::span<const View> views);
+std::vector<const SilhouetteDistance*> distances_of(std::span<const PreparedView> views);
 
 /// What the scene lists of each.
-std::vector<SourceView> sources_of(std::span<const View> views);
+std::vector<SourceView> sources_of(std::span<const PreparedView> views);
 
 }  // namespace photohull::pipeline

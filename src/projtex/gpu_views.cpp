@@ -48,9 +48,9 @@ glm::ivec2 array_size(std::span<const Camera> cameras) {
   return size;
 }
 
-std::vector<Camera> cameras_of(std::span<const View> views) {
+std::vector<Camera> cameras_of(std::span<const PreparedView> views) {
   std::vector<Camera> cameras;
-  for (const View& view : views) cameras.push_back(view.camera);
+  for (const PreparedView& view : views) cameras.push_back(view.camera);
   return cameras;
 }
 

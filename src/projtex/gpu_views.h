@@ -6,7 +6,7 @@
 
 #include "core/camera.h"
 #include "core/grid.h"
-#include "core/image.h"
+#include "core/prepared_view.h"
 #include "shared/view.h"
 
 namespace photohull::projtex {
@@ -32,6 +32,6 @@ shaders::GpuView to_gpu_view(const GridCamera& camera, const glm::ivec2& array_s
 /// Smallest array texture that holds images of all the sizes.
 glm::ivec2 array_size(std::span<const Camera> cameras);
 
-std::vector<Camera> cameras_of(std::span<const View> views);
+std::vector<Camera> cameras_of(std::span<const PreparedView> views);
 
 }  // namespace photohull::projtex

@@ -41,11 +41,11 @@ std::vector<std::uint8_t> pad(const std::uint8_t* pixels, const ColourImage& ima
 
 }  // namespace
 
-ImageSet::ImageSet(std::span<const View> views) {
+ImageSet::ImageSet(std::span<const PreparedView> views) {
   PHOTOHULL_CHECK(!views.empty());
   const std::vector<Camera> cameras = cameras_of(views);
   const glm::ivec2 size = array_size(cameras);
-  const bool half = std::any_of(views.begin(), views.end(), [](const View& v) {
+  const bool half = std::any_of(views.begin(), views.end(), [](const PreparedView& v) {
     return v.image.encoding == Encoding::kLinearHalf;
   });
   texture_ =
@@ -69,7 +69,8 @@ ImageSet::ImageSet(std::span<const View> views) {
     texture_.upload(int(i), size.x, size.y, pixels);
   }
   texture_.generate_mipmaps();
-  for (const View& view : views) sharpness_.push_back(std::min(view.sharpness / kUnblurred, 1.0));
+  for (const PreparedView& view : views)
+    sharpness_.push_back(std::min(view.sharpness / kUnblurred, 1.0));
 }
 
 }  // namespace photohull::projtex

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/image.h"
+#include "core/prepared_view.h"
 #include "gpu/texture.h"
 
 namespace photohull::projtex {
@@ -16,12 +16,13 @@ namespace photohull::projtex {
 class ImageSet {
  public:
   /// Throws Error when the device cannot hold the images.
-  explicit ImageSet(std::span<const View> views);
+  explicit ImageSet(std::span<const PreparedView> views);
 
   const gpu::TextureArray& texture() const { return texture_; }
   int layers() const { return texture_.layers(); }
-  /// Of every view, View::sharpness relative to 0.9, at most 1: below, it has less fine detail than
-  /// views of the same without blur have, whose surface and light make some percent of difference.
+  /// Of every view, PreparedView::sharpness relative to 0.9, at most 1: below, it has less fine
+  /// detail than views of the same without blur have, whose surface and light make some percent of
+  /// difference.
   const std::vector<double>& sharpness() const { return sharpness_; }
 
  private:

@@ -30,12 +30,12 @@ struct Level {
   }
 };
 
-glm::ivec2 padded_size(std::span<const View> views) {
+glm::ivec2 padded_size(std::span<const PreparedView> views) {
   const glm::ivec2 size = array_size(cameras_of(views));
   return (size + kPadding - 1) / kPadding * kPadding;
 }
 
-Level covered(const View& view, const glm::ivec2& size) {
+Level covered(const PreparedView& view, const glm::ivec2& size) {
   const ColourImage& image = view.image;
   PHOTOHULL_CHECK(image.width == view.camera.intrinsics.width);
   PHOTOHULL_CHECK(image.height == view.camera.intrinsics.height);
@@ -114,7 +114,8 @@ bool has_levels(Sampler sampler) {
 
 }  // namespace
 
-SampleImages::SampleImages(std::span<const View> views, Sampler sampler) : sampler_(sampler) {
+SampleImages::SampleImages(std::span<const PreparedView> views, Sampler sampler)
+    : sampler_(sampler) {
   PHOTOHULL_CHECK(!views.empty());
   const glm::ivec2 size = padded_size(views);
   const int count = int(views.size()), levels = has_levels(sampler) ? kSampleLevels : 1;
@@ -127,7 +128,7 @@ SampleImages::SampleImages(std::span<const View> views, Sampler sampler) : sampl
   if (sampler == Sampler::kSummedArea) {
     extra_ = gpu::TextureArray(gpu::TextureFormat::kRgba32ui, size.x + 1, size.y + 1, count);
     float most = 1;
-    for (const View& view : views)
+    for (const PreparedView& view : views)
       for (const glm::vec4& p : covered(view, size).pixels) most = std::max({most, p.r, p.g, p.b});
     sum_unit_ = most / float(kFullSum);
   }

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "core/image.h"
+#include "core/prepared_view.h"
 #include "gpu/context.h"
 #include "gpu/program.h"
 #include "gpu/texture.h"
@@ -20,7 +20,7 @@ namespace photohull::projtex {
 class SampleImages {
  public:
   /// Throws Error when the device cannot hold the images, or lacks the filter.
-  SampleImages(std::span<const View> views, Sampler sampler);
+  SampleImages(std::span<const PreparedView> views, Sampler sampler);
 
   Sampler sampler() const { return sampler_; }
   int layers() const { return images_.layers(); }

@@ -53,7 +53,7 @@ double share_covered(const TriMesh& mesh, const Camera& camera) {
 
 }  // namespace
 
-int choose_main_view(const TriMesh& mesh, std::span<const View> views) {
+int choose_main_view(const TriMesh& mesh, std::span<const PreparedView> views) {
   int best = 0;
   double most = -1;
   for (std::size_t i = 0; i < views.size(); ++i) {
@@ -65,8 +65,8 @@ int choose_main_view(const TriMesh& mesh, std::span<const View> views) {
   return best;
 }
 
-std::vector<int> choose_other_views(const TriMesh& mesh, std::span<const View> views, int main,
-                                    int count) {
+std::vector<int> choose_other_views(const TriMesh& mesh, std::span<const PreparedView> views,
+                                    int main, int count) {
   const Sphere bounds = bounds_of(mesh);
   const auto direction = [&](int view) {
     return glm::normalize(views[view].camera.center() - bounds.centre);

@@ -4,20 +4,20 @@
 #include <span>
 #include <vector>
 
-#include "core/image.h"
 #include "core/mesh.h"
+#include "core/prepared_view.h"
 
 namespace photohull::render {
 
 /// The view that shows the mesh largest and whole: its covered share of the image, times the share
 /// of the mesh's vertices that lie on the image, squared, times its sharpness where it is less
 /// sharp than others.
-int choose_main_view(const TriMesh& mesh, std::span<const View> views);
+int choose_main_view(const TriMesh& mesh, std::span<const PreparedView> views);
 
 /// Up to `count` further views, each as far in direction (seen from the mesh's centre) from those
 /// before it as there is; views closer than 15 degrees to one of them add nothing and are left out.
-std::vector<int> choose_other_views(const TriMesh& mesh, std::span<const View> views, int main,
-                                    int count);
+std::vector<int> choose_other_views(const TriMesh& mesh, std::span<const PreparedView> views,
+                                    int main, int count);
 
 /// What of a camera's image plane a picture shows, and the depths in it.
 struct Window {

@@ -75,15 +75,15 @@ Panel panel_for(Window& window, int edge) {
   return out;
 }
 
-PreviewImage photograph(const View& view, const Window& window, const Panel& panel) {
+PreviewImage photograph(const PreparedView& view, const Window& window, const Panel& panel) {
   return render::cut_photograph(view.image, window.x, window.y, panel.scale, panel.width,
                                 panel.height);
 }
 
 }  // namespace
 
-PreviewImage render_preview(gpu::Context& context, const TriMesh& mesh, std::span<const View> views,
-                            const PreviewOptions& options) {
+PreviewImage render_preview(gpu::Context& context, const TriMesh& mesh,
+                            std::span<const PreparedView> views, const PreviewOptions& options) {
   PHOTOHULL_CHECK(!views.empty());
   PHOTOHULL_CHECK(options.panel_edge >= 16 && options.panel_edge <= 4096);
   PHOTOHULL_CHECK(options.other_views >= 0 && options.other_views <= 4);

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "core/image.h"
 #include "core/mesh.h"
+#include "core/prepared_view.h"
 #include "gpu/context.h"
 
 namespace photohull {
@@ -31,7 +31,8 @@ struct PreviewOptions {
 /// A mesh without triangles gives the first photograph alone. mesh.normals must be present when
 /// there are triangles; without mesh.colours the colour is clay's. `views` must not be empty.
 /// Throws Error when the device cannot hold the mesh or the picture.
-PreviewImage render_preview(gpu::Context& context, const TriMesh& mesh, std::span<const View> views,
+PreviewImage render_preview(gpu::Context& context, const TriMesh& mesh,
+                            std::span<const PreparedView> views,
                             const PreviewOptions& options = {});
 
 }  // namespace photohull

@@ -20,7 +20,7 @@ void crop_rows(std::vector<std::uint8_t>& bytes, std::size_t pixel_bytes, int wi
 
 }  // namespace
 
-void crop_to_box(const Box& box, int margin, View& view) {
+void crop_to_box(const Box& box, int margin, PreparedView& view) {
   glm::dvec2 least(1e300), greatest(-1e300);
   for (int corner = 0; corner < 8; ++corner) {
     const auto pixel =

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/box.h"
-#include "core/image.h"
+#include "core/prepared_view.h"
 
 namespace photohull {
 
@@ -10,6 +10,6 @@ namespace photohull {
 /// `margin` pixels on each side, and moves the principal point accordingly: everything after works
 /// on fewer pixels, with the same result. A view that has part of the box behind it, or none of it
 /// on its image, stays as it is.
-void crop_to_box(const Box& box, int margin, View& view);
+void crop_to_box(const Box& box, int margin, PreparedView& view);
 
 }  // namespace photohull

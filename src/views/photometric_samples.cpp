@@ -56,7 +56,7 @@ glm::vec4 pixel(const ColourImage& image, int x, int y) {
 }
 
 /// Is everything within `reach` pixels on the image and inside the object?
-bool inside(const View& view, const glm::ivec2& at, int reach) {
+bool inside(const PreparedView& view, const glm::ivec2& at, int reach) {
   if (at.x < reach || at.y < reach || at.x >= view.image.width - reach ||
       at.y >= view.image.height - reach)
     return false;
@@ -70,8 +70,8 @@ bool inside(const View& view, const glm::ivec2& at, int reach) {
 }
 
 /// Mean colour of a window and its deviation; nothing where a pixel is unknown or saturated.
-std::optional<PhotometricSample> read_window(const View& view, const glm::dvec2& at, int reach,
-                                             double noise_sigma) {
+std::optional<PhotometricSample> read_window(const PreparedView& view, const glm::dvec2& at,
+                                             int reach, double noise_sigma) {
   const glm::ivec2 middle(glm::floor(at + 0.5));
   if (!inside(view, middle, reach + kMaskMargin)) return {};
   glm::dvec3 sum(0), squares(0);
@@ -179,9 +179,9 @@ double PhotometricFrame::radius2(const Intrinsics& view, const glm::dvec2& p) co
   return glm::dot(file - middle, file - middle) / std::max(glm::dot(middle, middle), 1.0);
 }
 
-std::vector<PhotometricFrame> frames_of(std::span<const View> views) {
+std::vector<PhotometricFrame> frames_of(std::span<const PreparedView> views) {
   std::vector<PhotometricFrame> frames;
-  for (const View& view : views)
+  for (const PreparedView& view : views)
     frames.push_back({view.source.camera.intrinsics, view.source.distortion});
   return frames;
 }
@@ -202,7 +202,7 @@ std::vector<int> shared_lenses(std::span<const PhotometricFrame> frames) {
 }
 
 std::vector<PhotometricPoint> sample_photometric(const TriMesh& mesh, double patch,
-                                                 std::span<const View> views,
+                                                 std::span<const PreparedView> views,
                                                  std::span<const PhotometricFrame> frames,
                                                  double noise_sigma, const Progress& progress,
                                                  std::size_t most) {
@@ -249,7 +249,7 @@ std::vector<PhotometricPoint> sample_photometric(const TriMesh& mesh, double pat
 
 void apply_photometric(const PhotometricCalibration& calibration,
                        std::span<const PhotometricFrame> frames,
-                       const std::vector<int>& lens_of_view, std::span<View> views) {
+                       const std::vector<int>& lens_of_view, std::span<PreparedView> views) {
   PHOTOHULL_CHECK_OP(views.size(), ==, calibration.views.size());
   PHOTOHULL_CHECK_OP(views.size(), ==, frames.size());
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "core/image.h"
 #include "core/mesh.h"
+#include "core/prepared_view.h"
 #include "core/scene.h"
 #include "views/photometric.h"
 
@@ -21,7 +21,7 @@ struct PhotometricFrame {
   double radius2(const Intrinsics& view, const glm::dvec2& pixel) const;
 };
 
-std::vector<PhotometricFrame> frames_of(std::span<const View> views);
+std::vector<PhotometricFrame> frames_of(std::span<const PreparedView> views);
 
 /// Numbers lenses from 0: frames of the same size whose focal lengths differ by a hundredth at most
 /// share one.
@@ -37,7 +37,7 @@ constexpr std::size_t kMostPhotometricPoints = 4000;
 /// units, about the error of the surface; `noise_sigma` as estimate_image_noise says. The mesh
 /// needs normals. Works in parallel; the result is the same whatever the number of threads.
 std::vector<PhotometricPoint> sample_photometric(const TriMesh& mesh, double patch,
-                                                 std::span<const View> views,
+                                                 std::span<const PreparedView> views,
                                                  std::span<const PhotometricFrame> frames,
                                                  double noise_sigma, const Progress& progress,
                                                  std::size_t most = kMostPhotometricPoints);
@@ -46,6 +46,6 @@ std::vector<PhotometricPoint> sample_photometric(const TriMesh& mesh, double pat
 /// images is clipped. Views that were not solved lose vignetting only.
 void apply_photometric(const PhotometricCalibration& calibration,
                        std::span<const PhotometricFrame> frames,
-                       const std::vector<int>& lens_of_view, std::span<View> views);
+                       const std::vector<int>& lens_of_view, std::span<PreparedView> views);
 
 }  // namespace photohull

@@ -43,7 +43,7 @@ void leave_out_unreadable(const std::vector<std::string>& failures, bool strict,
                           std::vector<MaskOrigin>& origins, PreparedViews& prepared) {
   std::vector<LeftOutView> unreadable;
   std::vector<bool> keep;
-  std::vector<View> views;
+  std::vector<PreparedView> views;
   std::vector<MaskOrigin> kept_origins;
   for (std::size_t i = 0; i < failures.size(); ++i) {
     const SourceView& source = scene.views[i];
@@ -101,7 +101,7 @@ PreparedViews prepare_views(Scene& scene, const ViewLoader& loader, const Prepar
   std::vector<std::string> failures(count);  // the decoder's words; empty: none
   for_each_view(count, 0.0, kDecodeShare, progress, [&](std::size_t i) {
     const SourceView& source = scene.views[i];
-    View& view = result.views[i];
+    PreparedView& view = result.views[i];
     view.name = source.name;
     view.camera = source.camera;
     if (!load_image(source, loader, view.image, failures[i])) return;
@@ -125,7 +125,7 @@ PreparedViews prepare_views(Scene& scene, const ViewLoader& loader, const Prepar
 
   progress.check_cancelled();
   for_each_view(count, kDecodeShare, 1.0, progress, [&](std::size_t i) {
-    View& view = result.views[i];
+    PreparedView& view = result.views[i];
     view.source = scene.views[i];
     undistort(view.source.distortion, options.max_frame_growth, view);
   });

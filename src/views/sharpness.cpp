@@ -59,7 +59,7 @@ double least_share(const Tensor& f, const Tensor& c) {
   return (b - d) / (2 * determinant);
 }
 
-Detail detail_of(const View& view, double noise_variance) {
+Detail detail_of(const PreparedView& view, double noise_variance) {
   const GreyImage grey = grey_image(view.image);
   const cv::Mat fine = blurred(grey, kFine), coarse = blurred(grey, kCoarse);
   Tensor f, c;
@@ -90,7 +90,7 @@ Detail detail_of(const View& view, double noise_variance) {
 
 }  // namespace
 
-std::vector<double> relative_sharpness(std::span<const View> views, const Box& box,
+std::vector<double> relative_sharpness(std::span<const PreparedView> views, const Box& box,
                                        double noise_sigma) {
   const double noise = std::pow(255 * noise_sigma, 2) * noise_share();
   std::vector<Detail> detail(views.size());
@@ -99,7 +99,7 @@ std::vector<double> relative_sharpness(std::span<const View> views, const Box& b
   const glm::dvec3 middle = box.center();
   std::vector<glm::dvec3> ways;
   std::vector<double> footprints;
-  for (const View& view : views) {
+  for (const PreparedView& view : views) {
     ways.push_back(glm::normalize(view.camera.center() - middle));
     footprints.push_back(view.camera.to_camera(middle).z / view.camera.intrinsics.fx);
   }

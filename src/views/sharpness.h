@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/box.h"
-#include "core/image.h"
+#include "core/prepared_view.h"
 
 namespace photohull {
 
@@ -22,7 +22,7 @@ namespace photohull {
 /// of the fine detail than the image are none.
 ///
 /// `noise_sigma` as estimate_image_noise gives it. In parallel; the same for any number of threads.
-std::vector<double> relative_sharpness(std::span<const View> views, const Box& box,
+std::vector<double> relative_sharpness(std::span<const PreparedView> views, const Box& box,
                                        double noise_sigma);
 
 }  // namespace photohull

@@ -204,7 +204,7 @@ std::uint8_t sample_coverage(const Mask& mask, const glm::dvec2& position) {
 
 /// Replaces the view's image and mask by those of a pinhole camera.
 template <typename Format>
-void resample(const Format& format, const LensMap& map, const Intrinsics& k, View& view) {
+void resample(const Format& format, const LensMap& map, const Intrinsics& k, PreparedView& view) {
   const std::size_t size = view.image.bytes_per_pixel();
   const std::size_t pixels = std::size_t(k.width) * k.height;
   ColourImage image{k.width, k.height, view.image.encoding, false, {}};
@@ -296,7 +296,7 @@ Intrinsics undistorted_intrinsics(const Intrinsics& source, const Distortion& di
 namespace {
 
 /// Resamples a view to a pinhole camera's picture.
-void resample_to(const Intrinsics& k, const LensMap& map, View& view) {
+void resample_to(const Intrinsics& k, const LensMap& map, PreparedView& view) {
   if (view.image.encoding == ColourImage::Encoding::kSrgb8)
     resample(Srgb8(), map, k, view);
   else
@@ -325,13 +325,13 @@ Intrinsics centred_square(const Intrinsics& source) {
 
 }  // namespace
 
-void undistort(const Distortion& distortion, double max_growth, View& view) {
+void undistort(const Distortion& distortion, double max_growth, PreparedView& view) {
   if (is_pinhole(distortion)) return;
   const LensMap map(view.camera.intrinsics, distortion, max_growth);
   resample_to(undistorted_intrinsics(view.camera.intrinsics, distortion, max_growth), map, view);
 }
 
-void rectify(const Distortion& distortion, double max_growth, View& view) {
+void rectify(const Distortion& distortion, double max_growth, PreparedView& view) {
   Intrinsics source = view.camera.intrinsics;
   const LensMap map(source, distortion, max_growth);
   if (!is_pinhole(distortion)) source = undistorted_intrinsics(source, distortion, max_growth);

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/camera.h"
-#include "core/image.h"
+#include "core/prepared_view.h"
 
 namespace photohull {
 
@@ -26,10 +26,10 @@ Intrinsics undistorted_intrinsics(const Intrinsics& source, const Distortion& di
 /// Resamples the image (bicubic, in linear light) and its mask (bilinear) to
 /// undistorted_intrinsics() and sets view.camera to them. Pixels that the photograph does not
 /// show get alpha 0 and coverage 255: they are unknown. Without distortion nothing happens.
-void undistort(const Distortion& distortion, double max_growth, View& view);
+void undistort(const Distortion& distortion, double max_growth, PreparedView& view);
 
 /// The same, to a camera that every format can express: no distortion, no skew, square pixels of
 /// the finer of the two focal lengths, the principal point in the middle of the frame.
-void rectify(const Distortion& distortion, double max_growth, View& view);
+void rectify(const Distortion& distortion, double max_growth, PreparedView& view);
 
 }  // namespace photohull

@@ -11,11 +11,11 @@ namespace {
 const Box kAround{glm::dvec3(-1.3), glm::dvec3(1.3)};
 
 /// A textured sphere of radius 1 before an even background, from cameras around its equator.
-std::vector<View> photographs(double step_degrees, int count, double texture = 0.15) {
-  std::vector<View> views;
+std::vector<PreparedView> photographs(double step_degrees, int count, double texture = 0.15) {
+  std::vector<PreparedView> views;
   for (int i = 0; i < count; ++i) {
     const double a = step_degrees * i * 3.14159265358979 / 180;
-    View view;
+    PreparedView view;
     view.camera = test::look_at({6 * std::cos(a), 6 * std::sin(a), 0}, {0, 0, 0}, 300, 160, 160);
     view.image = test::ray_cast(view.camera, [&](const glm::dvec3& eye, const glm::dvec3& ray) {
       const double b = glm::dot(eye, ray), c = glm::dot(eye, eye) - 1;
@@ -41,7 +41,8 @@ TriMesh whole(double radius) {
   return part_of_sphere(radius, [](const glm::dvec3&) { return true; });
 }
 
-Explained explain(const TriMesh& mesh, const std::vector<View>& views, const Box& box = kAround) {
+Explained explain(const TriMesh& mesh, const std::vector<PreparedView>& views,
+                  const Box& box = kAround) {
   return explain_photographs(mesh, RayScene(mesh), box, views,
                              {.voxel_size = 0.03, .pixel_size = 0.02, .noise = 0});
 }
@@ -61,7 +62,7 @@ TEST(Explained, TheRightSurfaceExplainsTheTexture) {
 }
 
 TEST(Explained, AHoleShowsTheInside) {
-  const std::vector<View> views = photographs(12, 30);
+  const std::vector<PreparedView> views = photographs(12, 30);
   EXPECT_EQ(explain(whole(1), views).share_behind(), 0);
   // From the angle a to its middle, lunes of (1 + cos a) / 2 of the disc show the outside, and of
   // -cos a the inside where that is positive: 1 / pi beside 1 / 2 in the mean.
@@ -80,7 +81,7 @@ TEST(Explained, TheSurfaceAloneLeavesOutWhatLiesBesideIt) {
 }
 
 TEST(Explained, ASurfaceThatIsOffDisagrees) {
-  const std::vector<View> views = photographs(12, 30, 0.06);
+  const std::vector<PreparedView> views = photographs(12, 30, 0.06);
   EXPECT_GT(explain(whole(1), views).explained(), 0.9);
   // A pixel is 0.02 large; 12 degrees aside the surface moves by a fifth of what it is off.
   const Explained inside = explain(whole(0.8), views), outside = explain(whole(1.2), views);
@@ -102,7 +103,7 @@ TEST(Explained, WhatTheBoxCutsOffIsToldFromWhatLiesFarAway) {
   const TriMesh upper = part_of_sphere(1, [](const glm::dvec3& p) { return p.z > 0.6; });
   const Box above{{-1.3, -1.3, 0.6}, {1.3, 1.3, 1.3}};
   // Cameras that look down through the box at the sphere below it.
-  std::vector<View> views = photographs(12, 30);
+  std::vector<PreparedView> views = photographs(12, 30);
   for (int i = 0; i < 30; ++i) {
     const double a = 0.2094 * i;
     views[i].camera =
@@ -133,9 +134,9 @@ TEST(Explained, PlainPhotographsTellNothing) {
 }
 
 TEST(Explained, PhotographsOfSomethingElseAreNotExplained) {
-  std::vector<View> views = photographs(12, 30);
+  std::vector<PreparedView> views = photographs(12, 30);
   test::Rng rng(1);
-  for (View& view : views) view.image = test::random_image(rng, 160, 160);
+  for (PreparedView& view : views) view.image = test::random_image(rng, 160, 160);
   const Explained e = explain(whole(1), views);
   EXPECT_LT(e.explained(), 0.1);  // by chance, in the best of three views
 }

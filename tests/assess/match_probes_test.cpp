@@ -12,11 +12,11 @@ namespace {
 constexpr double kRadius = 1;
 
 /// A textured sphere from cameras around its equator, about 12 degrees apart.
-std::vector<View> photographs(double texture = 0.15) {
-  std::vector<View> views;
+std::vector<PreparedView> photographs(double texture = 0.15) {
+  std::vector<PreparedView> views;
   for (int i = 0; i < 30; ++i) {
     const double a = 0.2094 * i;
-    View view;
+    PreparedView view;
     view.camera = test::look_at({6 * std::cos(a), 6 * std::sin(a), 0}, {0, 0, 0}, 300, 160, 160);
     view.image = test::ray_cast(view.camera, [&](const glm::dvec3& eye, const glm::dvec3& ray) {
       const double b = glm::dot(eye, ray), c = glm::dot(eye, eye) - kRadius * kRadius;
@@ -29,15 +29,15 @@ std::vector<View> photographs(double texture = 0.15) {
   return views;
 }
 
-MatchEvidence match(const std::vector<View>& views, double radius = kRadius,
+MatchEvidence match(const std::vector<PreparedView>& views, double radius = kRadius,
                     double coarsest = 0.05) {
   TriMesh mesh = test::sphere_mesh({0, 0, 0}, radius, 90);
   mesh.confidence.assign(mesh.positions.size(), 1.0f);
   std::vector<Camera> cameras;
   std::vector<test::Outline> outlines;
   std::vector<const SilhouetteDistance*> silhouettes;
-  for (const View& view : views) cameras.push_back(view.camera);
-  for (const View& view : views)
+  for (const PreparedView& view : views) cameras.push_back(view.camera);
+  for (const PreparedView& view : views)
     outlines.push_back(test::sphere_outline(view.camera, {0, 0, 0}, kRadius));
   for (const test::Outline& o : outlines) silhouettes.push_back(&o.distance);
   MatchOptions options;
@@ -67,13 +67,13 @@ TEST(MatchProbes, ViewsThatAreTooCoarseTellOfNoDistances) {
 }
 
 TEST(MatchProbes, PatchesThatAreNotConfirmedCountTogether) {
-  std::vector<View> views = photographs();
+  std::vector<PreparedView> views = photographs();
   const MatchEvidence off = match(views, kRadius + 0.06);
   EXPECT_GT(off.unconfirmed_patches, 0.8 * off.textured);
 }
 
 TEST(MatchProbes, OffsetsTellHowFarOffTheSurfaceIs) {
-  const std::vector<View> views = photographs();
+  const std::vector<PreparedView> views = photographs();
   for (const double off : {-0.05, 0.05}) {
     const MatchEvidence e = match(views, kRadius + off);
     EXPECT_NEAR(e.offset, 0.05, 0.012) << off;
@@ -84,7 +84,7 @@ TEST(MatchProbes, OffsetsTellHowFarOffTheSurfaceIs) {
 }
 
 TEST(MatchProbes, ResidualsNameTheViewThatIsOff) {
-  std::vector<View> views = photographs();
+  std::vector<PreparedView> views = photographs();
   views[7].camera.intrinsics.cy += 1.5;  // across the epipolar lines of the equator
   const MatchEvidence e = match(views);
   EXPECT_NEAR(e.views[7].pixels, 1.5, 0.3);
@@ -100,9 +100,9 @@ TEST(MatchProbes, PlainSurfaceIsNotTextured) {
 }
 
 TEST(MatchProbes, PhotographsOfSomethingElseAreNotMatched) {
-  std::vector<View> views = photographs();
+  std::vector<PreparedView> views = photographs();
   test::Rng rng(1);
-  for (View& view : views) view.image = test::random_image(rng, 160, 160);
+  for (PreparedView& view : views) view.image = test::random_image(rng, 160, 160);
   const MatchEvidence e = match(views);
   EXPECT_GT(e.textured, 0.5);
   EXPECT_LT(e.matched, 0.05);

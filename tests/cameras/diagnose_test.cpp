@@ -37,7 +37,7 @@ class Diagnose : public testing::Test {
     Scene scene = io::load_scene(folder / "scene/transforms.json");
     const ViewLoader loader{[](const fs::path& file) { return io::read_image(file); },
                             [](const fs::path& file) { return io::read_mask(file); }};
-    healthy_ = new std::vector<View>(prepare_views(scene, loader, {}, progress).views);
+    healthy_ = new std::vector<PreparedView>(prepare_views(scene, loader, {}, progress).views);
     box_ = *scene.box;
   }
   static void TearDownTestSuite() {
@@ -47,7 +47,7 @@ class Diagnose : public testing::Test {
 
   /// The poses as they would be given for these to be read as `reading` says.
   void misread(const PoseReading& reading) {
-    for (View& view : views_) {
+    for (PreparedView& view : views_) {
       // A flip is its own inverse, and comes last: undone first.
       const Pose flipped = PoseReading{.flipped = reading.flipped}.pose(view.camera.cam_from_world);
       view.camera.cam_from_world = PoseReading{.inverted = reading.inverted}.pose(flipped);
@@ -55,7 +55,7 @@ class Diagnose : public testing::Test {
   }
 
   void shift_principal_points(double by) {
-    for (View& view : views_) {
+    for (PreparedView& view : views_) {
       view.camera.intrinsics.cx += by;
       view.camera.intrinsics.cy += by;
     }
@@ -63,14 +63,14 @@ class Diagnose : public testing::Test {
 
   CameraDiagnosis diagnose() { return diagnose_cameras(views_, scene_box_, progress_); }
 
-  static std::vector<View>* healthy_;
+  static std::vector<PreparedView>* healthy_;
   static Box box_;
-  std::vector<View> views_ = *healthy_;
+  std::vector<PreparedView> views_ = *healthy_;
   std::optional<Box> scene_box_ = box_;
   Progress progress_;
 };
 
-std::vector<View>* Diagnose::healthy_ = nullptr;
+std::vector<PreparedView>* Diagnose::healthy_ = nullptr;
 Box Diagnose::box_;
 
 TEST_F(Diagnose, CamerasInOrderHaveNoFault) {
@@ -153,7 +153,7 @@ TEST_F(Diagnose, NamesAViewThatIsOffAlongItsEpipolarLines) {
   // Views of a straight row: sideways is along the lines that all pairs have.
   views_.clear();
   for (int i = 0; i < 7; ++i) {
-    View view = (*healthy_)[0];
+    PreparedView view = (*healthy_)[0];
     const double shift = 12 * i;  // of a flat object's picture
     for (int y = 0; y < view.image.height; ++y)
       for (int x = 0; x < view.image.width; ++x) {
@@ -186,7 +186,7 @@ TEST_F(Diagnose, CamerasThatAreAllALittleOffAreNotMisread) {
 }
 
 TEST_F(Diagnose, SilhouettesServeWhereThereAreNoMatches) {
-  for (View& view : views_)
+  for (PreparedView& view : views_)
     for (std::size_t i = 0; i < view.image.bytes.size(); ++i)
       if (i % view.image.bytes_per_pixel() != 3) view.image.bytes[i] = 0;
   EXPECT_THAT(diagnose().faults, IsEmpty());
@@ -201,7 +201,7 @@ TEST_F(Diagnose, SilhouettesAloneNameTheViewThatIsTurned) {
   turn(views_[3].camera, 20);
   views_[5].mask = {};
   std::vector<Camera> cameras;
-  for (const View& view : views_) cameras.push_back(view.camera);
+  for (const PreparedView& view : views_) cameras.push_back(view.camera);
   const std::vector<ViewFit> fits = fit_silhouettes(cameras, views_);
   ASSERT_EQ(fits.size(), views_.size());
   for (std::size_t i = 0; i < fits.size(); ++i) {

@@ -172,7 +172,7 @@ class RefineCameras : public testing::Test {
   ScratchFolder folder_;
   Progress progress_;
   Scene scene_;
-  std::vector<View> views_;
+  std::vector<PreparedView> views_;
   std::vector<Camera> truth_;
 };
 
@@ -340,7 +340,8 @@ TEST_F(RefineCameras, GivenTracksServeAlone) {
 TEST_F(RefineCameras, PixelCentreAlone) {
   synthesize(kTextured, "{}");
   // The file's writer counted pixels from their corners.
-  for (View& view : views_) view.camera.intrinsics.cx += 0.5, view.camera.intrinsics.cy += 0.5;
+  for (PreparedView& view : views_)
+    view.camera.intrinsics.cx += 0.5, view.camera.intrinsics.cy += 0.5;
   RefineCamerasOptions options;
   options.intrinsics = SharedIntrinsics::kPixelCentre;
   const CameraRefinement found = refine_cameras(views_, options, progress_);
@@ -351,7 +352,7 @@ TEST_F(RefineCameras, PixelCentreAlone) {
 
 TEST_F(RefineCameras, PrincipalPointsThatAreOffAlikeShowInWhatAllViewsMovedBy) {
   synthesize(kTextured, "{}");
-  for (View& view : views_) view.camera.intrinsics.cx += 3;
+  for (PreparedView& view : views_) view.camera.intrinsics.cx += 3;
   const CameraRefinement found = refine_cameras(views_, {}, progress_);
   ASSERT_TRUE(found.changed);
   EXPECT_GT(found.moved_alike, 0.8 * found.moved);

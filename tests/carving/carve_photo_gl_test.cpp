@@ -54,13 +54,13 @@ glm::dvec3 trace(const glm::dvec3& eye, const glm::dvec3& ray) {
   return glm::dvec3(0.02);
 }
 
-std::vector<View> photograph() {
-  std::vector<View> views;
+std::vector<PreparedView> photograph() {
+  std::vector<PreparedView> views;
   for (int i = 0; i < 8; ++i) {
     const double angle = 2 * M_PI * i / 7, tilt = i == 7 ? 0 : 0.42;
     const glm::dvec3 eye = 4.0 * glm::dvec3(std::sin(tilt) * std::cos(angle),
                                             std::sin(tilt) * std::sin(angle), std::cos(tilt));
-    View view;
+    PreparedView view;
     view.camera = test::look_at(eye, {0, 0, -0.2}, 215, 160, 128);
     view.image = test::ray_cast(view.camera, trace, 2);
     views.push_back(view);
@@ -71,7 +71,7 @@ std::vector<View> photograph() {
 class CarvePhoto : public ::testing::Test {
  protected:
   CarvePhoto() : views_(photograph()) {
-    for (const View& view : views_) cameras_.push_back(view.camera);
+    for (const PreparedView& view : views_) cameras_.push_back(view.camera);
     const GridSpec grid = fit_grid(kBlock, 0.04);
     const std::vector<Silhouette> none(views_.size());
     hull_ = carve_silhouette(context_, {grid, kBlock}, {cameras_, none}, {2}, progress_);
@@ -85,7 +85,7 @@ class CarvePhoto : public ::testing::Test {
 
   gpu::Context& context_ = test::gl_context();
   Progress progress_;
-  std::vector<View> views_;
+  std::vector<PreparedView> views_;
   std::vector<Camera> cameras_;
   SparseVolume hull_;
 };
@@ -187,7 +187,8 @@ TEST_F(CarvePhoto, TwoRunsGiveTheSameBytes) {
 }
 
 TEST_F(CarvePhoto, BlankPhotographsCarveNothing) {
-  for (View& view : views_) std::fill(view.image.bytes.begin(), view.image.bytes.end(), 128);
+  for (PreparedView& view : views_)
+    std::fill(view.image.bytes.begin(), view.image.bytes.end(), 128);
   PhotoReport report;
   const SparseVolume volume = carve({}, &report);
   EXPECT_EQ(report.carved, 0);

@@ -11,10 +11,10 @@ constexpr int kWidth = 120, kHeight = 90;
 const glm::dvec3 kCentre{0.2, -0.1, 0.3};
 constexpr double kRadius = 0.6;
 
-std::vector<View> views_of_a_ball(int count) {
-  std::vector<View> views;
+std::vector<PreparedView> views_of_a_ball(int count) {
+  std::vector<PreparedView> views;
   for (const Camera& camera : test::cameras_around(kCentre, 5, count, 300, kWidth, kHeight)) {
-    View view;
+    PreparedView view;
     view.camera = camera;
     view.mask = test::sphere_outline(camera, kCentre, kRadius).mask;
     views.push_back(std::move(view));
@@ -25,7 +25,7 @@ std::vector<View> views_of_a_ball(int count) {
 Box around(double half) { return {kCentre - half, kCentre + half}; }
 
 TEST(ObjectBox, FitsAreNotOversized) {
-  const std::vector<View> views = views_of_a_ball(12);
+  const std::vector<PreparedView> views = views_of_a_ball(12);
   EXPECT_FALSE(box_is_oversized(around(kRadius), views));
   EXPECT_FALSE(box_is_oversized(around(1.2 * kRadius), views));
   EXPECT_TRUE(box_is_oversized(around(2.5 * kRadius), views));
@@ -33,7 +33,7 @@ TEST(ObjectBox, FitsAreNotOversized) {
 }
 
 TEST(ObjectBox, ShrinksToWhatTheSilhouettesLeave) {
-  const std::vector<View> views = views_of_a_ball(12);
+  const std::vector<PreparedView> views = views_of_a_ball(12);
   for (const double half : {2.0, 6.0, 20.0}) {
     const Box box = object_box(around(half), views);
     for (int i = 0; i < 3; ++i) {
@@ -52,11 +52,11 @@ TEST(ObjectBox, StaysInsideTheBoxThatWasGiven) {
 }
 
 TEST(ObjectBox, StaysWhereNothingIsKnown) {
-  std::vector<View> views = views_of_a_ball(6);
+  std::vector<PreparedView> views = views_of_a_ball(6);
   Box elsewhere = around(1);
   elsewhere.min += 30.0, elsewhere.max += 30.0;
   EXPECT_EQ(object_box(elsewhere, views).min, elsewhere.min);
-  for (View& view : views) view.mask = {};
+  for (PreparedView& view : views) view.mask = {};
   EXPECT_FALSE(box_is_oversized(around(10), views));
   EXPECT_EQ(object_box(around(10), views).min, around(10).min);
 }

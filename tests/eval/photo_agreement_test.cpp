@@ -24,8 +24,8 @@ using testing::HasSubstr;
 const std::vector<std::size_t> kHeldOut = {2, 5};
 const std::vector<std::size_t> kLenders = {0, 1, 3, 4, 6, 7};
 
-const std::vector<View>& ring() {
-  static const std::vector<View> views = sphere_views(8);
+const std::vector<PreparedView>& ring() {
+  static const std::vector<PreparedView> views = sphere_views(8);
   return views;
 }
 
@@ -86,9 +86,9 @@ TEST(PhotoAgreement, GreaterAnglesAreStricter) {
 
 TEST(PhotoAgreement, PlainPhotographsTellNothing) {
   test::Rng random(3);
-  std::vector<View> views = plane_views(
+  std::vector<PreparedView> views = plane_views(
       5, [](const glm::dvec3&, const glm::dvec3&) { return glm::dvec3(0.3, 0.25, 0.2); });
-  for (View& view : views)
+  for (PreparedView& view : views)
     for (std::size_t i = 0; i < view.image.bytes.size(); ++i)
       if (i % 4 != 3)
         view.image.bytes[i] = std::uint8_t(view.image.bytes[i] + int(test::uniform(random, -3, 4)));
@@ -103,7 +103,7 @@ TEST(PhotoAgreement, PlainPhotographsTellNothing) {
 }
 
 TEST(PhotoAgreement, WithoutMasksAllOfThePhotographCounts) {
-  const std::vector<View> views = plane_views(5);
+  const std::vector<PreparedView> views = plane_views(5);
   const PhotoScore all =
       judge_by_photographs(test::plate(-5, -5, 0, 10, 1), views, {{2}}, {{1, 3}}).all;
   const PhotoScore half =
@@ -118,7 +118,7 @@ TEST(PhotoAgreement, WithoutMasksAllOfThePhotographCounts) {
 }
 
 TEST(PhotoAgreement, UnknownPixelsCountNowhere) {
-  std::vector<View> views = plane_views(5);
+  std::vector<PreparedView> views = plane_views(5);
   views[2].image.has_alpha = true;
   for (int i = 0; i < 96 * 40; ++i) views[2].image.bytes[4 * std::size_t(i) + 3] = 0;
   const PhotoScore s =

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/image.h"
+#include "core/prepared_view.h"
 #include "support/cameras.h"
 #include "support/ray_cast.h"
 #include "support/silhouettes.h"
@@ -27,16 +27,16 @@ inline glm::dvec3 trace_plane(const glm::dvec3& eye, const glm::dvec3& ray) {
   return 0.05 + 0.8 * noise_colour(eye - eye.z / ray.z * ray, 0.15);
 }
 
-inline View photograph(const Camera& camera, const Tracer& tracer) {
-  View view;
+inline PreparedView photograph(const Camera& camera, const Tracer& tracer) {
+  PreparedView view;
   view.camera = camera;
   view.image = ray_cast(camera, tracer, 3);
   return view;
 }
 
 /// `count` views on a ring around the sphere, 12 degrees apart, with masks.
-inline std::vector<View> sphere_views(int count) {
-  std::vector<View> views;
+inline std::vector<PreparedView> sphere_views(int count) {
+  std::vector<PreparedView> views;
   for (int i = 0; i < count; ++i) {
     const double a = 12 * M_PI / 180 * i;
     const Camera camera =
@@ -49,8 +49,8 @@ inline std::vector<View> sphere_views(int count) {
 }
 
 /// Views of the plane from height 4 in a row, 15 degrees apart around the one in the middle.
-inline std::vector<View> plane_views(int count, const Tracer& tracer = trace_plane) {
-  std::vector<View> views;
+inline std::vector<PreparedView> plane_views(int count, const Tracer& tracer = trace_plane) {
+  std::vector<PreparedView> views;
   for (int i = 0; i < count; ++i) {
     const double a = 15 * M_PI / 180 * (i - count / 2);
     views.push_back(photograph(

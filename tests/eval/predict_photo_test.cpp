@@ -14,8 +14,9 @@ namespace {
 using test::photograph;
 using test::plane_views;
 
-Prediction predict(const TriMesh& mesh, const Camera& camera, const std::vector<View>& views,
-                   const std::vector<std::size_t>& lenders, const PredictOptions& options = {}) {
+Prediction predict(const TriMesh& mesh, const Camera& camera,
+                   const std::vector<PreparedView>& views, const std::vector<std::size_t>& lenders,
+                   const PredictOptions& options = {}) {
   return predict_photo(mesh, RayScene(mesh), camera, views, lenders, options, [] {});
 }
 
@@ -25,7 +26,7 @@ std::size_t middle(const Prediction& p) {
 }
 
 TEST(PredictPhoto, InterpolatesThePhotographsToTheirOwnPixels) {
-  const std::vector<View> views = plane_views(5);
+  const std::vector<PreparedView> views = plane_views(5);
   const Prediction p = predict(test::plate(-5, -5, 0, 10, 4), views[2].camera, views, {1, 3});
   double sum = 0;
   for (int y = 8; y < 72; ++y)
@@ -39,7 +40,7 @@ TEST(PredictPhoto, InterpolatesThePhotographsToTheirOwnPixels) {
 
 // Views of one colour each tell the weights that they got.
 TEST(PredictPhoto, WeighsByAngle) {
-  std::vector<View> views = plane_views(
+  std::vector<PreparedView> views = plane_views(
       7, [](const glm::dvec3& eye, const glm::dvec3&) { return glm::dvec3(0.05 + 0.1 * eye.x); });
   for (int i = 0; i < 7; ++i)
     views[i] = photograph(views[i].camera, [i](const glm::dvec3&, const glm::dvec3&) {
@@ -71,7 +72,7 @@ TEST(PredictPhoto, HiddenViewsLendNothing) {
     const bool plate = at.x > 0.2 && at.x < 0.6 && std::abs(at.y) < 0.5;
     return plate ? glm::dvec3(0.9, 0, 0) : glm::dvec3(0, 0.2, 0.6);
   };
-  const std::vector<View> views = plane_views(5, hidden);
+  const std::vector<PreparedView> views = plane_views(5, hidden);
   const TriMesh scene =
       test::together(test::plate(-20, -20, 0, 40, 1), test::box({0.2, -0.5, 0.999}, {0.6, 0.5, 1}));
   // From straight above, the middle pixel sees the plane at the origin; the view at 15 degrees has
@@ -87,7 +88,7 @@ TEST(PredictPhoto, HiddenViewsLendNothing) {
 }
 
 TEST(PredictPhoto, KnowsFrontFromBackAndWhatWasPhotographed) {
-  std::vector<View> views = plane_views(5);
+  std::vector<PreparedView> views = plane_views(5);
   // An open plate seen from above gets nothing from below.
   views.push_back(
       photograph(test::look_at({0, 0, -4}, {0, 0, 0}, 160, 96, 80, {0, -1, 0}), test::trace_plane));

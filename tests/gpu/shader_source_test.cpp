@@ -42,6 +42,17 @@ TEST(ExpandShader, IncludesEveryFileOnce) {
   EXPECT_THAT(text, Not(HasSubstr("#include")));
 }
 
+TEST(ExpandShader, IncludesWhatIsNamedInstead) {
+  const auto text = [](const std::string& defines) {
+    return expand_shader("carving_score_columns.comp.glsl", defines);
+  };
+  const std::string zncc = "include/consistency_zncc.glsl";
+  const std::string census = include_instead(zncc, "include/consistency_census.glsl");
+  EXPECT_THAT(text(""), Not(HasSubstr("Census")));
+  EXPECT_THAT(text(census), HasSubstr("Census"));
+  EXPECT_EQ(text(include_instead("include/other.glsl", zncc) + census), text(""));
+}
+
 TEST(ExpandShader, LineDirectivesPointAtTheOriginalLines) {
   // Walks the expanded text as a compiler would; every line must be that of the file it names.
   for (const EmbeddedShader& shader : embedded_shaders()) {

@@ -21,12 +21,12 @@ constexpr int kSize = 160;
 
 /// A textured ball on grey, with masks whose contours lie `grown` pixels outside its outline.
 struct Scene {
-  std::vector<View> views;
+  std::vector<PreparedView> views;
   std::vector<SilhouetteDistance> silhouettes;
 
   explicit Scene(double grown, double background = 0.02, double texture = 0.2) {
     for (const Camera& camera : test::cameras_around({0, 0, 0}, 6, 6, 300, kSize, kSize)) {
-      View view;
+      PreparedView view;
       view.camera = camera;
       view.image = test::ray_cast(camera, [&](const glm::dvec3& eye, const glm::dvec3& ray) {
         const double b = glm::dot(eye, ray), c = glm::dot(eye, eye) - 1;
@@ -64,7 +64,7 @@ TEST(MaskBias, ExactMasksStay) {
 TEST(MaskBias, TheOutlineShowsBeforeClutterToo) {
   Scene scene(3);
   test::Rng rng(5);
-  for (View& view : scene.views) {
+  for (PreparedView& view : scene.views) {
     const ColourImage clutter = test::random_image(rng, kSize, kSize);
     const test::Outline exact = test::sphere_outline(view.camera, {0, 0, 0}, 1);
     for (std::size_t i = 0; i < exact.distance.pixels.size(); ++i)
@@ -77,7 +77,7 @@ TEST(MaskBias, TheOutlineShowsBeforeClutterToo) {
 TEST(MaskBias, WhereNothingTellsObjectFromBackgroundMasksStay) {
   Scene scene(3);
   test::Rng rng(5);
-  for (View& view : scene.views) view.image = test::random_image(rng, kSize, kSize);
+  for (PreparedView& view : scene.views) view.image = test::random_image(rng, kSize, kSize);
   const MaskBias bias = scene.measure();
   EXPECT_FALSE(bias.counts()) << bias.pixels << ", contrast " << bias.contrast;
 }
@@ -91,9 +91,9 @@ TEST(MaskBias, NoMasksNoBias) {
 
 /// Bands in many directions, as a light object on black shows them, and masks of bands whose widths
 /// are others.
-std::pair<std::vector<View>, std::vector<SilhouetteDistance>> bands(double width,
-                                                                    double width_in_mask) {
-  std::vector<View> views(4);
+std::pair<std::vector<PreparedView>, std::vector<SilhouetteDistance>> bands(double width,
+                                                                            double width_in_mask) {
+  std::vector<PreparedView> views(4);
   std::vector<SilhouetteDistance> silhouettes;
   for (std::size_t k = 0; k < views.size(); ++k) {
     test::Drawing photograph(kSize, kSize), masks(kSize, kSize);

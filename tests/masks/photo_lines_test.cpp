@@ -48,7 +48,7 @@ struct Scene {
     return find_photo_lines(view, distance, {noise});
   }
 
-  View view;
+  PreparedView view;
   Mask truth;  ///< of leaf and stem
   SilhouetteDistance distance;
 };

@@ -20,7 +20,7 @@ using testing::ThrowsMessage;
 constexpr int kWidth = 400, kHeight = 300;
 
 /// A view without pixels from `eye` towards `target`, z up; 53 degrees wide.
-View looking(const glm::dvec3& eye, const glm::dvec3& target) {
+PreparedView looking(const glm::dvec3& eye, const glm::dvec3& target) {
   const glm::dvec3 forward = glm::normalize(target - eye);
   const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(0, 0, 1)));
   const glm::dvec3 down = glm::cross(forward, right);
@@ -31,8 +31,8 @@ View looking(const glm::dvec3& eye, const glm::dvec3& target) {
   return {"", camera, {}, {}};
 }
 
-std::vector<View> ring(int count, double radius, double height) {
-  std::vector<View> views;
+std::vector<PreparedView> ring(int count, double radius, double height) {
+  std::vector<PreparedView> views;
   for (int i = 0; i < count; ++i) {
     const double a = 2 * std::numbers::pi * i / count;
     views.push_back(looking({radius * std::cos(a), radius * std::sin(a), height}, {0, 0, 0.3}));
@@ -43,7 +43,7 @@ std::vector<View> ring(int count, double radius, double height) {
 /// Points with the views that have them on their images.
 class Points {
  public:
-  explicit Points(const std::vector<View>& views) : views_(views) {}
+  explicit Points(const std::vector<PreparedView>& views) : views_(views) {}
 
   /// On all sides of a box, `count` of them.
   void scatter(const Box& box, int count) {
@@ -65,11 +65,11 @@ class Points {
   std::vector<ScenePoint> all;
 
  private:
-  const std::vector<View>& views_;
+  const std::vector<PreparedView>& views_;
   std::mt19937 random_{7};
 };
 
-FoundBox find(const std::vector<View>& views, const Points& points) {
+FoundBox find(const std::vector<PreparedView>& views, const Points& points) {
   Progress silent;
   return find_box({views, false, points.all}, silent);
 }
@@ -85,7 +85,7 @@ void expect_around(const Box& found, const Box& expected, double most = 2) {
 }
 
 TEST(FindBox, TakesTheObjectAndItsTableRatherThanTheRoom) {
-  const std::vector<View> views = ring(20, 3, 1.5);
+  const std::vector<PreparedView> views = ring(20, 3, 1.5);
   const Box table{{-0.8, -0.6, -0.05}, {0.8, 0.6, 0}}, figure{{-0.2, -0.2, 0}, {0.2, 0.2, 0.7}};
   Points points(views);
   points.scatter(table, 400);
@@ -100,7 +100,7 @@ TEST(FindBox, TakesTheObjectAndItsTableRatherThanTheRoom) {
 }
 
 TEST(FindBox, LeavesFalseMatchesOut) {
-  const std::vector<View> views = ring(12, 3, 1);
+  const std::vector<PreparedView> views = ring(12, 3, 1);
   const Box object{{-0.5, -0.4, 0}, {0.5, 0.4, 0.6}};
   Points points(views);
   points.scatter(object, 500);
@@ -111,7 +111,7 @@ TEST(FindBox, LeavesFalseMatchesOut) {
 }
 
 TEST(FindBox, TakesTheFacadeThatSeveralParallelViewsSee) {
-  std::vector<View> views;
+  std::vector<PreparedView> views;
   for (int i = 0; i < 9; ++i) views.push_back(looking({i - 4.0, -8, 1}, {i - 4.0, 0, 1}));
   Points points(views);
   points.scatter({{-6, -0.1, -1.5}, {6, 0.3, 3.5}}, 1500);
@@ -127,8 +127,8 @@ TEST(FindBox, TakesTheFacadeThatSeveralParallelViewsSee) {
 const Box kCourtyard{{-6, -6, -1}, {6, 6, 4}};
 
 /// A courtyard from within, seen all around.
-std::vector<View> courtyard_views() {
-  std::vector<View> views;
+std::vector<PreparedView> courtyard_views() {
+  std::vector<PreparedView> views;
   for (int i = 0; i < 12; ++i) {
     const double a = 2 * std::numbers::pi * i / 12;
     for (const double from : {0.0, 0.6})
@@ -138,23 +138,23 @@ std::vector<View> courtyard_views() {
 }
 
 TEST(FindBox, HoldsNoCameraUnlessNearlyAllStandWithin) {
-  std::vector<View> views = courtyard_views();
+  std::vector<PreparedView> views = courtyard_views();
   for (int i = 0; i < 5; ++i) views.push_back(looking({16, 3.0 * i - 6, 1}, {0, 3.0 * i - 6, 1}));
   Points points(views);
   points.scatter(kCourtyard, 3000);
   const FoundBox found = find(views, points);
-  for (const View& view : views) EXPECT_FALSE(found.box.contains(view.camera.center()));
+  for (const PreparedView& view : views) EXPECT_FALSE(found.box.contains(view.camera.center()));
   EXPECT_GT(found.points.size(), 100u);
   ASSERT_EQ(found.warnings.size(), 1u);
   EXPECT_THAT(found.warnings[0], HasSubstr("cameras stand among what they show"));
 }
 
 TEST(FindBox, RoomHoldsItsCameras) {
-  const std::vector<View> views = courtyard_views();
+  const std::vector<PreparedView> views = courtyard_views();
   Points points(views);
   points.scatter(kCourtyard, 3000);
   const FoundBox found = find(views, points);
-  for (const View& view : views) EXPECT_TRUE(found.box.contains(view.camera.center()));
+  for (const PreparedView& view : views) EXPECT_TRUE(found.box.contains(view.camera.center()));
   EXPECT_GT(found.box.min.x, -7.5);
   EXPECT_LT(found.box.max.x, 7.5);
   EXPECT_THAT(found.source, HasSubstr("as in a room"));
@@ -175,8 +175,8 @@ Mask ball_mask(const Camera& camera, int widest = 255) {
 }
 
 TEST(FindBox, TakesTheSilhouettesSpaceWhereMasksAreGiven) {
-  std::vector<View> views = ring(10, 3, 1.5);
-  for (View& view : views) view.mask = ball_mask(view.camera);
+  std::vector<PreparedView> views = ring(10, 3, 1.5);
+  for (PreparedView& view : views) view.mask = ball_mask(view.camera);
   Points room(views);
   room.scatter({{-2, -2, -1}, {2, 2, 2}}, 500);
   Progress silent;
@@ -186,8 +186,8 @@ TEST(FindBox, TakesTheSilhouettesSpaceWhereMasksAreGiven) {
 }
 
 TEST(FindBox, DoesNotTakeMasksForTheObjectsOutlineThatFillTheirPhotographs) {
-  std::vector<View> views = ring(10, 3, 1.5);
-  for (View& view : views)
+  std::vector<PreparedView> views = ring(10, 3, 1.5);
+  for (PreparedView& view : views)
     view.mask = {kWidth, kHeight, std::vector<std::uint8_t>(std::size_t(kWidth) * kHeight, 255)};
   const Box object{{-0.5, -0.4, 0}, {0.5, 0.4, 0.6}};
   Points points(views);
@@ -199,14 +199,14 @@ TEST(FindBox, DoesNotTakeMasksForTheObjectsOutlineThatFillTheirPhotographs) {
 }
 
 /// The same grey everywhere.
-void make_plain(std::vector<View>& views) {
-  for (View& view : views)
+void make_plain(std::vector<PreparedView>& views) {
+  for (PreparedView& view : views)
     view.image = {kWidth, kHeight, ColourImage::Encoding::kSrgb8, false,
                   std::vector<std::uint8_t>(std::size_t(4) * kWidth * kHeight, 120)};
 }
 
 TEST(FindBox, SaysWhenPlainPicturesTellNothing) {
-  std::vector<View> views = ring(4, 3, 1);
+  std::vector<PreparedView> views = ring(4, 3, 1);
   make_plain(views);
   Progress silent;
   EXPECT_THAT([&] { find_box({views}, silent); },
@@ -215,7 +215,7 @@ TEST(FindBox, SaysWhenPlainPicturesTellNothing) {
 }
 
 TEST(FindBox, SaysWhenCamerasLookAwayFromEachOther) {
-  std::vector<View> views;
+  std::vector<PreparedView> views;
   for (int i = 0; i < 6; ++i) {
     const double a = 2 * std::numbers::pi * i / 6;
     const glm::dvec3 eye(std::cos(a), std::sin(a), 0);
@@ -230,7 +230,7 @@ TEST(FindBox, SaysWhenCamerasLookAwayFromEachOther) {
 }
 
 TEST(FindBox, WantsTwoCameras) {
-  std::vector<View> views = ring(1, 3, 1);
+  std::vector<PreparedView> views = ring(1, 3, 1);
   Progress silent;
   EXPECT_THAT([&] { find_box({views}, silent); },
               ThrowsMessage<Error>(HasSubstr("two cameras or more, but there is 1")));
@@ -238,7 +238,7 @@ TEST(FindBox, WantsTwoCameras) {
 
 TEST(MeetingOfAxes, TellsWhetherCamerasLookAtOnePlace) {
   std::vector<Camera> around, parallel;
-  for (const View& view : ring(8, 3, 1.5)) around.push_back(view.camera);
+  for (const PreparedView& view : ring(8, 3, 1.5)) around.push_back(view.camera);
   for (int i = 0; i < 5; ++i) parallel.push_back(looking({i, -8, 1}, {i, 0, 1}).camera);
   const AxesMeeting meeting = meeting_of_axes(around);
   EXPECT_TRUE(meeting.looks_inwards);

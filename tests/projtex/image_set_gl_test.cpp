@@ -12,8 +12,8 @@
 namespace photohull::projtex {
 namespace {
 
-View view_of(ColourImage image) {
-  View view;
+PreparedView view_of(ColourImage image) {
+  PreparedView view;
   view.camera.intrinsics.width = image.width;
   view.camera.intrinsics.height = image.height;
   view.image = std::move(image);
@@ -37,12 +37,13 @@ std::vector<glm::dvec4> download(const gpu::TextureArray& texture, int level, bo
 }
 
 /// Greatest difference of square roots between the texture and the references' chains.
-double worst_difference(const ImageSet& set, const std::vector<View>& views, int level, bool half) {
+double worst_difference(const ImageSet& set, const std::vector<PreparedView>& views, int level,
+                        bool half) {
   const gpu::TextureArray& texture = set.texture();
   const std::vector<glm::dvec4> pixels = download(texture, level, half);
   double worst = 0;
   std::size_t at = 0;
-  for (const View& view : views) {
+  for (const PreparedView& view : views) {
     const auto chain = reference::mip_chain(view.image, {texture.width(), texture.height()});
     for (const glm::dvec4& expected : chain[level].pixels) {
       for (int c = 0; c < 3; ++c)
@@ -62,17 +63,17 @@ class ImageSetTest : public ::testing::Test {
 };
 
 TEST_F(ImageSetTest, SmallerImagesRepeatTheirBorder) {
-  const std::vector<View> views{view_of(test::random_image(rng_, 16, 8)),
-                                view_of(test::random_image(rng_, 5, 7)),
-                                view_of(test::random_image(rng_, 1, 1))};
+  const std::vector<PreparedView> views{view_of(test::random_image(rng_, 16, 8)),
+                                        view_of(test::random_image(rng_, 5, 7)),
+                                        view_of(test::random_image(rng_, 1, 1))};
   const ImageSet set(views);
   EXPECT_EQ(set.layers(), 3);
   EXPECT_LT(worst_difference(set, views, 0, false), 1e-6);
 }
 
 TEST_F(ImageSetTest, MipLevelsOf8BitAreWithinRoundingOfLinearBoxMeans) {
-  const std::vector<View> views{view_of(test::random_image(rng_, 64, 32)),
-                                view_of(test::random_image(rng_, 50, 17))};
+  const std::vector<PreparedView> views{view_of(test::random_image(rng_, 64, 32)),
+                                        view_of(test::random_image(rng_, 50, 17))};
   const ImageSet set(views);
   ASSERT_EQ(set.texture().levels(), 7);
   // Every level is rounded to 8 bits of sRGB: half a step of up to 1 / 255 in each.
@@ -81,8 +82,8 @@ TEST_F(ImageSetTest, MipLevelsOf8BitAreWithinRoundingOfLinearBoxMeans) {
 }
 
 TEST_F(ImageSetTest, OneHalfFloatImageMakesTheSetHalfFloat) {
-  const std::vector<View> views{view_of(test::random_image(rng_, 32, 32)),
-                                view_of(test::to_half(test::random_image(rng_, 20, 32)))};
+  const std::vector<PreparedView> views{view_of(test::random_image(rng_, 32, 32)),
+                                        view_of(test::to_half(test::random_image(rng_, 20, 32)))};
   const ImageSet set(views);
   for (int level = 0; level < 6; ++level)
     EXPECT_LT(worst_difference(set, views, level, true), (level + 1) * 0x1p-11) << level;
@@ -95,13 +96,13 @@ TEST_F(ImageSetTest, HalfFloatsAboveOneSurvive) {
   image.bytes.resize(8);
   const glm::uint64 packed = glm::packHalf4x16({3.5f, 0.25f, 100.0f, 1.0f});
   std::memcpy(image.bytes.data(), &packed, 8);
-  const std::vector<View> views{view_of(image)};
+  const std::vector<PreparedView> views{view_of(image)};
   EXPECT_EQ(download(ImageSet(views).texture(), 0, true)[0], glm::dvec4(3.5, 0.25, 100, 1));
 }
 
 TEST_F(ImageSetTest, ImagesMustMatchTheirCameras) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
-  std::vector<View> views{view_of(test::random_image(rng_, 4, 4))};
+  std::vector<PreparedView> views{view_of(test::random_image(rng_, 4, 4))};
   views[0].camera.intrinsics.width = 5;
   EXPECT_DEATH(ImageSet{views}, "check failed");
 }

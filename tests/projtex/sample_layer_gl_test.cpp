@@ -33,7 +33,7 @@ class SampleLayer : public ::testing::Test {
 
   SampleLayer() {
     for (int i = 0; i < kViews; ++i) {
-      View view;
+      PreparedView view;
       view.camera = test::random_camera(rng_, grid_.bounds(), kSize, kSize);
       view.image = test::to_half(test::random_image(rng_, kSize, kSize));
       views_.push_back(view);
@@ -58,7 +58,7 @@ class SampleLayer : public ::testing::Test {
     std::vector<shaders::GpuView> gpu_views;
     std::vector<GridCamera> cameras;
     std::vector<std::vector<reference::LinearImage>> chains;
-    for (const View& view : views_) {
+    for (const PreparedView& view : views_) {
       cameras.push_back(to_grid(view.camera, grid_));
       gpu_views.push_back(to_gpu_view(cameras.back(), images.size()));
       // Elsewhere on the image is where a camera with another principal point has it.
@@ -118,7 +118,7 @@ class SampleLayer : public ::testing::Test {
 
   gpu::Context& context_ = test::gl_context();
   test::Rng rng_{31};
-  std::vector<View> views_;
+  std::vector<PreparedView> views_;
   int compared_ = 0;
 };
 

@@ -38,8 +38,8 @@ class SamplersTest : public ::testing::TestWithParam<Sampler> {
 
   void TearDown() override { context_.check_errors("samplers test"); }
 
-  View random_view(bool masked) {
-    View view;
+  PreparedView random_view(bool masked) {
+    PreparedView view;
     view.camera = test::random_camera(rng_, {{-10, -10, -10}, {10, 10, 10}}, kWidth, kHeight);
     view.image = test::to_half(test::random_image(rng_, kWidth, kHeight));
     if (!masked) return view;
@@ -54,11 +54,11 @@ class SamplersTest : public ::testing::TestWithParam<Sampler> {
     return view;
   }
 
-  void load(std::vector<View> views, Sampler sampler) {
+  void load(std::vector<PreparedView> views, Sampler sampler) {
     images_ = std::make_unique<SampleImages>(views, sampler);
     cameras_.clear();
     chains_.clear();
-    for (const View& view : views) {
+    for (const PreparedView& view : views) {
       cameras_.push_back(to_grid(view.camera, grid_));
       chains_.push_back(reference::covered_chain(
           reference::covered_image(view.image, view.mask, images_->size())));
@@ -232,7 +232,7 @@ TEST_P(SamplersTest, DegenerateFootprints) {
 TEST_P(SamplersTest, BackgroundNeverBleedsIntoTheObject) {
   // Red inside the mask, green and bright outside and, beyond the border, whatever a device
   // repeats.
-  View view = random_view(true);
+  PreparedView view = random_view(true);
   view.image.encoding = ColourImage::Encoding::kSrgb8;
   view.image.bytes.clear();
   for (const std::uint8_t coverage : view.mask.coverage)
@@ -254,7 +254,7 @@ TEST_P(SamplersTest, BackgroundNeverBleedsIntoTheObject) {
 using HardwareTest = SamplersTest;
 
 TEST_P(HardwareTest, IsNearerToTheOracleThanTrilinearAlongLongFootprints) {
-  View view = random_view(false);
+  PreparedView view = random_view(false);
   double errors[2] = {};
   int count = 0;
   for (const Sampler sampler : {Sampler::kTrilinear, GetParam()}) {

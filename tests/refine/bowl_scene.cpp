@@ -33,8 +33,8 @@ dvec3 colour(const dvec3& eye, const dvec3& ray) {
   return t < kFar ? 0.1 + 0.9 * noise_colour(eye + t * ray, 0.07) : dvec3(0.02, 0.02, 0.05);
 }
 
-View photograph(const Camera& camera) {
-  View view;
+PreparedView photograph(const Camera& camera) {
+  PreparedView view;
   view.camera = camera;
   view.image = ray_cast(camera, colour, 2);
   view.mask = {kImageEdge, kImageEdge, {}};
@@ -64,7 +64,7 @@ BowlScene make_scene() {
   add_ring(12, 60);
   add_ring(16, 25);
   add_ring(8, -25);
-  for (const View& view : scene.views) {
+  for (const PreparedView& view : scene.views) {
     scene.cameras.push_back(view.camera);
     scene.distances.push_back(silhouette_distance(view.mask));
   }

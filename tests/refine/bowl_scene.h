@@ -5,6 +5,7 @@
 
 #include "carving/hull.h"
 #include "core/mesh.h"
+#include "core/prepared_view.h"
 #include "support/ray_cast.h"
 
 namespace photohull::test {
@@ -17,7 +18,7 @@ double filled_bowl(const glm::dvec3& p);
 
 /// Photographs from two rings of cameras above and one below, with the bowl's silhouettes.
 struct BowlScene {
-  std::vector<View> views;  ///< with masks
+  std::vector<PreparedView> views;  ///< with masks
   std::vector<Camera> cameras;
   std::vector<SilhouetteDistance> distances;
   Box box{glm::dvec3(-0.95), glm::dvec3(0.95)};

@@ -53,7 +53,7 @@ class ChooseViews : public ::testing::TestWithParam<int> {
   }
 
   void add_camera(const dvec3& voxel, const dvec3& target, double focal = 300) {
-    View view;
+    PreparedView view;
     view.camera = test::look_at(test::kGrid.world(voxel), test::kGrid.world(target), focal,
                                 test::kImageEdge, test::kImageEdge, {0, 1, 0});
     view.image = test::random_image(rng_, test::kImageEdge, test::kImageEdge);
@@ -72,7 +72,7 @@ class ChooseViews : public ::testing::TestWithParam<int> {
   }
 
   test::Rng rng_{7};
-  std::vector<View> views_;
+  std::vector<PreparedView> views_;
   std::vector<MatchView> expected_;
   OffsetRange range_{-1, 1, 3};
   MatchOptions options_;
@@ -80,7 +80,7 @@ class ChooseViews : public ::testing::TestWithParam<int> {
 
 TEST_P(ChooseViews, AgreesOnRandomPoints) {
   views_ = test::random_views(rng_, GetParam());
-  for (View& view : views_)
+  for (PreparedView& view : views_)
     if (std::uniform_int_distribution(0, 1)(rng_))
       view.sharpness = std::uniform_real_distribution(0.5, 1.3)(rng_);
   const TriMesh mesh = test::random_points(rng_, 2000);
@@ -200,9 +200,9 @@ TEST_F(ChooseViewsOf, BlurredViewsServeWhereThereAreNoOthersAndSharperOnesAreWor
   TriMesh mesh;
   test::add_vertex({24, 24, 24}, {0, 0, 1}, mesh);
   const std::vector<int> plain = test::views_of(run(mesh).choices[0]);
-  for (View& view : views_) view.sharpness = 2;
+  for (PreparedView& view : views_) view.sharpness = 2;
   EXPECT_EQ(test::views_of(run(mesh).choices[0]), plain);
-  for (View& view : views_) view.sharpness = 0.5;
+  for (PreparedView& view : views_) view.sharpness = 0.5;
   EXPECT_EQ(run(mesh).choices[0].views.size(), int(plain.size()));
 }
 

@@ -99,7 +99,7 @@ class FitPatches : public ::testing::Test {
       const double turn = 2.4 * i, tilt = glm::radians(spread * std::sqrt(double(i)));
       const dvec3 to(std::sin(tilt) * std::cos(turn), std::sin(tilt) * std::sin(turn),
                      std::cos(tilt));
-      View view;
+      PreparedView view;
       view.camera = test::look_at(target + 10.0 * to, target, focal, test::kImageEdge,
                                   test::kImageEdge, {0, 1, 0});
       view.image = test::ray_cast(
@@ -153,7 +153,7 @@ class FitPatches : public ::testing::Test {
   }
 
   test::Rng rng_{23};
-  std::vector<View> views_;
+  std::vector<PreparedView> views_;
   TriMesh mesh_;
   FitOptions options_;
   double noise_ = test::kNoise;
@@ -191,7 +191,7 @@ TEST_F(FitPatches, AgreesOnEveryMinification) {
   for (const double magnify : {0.2, 5.0, 40.0, 1e4}) {
     views_.clear();
     add_plane_views(5, 12, 400);
-    for (View& view : views_) {
+    for (PreparedView& view : views_) {
       view.camera.intrinsics.fx *= magnify;
       view.camera.intrinsics.fy *= magnify;
     }
@@ -207,7 +207,7 @@ TEST_F(FitPatches, AgreesOnEveryMinification) {
 
 TEST_F(FitPatches, ComesBackToAPlane) {
   add_plane_views(6, 11, 400);
-  for (View& view : views_) view.image = test::to_half(view.image);
+  for (PreparedView& view : views_) view.image = test::to_half(view.image);
   options_.steps = 5;
   options_.largest_offset = 1;
   options_.slope = 1;
@@ -237,7 +237,7 @@ TEST_F(FitPatches, ComesBackToASphereWithItsCurvature) {
     if (under < 0) return std::nullopt;
     return eye + (-b - std::sqrt(under)) * ray;
   });
-  for (View& view : views_) view.image = test::to_half(view.image);
+  for (PreparedView& view : views_) view.image = test::to_half(view.image);
   TriMesh mesh;  // a net over the cap that faces the cameras
   constexpr int kEdge = 13;
   for (int j = 0; j < kEdge; ++j)
@@ -272,7 +272,7 @@ TEST_F(FitPatches, LessNoiseMoreInformation) {
     std::normal_distribution<double> noise(0, sigma);
     auto clean = views_;
     if (sigma > 0)
-      for (View& view : views_)
+      for (PreparedView& view : views_)
         for (std::uint8_t& byte : view.image.bytes)
           byte = std::uint8_t(std::clamp(byte + noise(rng_), 0.0, 255.0));
     std::vector<double> information;
@@ -300,7 +300,8 @@ TEST_F(FitPatches, AViewThatDisagreesHasNoWeight) {
 TEST_F(FitPatches, PlainImagesSayNothing) {
   views_ = test::random_views(rng_, 7);
   views_.pop_back();
-  for (View& view : views_) std::fill(view.image.bytes.begin(), view.image.bytes.end(), 130);
+  for (PreparedView& view : views_)
+    std::fill(view.image.bytes.begin(), view.image.bytes.end(), 130);
   const std::vector<Probe> probes = random_probes(60);
   for (const auto& r : run(probes)) {
     EXPECT_LT(std::abs(r.offset), 1e-3);

@@ -111,7 +111,7 @@ class MatchPatches : public ::testing::Test {
     const dvec3 target = test::kGrid.world({24, 24, 24});
     for (int i = 0; i < count; ++i) {
       const double angle = glm::radians(spread * (i - 0.5 * (count - 1)));
-      View view;
+      PreparedView view;
       view.camera = test::look_at(target + 10.0 * dvec3(std::sin(angle), 0, std::cos(angle)),
                                   target, focal, test::kImageEdge, test::kImageEdge, {0, 1, 0});
       view.image = test::ray_cast(
@@ -125,7 +125,7 @@ class MatchPatches : public ::testing::Test {
   }
 
   test::Rng rng_{11};
-  std::vector<View> views_;
+  std::vector<PreparedView> views_;
   OffsetRange range_{-1, 0.5, 5};
   MatchOptions options_;
   double noise_ = test::kNoise;
@@ -145,7 +145,7 @@ TEST_F(MatchPatches, AgreesOnRandomImages) {
 TEST_F(MatchPatches, AgreesOnHalfFloatImages) {
   views_ = test::random_views(rng_, 7);
   views_.pop_back();
-  for (View& view : views_) view.image = test::to_half(view.image);
+  for (PreparedView& view : views_) view.image = test::to_half(view.image);
   const std::vector<Probe> probes = random_probes(100, ViewChoice::kMostViews);
   EXPECT_LE(compare(probes, run(probes)), 4) << worst_;
 }
@@ -197,7 +197,7 @@ TEST_F(MatchPatches, EveryMinification) {
   for (const double magnify : {0.1, 1.0, 5.0, 20.0, 300.0, 1e5}) {
     views_.clear();
     add_plane_views(4, 15, 400);
-    for (View& view : views_) {
+    for (PreparedView& view : views_) {
       view.camera.intrinsics.fx *= magnify;
       view.camera.intrinsics.fy *= magnify;
     }
@@ -215,7 +215,8 @@ TEST_F(MatchPatches, EveryMinification) {
 TEST_F(MatchPatches, PlainImagesNeverAgree) {
   views_ = test::random_views(rng_, 7);
   views_.pop_back();
-  for (View& view : views_) std::fill(view.image.bytes.begin(), view.image.bytes.end(), 130);
+  for (PreparedView& view : views_)
+    std::fill(view.image.bytes.begin(), view.image.bytes.end(), 130);
   const std::vector<Probe> probes = random_probes(60, ViewChoice::kMostViews);
   const std::vector<float> scores = run(probes);
   EXPECT_EQ(compare(probes, scores), 0) << worst_;

@@ -18,12 +18,12 @@ inline constexpr double kNoise = 0.01;
 
 /// Views of random pixels from all around the grid, the last one amid it; every third one smaller
 /// than the array texture.
-inline std::vector<View> random_views(Rng& rng, int count) {
-  std::vector<View> views;
+inline std::vector<PreparedView> random_views(Rng& rng, int count) {
+  std::vector<PreparedView> views;
   const Box box = kGrid.bounds();
   for (int i = 0; i < count; ++i) {
     const int width = i % 3 == 2 ? 48 : kImageEdge, height = i % 3 == 2 ? 40 : kImageEdge;
-    View view;
+    PreparedView view;
     view.camera = i + 1 < count ? random_camera(rng, box, width, height)
                                 : look_at(box.center(), box.max, 60, width, height);
     view.image = random_image(rng, width, height);
@@ -32,9 +32,10 @@ inline std::vector<View> random_views(Rng& rng, int count) {
   return views;
 }
 
-inline std::vector<refine::reference::MatchView> reference_views(const std::vector<View>& views) {
+inline std::vector<refine::reference::MatchView> reference_views(
+    const std::vector<PreparedView>& views) {
   std::vector<refine::reference::MatchView> out;
-  for (const View& view : views)
+  for (const PreparedView& view : views)
     out.push_back({projtex::to_grid(view.camera, kGrid),
                    {},
                    {},
@@ -44,7 +45,7 @@ inline std::vector<refine::reference::MatchView> reference_views(const std::vect
 }
 
 /// Draws a mesh of vertices only into the reference's depth maps.
-inline void draw(const std::vector<View>& views, const TriMesh& mesh,
+inline void draw(const std::vector<PreparedView>& views, const TriMesh& mesh,
                  std::vector<refine::reference::MatchView>& out) {
   const visibility::DepthMaps maps = render::occluder_maps(projtex::cameras_of(views), kGrid);
   for (std::size_t i = 0; i < out.size(); ++i) {

@@ -187,7 +187,7 @@ TEST_F(BareRays, OnlyThoseVoteThatAreAsNearToASurfaceAsAsked) {
 }
 
 TEST_F(BareRays, PlainBackgroundIsNotSearched) {
-  for (View& view : views_)
+  for (PreparedView& view : views_)
     view.image = {test::kImageEdge, test::kImageEdge, ColourImage::Encoding::kSrgb8, false,
                   std::vector<std::uint8_t>(4 * 64 * 64, 120)};
   const auto [left, right] = told(1 << 20);

@@ -135,7 +135,7 @@ TEST_F(VoteAgain, WhatThePhotographsShowStays) {
 }
 
 TEST_F(VoteAgain, PlainImagesChangeNothing) {
-  for (View& view : views_)
+  for (PreparedView& view : views_)
     view.image = {test::kImageEdge, test::kImageEdge, ColourImage::Encoding::kSrgb8, false,
                   std::vector<std::uint8_t>(4 * 64 * 64, 120)};
   SparseVolume volume = body(sphere({24, 24, 26}, 5));

@@ -21,7 +21,7 @@ void for_voxels(const GridSpec& grid, F&& f) {
       for (int x = 0; x < n.x; ++x) f(ivec3(x, y, z), grid.world({x, y, z}));
 }
 
-SparseVolume vote(const SparseVolume& hull, const std::vector<View>& views) {
+SparseVolume vote(const SparseVolume& hull, const std::vector<PreparedView>& views) {
   gpu::Context& context = test::gl_context();
   const projtex::ImageSet images(views);
   const std::vector<Camera> cameras = projtex::cameras_of(views);
@@ -58,10 +58,10 @@ TEST(VoteFreeSpace, OpensTheHollowAndSparesTheBody) {
 TEST(VoteFreeSpace, PlainImagesAndFewViewsLeaveTheHull) {
   const test::BowlScene& scene = test::bowl_scene();
   const SparseVolume hull = scene.hull(scene.grid(3));
-  std::vector<View> plain = scene.views;
-  for (View& view : plain)
+  std::vector<PreparedView> plain = scene.views;
+  for (PreparedView& view : plain)
     std::fill(view.image.bytes.begin(), view.image.bytes.end(), std::uint8_t(120));
-  const std::vector<View> one(scene.views.begin(), scene.views.begin() + 1);
+  const std::vector<PreparedView> one(scene.views.begin(), scene.views.begin() + 1);
   for (const auto& views : {plain, one}) {
     const SparseVolume found = vote(hull, views);
     int changed = 0;
@@ -86,7 +86,7 @@ TEST(VoteFreeSpace, EmptyHull) {
   EXPECT_EQ(vote(nothing, scene.views).inside_voxels(), 0u);
 }
 
-SparseVolume label(const SparseVolume& hull, const std::vector<View>& views) {
+SparseVolume label(const SparseVolume& hull, const std::vector<PreparedView>& views) {
   gpu::Context& context = test::gl_context();
   const projtex::ImageSet images(views);
   const std::vector<Camera> cameras = projtex::cameras_of(views);
@@ -117,8 +117,8 @@ TEST(LabelByVotes, WhatSilhouettesWouldTellIsFreeToo) {
 
 TEST(LabelByVotes, PlainImagesClaimNothing) {
   const test::BowlScene& scene = test::bowl_scene();
-  std::vector<View> plain = scene.views;
-  for (View& view : plain)
+  std::vector<PreparedView> plain = scene.views;
+  for (PreparedView& view : plain)
     std::fill(view.image.bytes.begin(), view.image.bytes.end(), std::uint8_t(120));
   EXPECT_EQ(label(scene.hull(scene.grid(3), false), plain).inside_voxels(), 0u);
 }

@@ -26,7 +26,7 @@ class WallScene : public ::testing::Test {
     for (int i = 0; i < 7; ++i) {
       const double tilt = glm::radians(-36.0 + 12 * i);
       const glm::dvec3 target = test::kGrid.world({24, 24, kWall});
-      View view;
+      PreparedView view;
       view.camera = test::look_at(target + 10.0 * glm::dvec3(std::sin(tilt), 0, std::cos(tilt)),
                                   target, 200, test::kImageEdge, test::kImageEdge, {0, 1, 0});
       views_.push_back(view);
@@ -36,7 +36,7 @@ class WallScene : public ::testing::Test {
   /// Noise with details of so many world units on the wall and on what stands before it.
   void photograph(double detail, const Entry& before) {
     const double z = test::kGrid.world({0, 0, kWall}).z;
-    for (View& view : views_)
+    for (PreparedView& view : views_)
       view.image = test::ray_cast(
           view.camera,
           [&](const glm::dvec3& eye, const glm::dvec3& ray) {
@@ -46,7 +46,7 @@ class WallScene : public ::testing::Test {
           4);
   }
 
-  std::vector<View> views_;
+  std::vector<PreparedView> views_;
 };
 
 }  // namespace photohull::refine

@@ -17,17 +17,19 @@ using render::reference::BakeView;
 constexpr double kNoise = 0.01;
 const GridSpec kGrid{{3, -2, 7}, 0.05, {6, 6, 6}};
 
-std::vector<Camera> cameras_of(std::span<const View> views) { return projtex::cameras_of(views); }
+std::vector<Camera> cameras_of(std::span<const PreparedView> views) {
+  return projtex::cameras_of(views);
+}
 
-View plain_view(const Camera& camera, const glm::dvec3& colour) {
-  View view;
+PreparedView plain_view(const Camera& camera, const glm::dvec3& colour) {
+  PreparedView view;
   view.camera = camera;
   view.image = test::ray_cast(
       camera, [&](const glm::dvec3&, const glm::dvec3&) { return colour; }, 1);
   return view;
 }
 
-BakeReport bake(const std::vector<View>& views, TriMesh& mesh) {
+BakeReport bake(const std::vector<PreparedView>& views, TriMesh& mesh) {
   Progress silent;
   gpu::Context& context = test::gl_context();  // before the images need it
   const projtex::ImageSet images(views);
@@ -37,7 +39,7 @@ BakeReport bake(const std::vector<View>& views, TriMesh& mesh) {
 }
 
 /// The reference's depth maps of a mesh that consists of vertices only.
-std::vector<BakeView> reference_views(const std::vector<View>& views,
+std::vector<BakeView> reference_views(const std::vector<PreparedView>& views,
                                       const std::vector<render::SurfacePoint>& vertices) {
   const std::vector<Camera> cameras = cameras_of(views);
   const visibility::DepthMaps maps = render::occluder_maps(cameras, kGrid);
@@ -69,10 +71,10 @@ TriMesh random_points(test::Rng& rng, int count) {
 }
 
 /// Random cameras, the last of them amid the points: most lie behind it or off its image.
-std::vector<View> random_views(test::Rng& rng, int count) {
-  std::vector<View> views;
+std::vector<PreparedView> random_views(test::Rng& rng, int count) {
+  std::vector<PreparedView> views;
   for (int i = 0; i < count; ++i) {
-    View view;
+    PreparedView view;
     const Box box = kGrid.bounds();
     view.camera = i + 1 < count ? test::random_camera(rng, box, 96, 64)
                                 : test::look_at(box.center(), box.max, 60, 96, 64);
@@ -87,9 +89,9 @@ class BakeAgainstReference : public ::testing::TestWithParam<int> {};
 
 TEST_P(BakeAgainstReference, AgreesOnRandomPoints) {
   test::Rng rng(GetParam());
-  std::vector<View> views = random_views(rng, GetParam());
+  std::vector<PreparedView> views = random_views(rng, GetParam());
   TriMesh mesh = random_points(rng, 4000);
-  for (View& view : views)
+  for (PreparedView& view : views)
     if (std::uniform_int_distribution(0, 1)(rng))
       view.sharpness = std::uniform_real_distribution(0.5, 1.3)(rng);
   const auto vertices = render::to_voxels(kGrid, mesh);
@@ -150,7 +152,8 @@ TEST(BakeColour, HiddenVertexGetsNothingFromTheCameraThatCannotSeeIt) {
       test::look_at(target - glm::dvec3(0, 0, 6), target, 300, 128, 128, {0, 1, 0});
   const Camera aside =
       test::look_at(target - glm::dvec3(6, 0, 5), target, 300, 128, 128, {0, 1, 0});
-  const View red = plain_view(ahead, {0.8, 0.1, 0.1}), green = plain_view(aside, {0.1, 0.8, 0.1});
+  const PreparedView red = plain_view(ahead, {0.8, 0.1, 0.1}),
+                     green = plain_view(aside, {0.1, 0.8, 0.1});
   TriMesh lone = mesh;
   bake({red, green}, mesh);
   bake({red}, lone);
@@ -193,8 +196,8 @@ TEST(BakeColour, BlurredViewsSayLess) {
   const auto from = [&](double x) {
     return test::look_at(target - glm::dvec3(x, 0, 6), target, 300, 128, 128, {0, 1, 0});
   };
-  std::vector<View> views = {plain_view(from(-1), {0.3, 0.3, 0.3}),
-                             plain_view(from(1), {0.33, 0.3, 0.3})};
+  std::vector<PreparedView> views = {plain_view(from(-1), {0.3, 0.3, 0.3}),
+                                     plain_view(from(1), {0.33, 0.3, 0.3})};
   const auto red = [&] {
     TriMesh copy = mesh;
     bake(views, copy);

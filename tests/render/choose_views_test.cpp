@@ -12,8 +12,8 @@ namespace {
 
 const glm::dvec3 kCentre{5, 6, 7};
 
-std::vector<View> views_of(const std::vector<Camera>& cameras) {
-  std::vector<View> views(cameras.size());
+std::vector<PreparedView> views_of(const std::vector<Camera>& cameras) {
+  std::vector<PreparedView> views(cameras.size());
   for (std::size_t i = 0; i < cameras.size(); ++i) views[i].camera = cameras[i];
   return views;
 }
@@ -36,7 +36,7 @@ TEST(ChooseViews, OthersAreFarApart) {
     cameras.push_back(test::look_at(kCentre + 6.0 * glm::dvec3(std::cos(a), std::sin(a), 0),
                                     kCentre, 200, 160, 120));
   }
-  const std::vector<View> views = views_of(cameras);
+  const std::vector<PreparedView> views = views_of(cameras);
   EXPECT_EQ(choose_other_views(mesh, views, 0, 2), (std::vector<int>{4, 2}));
   // The other two are too close to these.
   EXPECT_EQ(choose_other_views(mesh, views, 0, 4).size(), 2u);

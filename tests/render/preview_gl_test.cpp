@@ -28,14 +28,14 @@ glm::dvec3 trace(const glm::dvec3& eye, const glm::dvec3& ray) {
   return d < 0 ? glm::dvec3(0) : surface_colour(eye + (-b - std::sqrt(d)) * ray);
 }
 
-std::vector<View> sphere_views(int count, int width, int height) {
-  std::vector<View> views;
+std::vector<PreparedView> sphere_views(int count, int width, int height) {
+  std::vector<PreparedView> views;
   for (const Camera& camera : test::cameras_around(kCentre, 5, count, 1.9 * height, width, height))
     views.push_back({"view", camera, test::ray_cast(camera, trace), {}});
   return views;
 }
 
-TriMesh baked_sphere(const std::vector<View>& views) {
+TriMesh baked_sphere(const std::vector<PreparedView>& views) {
   TriMesh mesh = test::sphere_mesh(kCentre, kRadius, 120);
   Progress silent;
   gpu::Context& context = test::gl_context();  // before the images need it
@@ -108,7 +108,7 @@ TEST(Rasterizer, SideLightCastsShadowsOntoClay) {
 
 /// Root mean square of the difference in bytes between a rendering and a photograph that is moved
 /// by `dx` pixels, well inside the sphere.
-double difference(const PreviewImage& rendering, const View& view, int dx) {
+double difference(const PreviewImage& rendering, const PreparedView& view, int dx) {
   const test::Outline outline = test::sphere_outline(view.camera, kCentre, kRadius);
   double sum = 0;
   int count = 0;
@@ -126,10 +126,10 @@ double difference(const PreviewImage& rendering, const View& view, int dx) {
 }
 
 TEST(Rasterizer, BakedColoursLieWhereThePhotographsHaveThem) {
-  const std::vector<View> views = sphere_views(12, 240, 180);
+  const std::vector<PreparedView> views = sphere_views(12, 240, 180);
   const TriMesh mesh = baked_sphere(views);
   render::Rasterizer rasterizer(test::gl_context(), mesh);
-  for (const View& view : views) {
+  for (const PreparedView& view : views) {
     const auto drawn = rasterizer.draw(view.camera, whole(view.camera), 240, 180).coloured;
     const double aligned = difference(drawn, view, 0);
     EXPECT_LT(aligned, 8);
@@ -139,7 +139,7 @@ TEST(Rasterizer, BakedColoursLieWhereThePhotographsHaveThem) {
 }
 
 TEST(Preview, ShowsPhotographColourAndClayThenOtherViews) {
-  const std::vector<View> views = sphere_views(12, 120, 90);
+  const std::vector<PreparedView> views = sphere_views(12, 120, 90);
   const TriMesh mesh = baked_sphere(views);
   PreviewOptions options;
   options.panel_edge = 90;
@@ -161,7 +161,7 @@ TEST(Preview, ShowsPhotographColourAndClayThenOtherViews) {
 }
 
 TEST(Preview, OfAnEmptyMeshIsThePhotograph) {
-  const std::vector<View> views = sphere_views(1, 80, 60);
+  const std::vector<PreparedView> views = sphere_views(1, 80, 60);
   PreviewOptions options;
   options.panel_edge = 80;
   const PreviewImage page = render_preview(test::gl_context(), TriMesh{}, views, options);
@@ -172,7 +172,7 @@ TEST(Preview, OfAnEmptyMeshIsThePhotograph) {
 }
 
 TEST(Preview, OneViewAndNoColours) {
-  const std::vector<View> views = sphere_views(1, 80, 60);
+  const std::vector<PreparedView> views = sphere_views(1, 80, 60);
   const TriMesh mesh = test::sphere_mesh(kCentre, kRadius, 20);
   const PreviewImage page = render_preview(test::gl_context(), mesh, views);
   EXPECT_LE(page.height, 120) << "there is no other viewpoint to show";
@@ -180,7 +180,7 @@ TEST(Preview, OneViewAndNoColours) {
 }
 
 TEST(Preview, CameraInsideTheMesh) {
-  std::vector<View> views = sphere_views(1, 80, 60);
+  std::vector<PreparedView> views = sphere_views(1, 80, 60);
   views[0].camera = test::look_at(kCentre, kCentre + glm::dvec3(1, 0, 0), 50, 80, 60);
   const TriMesh mesh = test::sphere_mesh(kCentre, kRadius, 20);
   const PreviewImage page = render_preview(test::gl_context(), mesh, views);

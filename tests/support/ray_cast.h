@@ -3,6 +3,7 @@
 
 #include <functional>
 
+#include "core/camera.h"
 #include "core/image.h"
 #include "support/cameras.h"
 

@@ -6,8 +6,8 @@ namespace photohull {
 namespace {
 
 /// Every pixel knows its own position: red is x, green is y.
-View numbered_view() {
-  View view;
+PreparedView numbered_view() {
+  PreparedView view;
   view.camera.intrinsics = {100, 80, 120.0, 118.0, 0.7, 48.3, 41.2};
   view.camera.cam_from_world.translation = {0, 0, 5};
   view.image = {100, 80, ColourImage::Encoding::kSrgb8, false, {}};
@@ -21,8 +21,8 @@ View numbered_view() {
 }
 
 TEST(CropToBox, KeepsWhatEveryPointOfTheBoxSees) {
-  const View whole = numbered_view();
-  View cropped = whole;
+  const PreparedView whole = numbered_view();
+  PreparedView cropped = whole;
   const Box box{{-0.4, -0.3, -0.5}, {0.5, 0.2, 0.5}};
   crop_to_box(box, 3, cropped);
   EXPECT_LT(cropped.image.width, 50);
@@ -48,7 +48,7 @@ TEST(CropToBox, LeavesAViewThatCannotBeCut) {
   for (const Box& box : {Box{{-1, -1, -6}, {1, 1, 1}},         // partly behind the camera
                          Box{{90, 90, 0}, {91, 91, 1}},        // off the image
                          Box{{-9, -9, -0.1}, {9, 9, 0.1}}}) {  // larger than the image
-    View view = numbered_view();
+    PreparedView view = numbered_view();
     crop_to_box(box, 3, view);
     EXPECT_EQ(view.image.width, 100);
     EXPECT_EQ(view.image.bytes.size(), 100u * 80u * 4u);
@@ -57,7 +57,7 @@ TEST(CropToBox, LeavesAViewThatCannotBeCut) {
 }
 
 TEST(CropToBox, AViewWithoutMaskStaysWithoutOne) {
-  View view = numbered_view();
+  PreparedView view = numbered_view();
   view.mask.coverage.clear();
   crop_to_box({{-0.4, -0.3, -0.5}, {0.5, 0.2, 0.5}}, 0, view);
   EXPECT_TRUE(view.mask.empty());

@@ -246,10 +246,10 @@ TEST(Photometric, CorrectionUndoesGainAndVignetting) {
   const Paint taken = [&](double x, double y) {
     return grey(x, y) * gain * (1 - 0.4f * radius2(x, y));
   };
-  std::vector<View> views(2);
+  std::vector<PreparedView> views(2);
   views[0].image = paint_srgb(100, 80, taken);
   views[1].image = paint_half(100, 80, taken);
-  for (View& view : views) view.camera.intrinsics = {100, 80, 120, 120, 0, 50, 40};
+  for (PreparedView& view : views) view.camera.intrinsics = {100, 80, 120, 120, 0, 50, 40};
   PhotometricCalibration c;
   c.views.assign(2, {gain, glm::dvec3(0.01), 100, true});
   c.vignetting = {0.4};

@@ -50,7 +50,7 @@ TEST_F(PrepareMasks, TakesAlphaThatVaries) {
   add_view("b.exr", with_alpha(half, kDisc));
   const PreparedViews prepared = prepare();
   EXPECT_EQ(prepared.mask_source, "alpha channels");
-  for (const View& view : prepared.views) {
+  for (const PreparedView& view : prepared.views) {
     for (std::size_t i = 0; i < kDisc.coverage.size(); ++i)
       ASSERT_NEAR(view.mask.coverage[i], kDisc.coverage[i], 1);
     EXPECT_EQ(view.image.linear(0, 0).a, 1);  // alpha now says what is known: all
@@ -64,7 +64,7 @@ TEST_F(PrepareMasks, FallsBackToTheBackground) {
   const PreparedViews prepared = prepare();
   EXPECT_EQ(prepared.mask_source, "background model");
   EXPECT_GT(prepared.mask_confidence, 0.7);
-  for (const View& view : prepared.views) {
+  for (const PreparedView& view : prepared.views) {
     ASSERT_FALSE(view.mask.empty());
     EXPECT_LT(silhouette_distance(view.mask).pixels[24 * kWidth + 30], -13);
     EXPECT_GT(silhouette_distance(view.mask).pixels[0], 20);

@@ -25,7 +25,7 @@ TEST_F(PrepareViews, KeepsOrderNamesCamerasAndBytes) {
   const PreparedViews prepared = prepare();
   ASSERT_EQ(prepared.views.size(), 20u);
   for (int i = 0; i < 20; ++i) {
-    const View& view = prepared.views[std::size_t(i)];
+    const PreparedView& view = prepared.views[std::size_t(i)];
     EXPECT_EQ(view.name, concat("v", i));
     EXPECT_EQ(view.camera.cam_from_world.translation.x, i);
     EXPECT_EQ(view.image.bytes, images_["images/" + view.name].bytes);
@@ -125,7 +125,7 @@ TEST_F(PrepareViews, RemovesDistortionFromImageMaskAndCamera) {
   add_view("a.png", clay_disc());
   add_mask(kDisc);
   scene_.views[0].distortion = {DistortionModel::kBrown, {-0.2}};
-  const View view = prepare().views[0];
+  const PreparedView view = prepare().views[0];
   EXPECT_EQ(view.image.width, view.camera.intrinsics.width);
   EXPECT_EQ(view.mask.width, view.image.width);
   EXPECT_EQ(view.mask.height, view.image.height);

@@ -12,11 +12,11 @@ namespace {
 const Box kBox{glm::dvec3(-1.1), glm::dvec3(1.1)};
 
 /// Textured balls of radius 1 before grey, from cameras 15 degrees apart.
-std::vector<View> photographs(double texture = 0.1, int count = 12) {
-  std::vector<View> views;
+std::vector<PreparedView> photographs(double texture = 0.1, int count = 12) {
+  std::vector<PreparedView> views;
   for (int i = 0; i < count; ++i) {
     const double a = 0.2618 * i;
-    View view;
+    PreparedView view;
     view.camera = test::look_at({6 * std::cos(a), 6 * std::sin(a), 0}, {0, 0, 0}, 400, 160, 160);
     view.image = test::ray_cast(view.camera, [&](const glm::dvec3& eye, const glm::dvec3& ray) {
       const double b = glm::dot(eye, ray), c = glm::dot(eye, eye) - 1;
@@ -55,7 +55,7 @@ TEST(Sharpness, ViewsOfTheSameAreAlike) {
 }
 
 TEST(Sharpness, TellsHowMuchAViewIsBlurred) {
-  std::vector<View> views = photographs();
+  std::vector<PreparedView> views = photographs();
   move_while_exposed(views[3].image, 4);
   move_while_exposed(views[8].image, 12);
   const std::vector<double> s = relative_sharpness(views, kBox, 0);
@@ -71,7 +71,7 @@ TEST(Sharpness, TellsHowMuchAViewIsBlurred) {
 
 // Noise is fine detail too, and no sharpness.
 TEST(Sharpness, NoiseDoesNotHideBlur) {
-  std::vector<View> views = photographs();
+  std::vector<PreparedView> views = photographs();
   move_while_exposed(views[5].image, 12);
   for (std::size_t i = 0; i < views.size(); ++i) add_noise(views[i].image, 8, unsigned(i));
   // Noise of each channel by itself is less in brightness: sqrt(0.3^2 + 0.59^2 + 0.11^2).
@@ -82,7 +82,7 @@ TEST(Sharpness, NoiseDoesNotHideBlur) {
 }
 
 TEST(Sharpness, ContrastIsNone) {
-  std::vector<View> views = photographs();
+  std::vector<PreparedView> views = photographs();
   for (std::size_t i = 0; i < views[4].image.bytes.size(); ++i)
     if (i % 4 != 3) views[4].image.bytes[i] = std::uint8_t(views[4].image.bytes[i] / 2 + 30);
   EXPECT_NEAR(relative_sharpness(views, kBox, 0)[4], relative_sharpness(photographs(), kBox, 0)[4],

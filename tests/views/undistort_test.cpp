@@ -52,14 +52,14 @@ glm::dvec2 to_plane(const Intrinsics& k, const glm::dvec2& p) {
 }
 
 /// A view of round dots, 0.125 apart in the image plane, through a lens.
-View photograph_dots(const Intrinsics& k, const Distortion& d) {
+PreparedView photograph_dots(const Intrinsics& k, const Distortion& d) {
   const Paint paint = [&](double u, double v) {
     const glm::dvec2 p = ideal_of(d, to_plane(k, {u, v}));
     const glm::dvec2 cell = p / 0.125 - glm::round(p / 0.125);
     const double radius = glm::length(cell) * 0.125 * k.fx;
     return glm::vec3(float(0.05 + 0.8 * std::exp(-radius * radius / 18)));
   };
-  View view;
+  PreparedView view;
   view.camera.intrinsics = k;
   view.image = paint_half(k.width, k.height, paint);
   return view;
@@ -79,7 +79,7 @@ glm::dvec2 dot_near(const ColourImage& image, const glm::dvec2& near) {
 }
 
 void expect_dots_on_grid(const Intrinsics& k, const Distortion& d, int least_dots) {
-  View view = photograph_dots(k, d);
+  PreparedView view = photograph_dots(k, d);
   undistort(d, 2.0, view);
   const Intrinsics& out = view.camera.intrinsics;
   EXPECT_EQ(out.width, view.image.width);
@@ -141,7 +141,7 @@ TEST(Undistort, FoldedModelShowsNothingTwice) {
   // r (1 - 0.6 r^2) turns back at r = 0.745: beyond, everything is unknown.
   const Distortion folding{DistortionModel::kBrown, {-0.6}};
   Intrinsics k{320, 240, 200, 200, 0, 159.5, 119.5};
-  View view;
+  PreparedView view;
   view.camera.intrinsics = k;
   view.image = paint_srgb(320, 240, [](double, double) { return glm::vec3(0.5f); });
   undistort(folding, 2.0, view);
@@ -154,7 +154,7 @@ TEST(Undistort, FoldedModelShowsNothingTwice) {
 }
 
 TEST(Undistort, UnknownPixelsAreTransparentAndCovered) {
-  View view;
+  PreparedView view;
   view.camera.intrinsics = intrinsics(260);
   view.image = paint_srgb(320, 240, [](double, double) { return glm::vec3(0.25f); });
   view.mask = paint_mask(320, 240, [](double, double) { return 0.0; });
@@ -178,7 +178,7 @@ TEST(Undistort, MaskFollowsTheImage) {
     const glm::dvec2 p = ideal_of(kBarrel, to_plane(k, {u, v}));
     return 0.5 + (0.2 - glm::length(p - glm::dvec2(0.25, 0.1))) * k.fx;
   };
-  View view;
+  PreparedView view;
   view.camera.intrinsics = k;
   view.image = paint_srgb(320, 240, [](double, double) { return glm::vec3(0.25f); });
   view.mask = paint_mask(320, 240, shape);
@@ -197,7 +197,7 @@ TEST(Undistort, MaskFollowsTheImage) {
 
 TEST(Undistort, ResamplesInLinearLight) {
   // Two-pixel stripes of black and white keep their mean light, not the mean of encoded values.
-  View view;
+  PreparedView view;
   view.camera.intrinsics = intrinsics(260);
   view.image = paint_srgb(320, 240,
                           [](double x, double) { return glm::vec3(int(x / 2) % 2 ? 0.9f : 0.1f); });
@@ -224,7 +224,7 @@ TEST(Undistort, PointsComeBack) {
 TEST(Rectify, FrameShowsAllThatThePhotographShows) {
   for (const Distortion& d : {kBarrel, kPincushion, kRational, Distortion{}}) {
     const Intrinsics k = intrinsics(260);
-    View view;
+    PreparedView view;
     view.camera.intrinsics = k;
     view.image = paint_srgb(320, 240, [](double, double) { return glm::vec3(0.25f); });
     view.mask = paint_mask(320, 240, [](double, double) { return 0.0; });
@@ -268,7 +268,7 @@ TEST(Rectify, FrameShowsAllThatThePhotographShows) {
 TEST(Rectify, KeepsFineDetail) {
   // Stripes of four pixels keep most of their contrast where the picture is resampled once.
   const Intrinsics k = intrinsics(260);
-  View view;
+  PreparedView view;
   view.camera.intrinsics = k;
   view.image = paint_half(320, 240, [](double x, double) {
     return glm::vec3(float(0.5 + 0.4 * std::sin(x * 1.5707963)));
@@ -284,7 +284,7 @@ TEST(Rectify, KeepsFineDetail) {
 }
 
 TEST(Rectify, LeavesCentredSquarePinholesAlone) {
-  View view;
+  PreparedView view;
   view.camera.intrinsics = {320, 240, 260, 260, 0, 159.5, 119.5};
   view.image = paint_srgb(320, 240, [](double x, double) { return glm::vec3(float(x / 320)); });
   const std::uint8_t* bytes = view.image.bytes.data();
@@ -293,7 +293,7 @@ TEST(Rectify, LeavesCentredSquarePinholesAlone) {
 }
 
 TEST(Undistort, LeavesIdealViewsAlone) {
-  View view;
+  PreparedView view;
   view.camera.intrinsics = intrinsics(260);
   view.image = paint_srgb(320, 240, [](double x, double) { return glm::vec3(float(x / 320)); });
   const std::uint8_t* bytes = view.image.bytes.data();

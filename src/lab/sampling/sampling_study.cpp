@@ -31,8 +31,8 @@ constexpr double kTilt = 0.04;    // depth along a square's edge, share of the d
 constexpr double kLeastTimed = 4e-3;  // seconds; shorter runs are repeated on more squares
 constexpr double kMostTimed = 32768;  // squares
 
-View view_of(const std::function<double(int, int)>& value) {
-  View view;
+PreparedView view_of(const std::function<double(int, int)>& value) {
+  PreparedView view;
   view.camera.intrinsics = {kImageSize, kImageSize,       kFocal,          kFocal,
                             0,          0.5 * kImageSize, 0.5 * kImageSize};
   view.image.width = view.image.height = kImageSize;
@@ -52,7 +52,7 @@ double uniform(std::mt19937_64& random, double low, double high) {
 }
 
 /// White noise, and zones whose frequency grows from the middle to Nyquist's at the sides.
-std::vector<View> test_views(std::mt19937_64& random) {
+std::vector<PreparedView> test_views(std::mt19937_64& random) {
   const double middle = 0.5 * kImageSize;
   return {view_of([&](int, int) { return uniform(random, 0, 1); }), view_of([&](int x, int y) {
             const double r2 = (x - middle) * (x - middle) + (y - middle) * (y - middle);
@@ -82,7 +82,7 @@ class Study {
   Study(gpu::Context& context, const StudyOptions& options)
       : context_(context), options_(options), random_(options.seed), views_(test_views(random_)) {
     const GridSpec grid{{0, 0, 0}, 1, {1, 1, 1}};
-    for (const View& view : views_) {
+    for (const PreparedView& view : views_) {
       cameras_.push_back(to_grid(view.camera, grid));
       images_.push_back(reference::covered_image(view.image, view.mask, {kImageSize, kImageSize}));
     }
@@ -197,7 +197,7 @@ class Study {
   gpu::Context& context_;
   StudyOptions options_;
   std::mt19937_64 random_;
-  std::vector<View> views_;
+  std::vector<PreparedView> views_;
   std::vector<GridCamera> cameras_;
   std::vector<LinearImage> images_;
   std::vector<Squares> squares_;  ///< of all footprints, ratios running faster

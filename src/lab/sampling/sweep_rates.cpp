@@ -23,7 +23,7 @@ constexpr int kRawTaps = 8, kRawThreads = 1 << 17;
 
 /// Cameras that look along z at a layer whose voxels span `pixels`.
 struct Layer {
-  std::vector<View> views;
+  std::vector<PreparedView> views;
   std::vector<GridCamera> cameras;
   gpu::Buffer items, selected, samples, uniforms;
   std::size_t values = 0;
@@ -32,7 +32,7 @@ struct Layer {
     std::mt19937 random(1);
     const GridSpec grid{{0, 0, 0}, 1.0, {kBricks, kBricks, 1}};
     for (int i = 0; i < kViews; ++i) {
-      View view;
+      PreparedView view;
       const double depth = 600 + 2 * i, centre = 4.0 * kBricks;
       view.camera.intrinsics = {kWidth, kHeight, pixels * depth, pixels * depth, 0, 320, 256};
       view.camera.cam_from_world.translation = {-centre, -centre, depth - 3};

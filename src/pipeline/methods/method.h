@@ -82,10 +82,7 @@ std::span<const MethodEntry> methods();
 const MethodEntry& method_of(Method method);
 const MethodEntry& method_of(const ReconstructOptions& options);
 
-// The entries, each in a file of its name.
-extern const MethodEntry kHullMethod;
-extern const MethodEntry kVoxelColoringMethod;
-extern const MethodEntry kSpaceCarvingMethod;
-extern const MethodEntry kRefineMethod;
+#define PHOTOHULL_METHOD(value, entry) extern const MethodEntry entry;
+#include "pipeline/methods/methods.def"
 
 }  // namespace photohull::pipeline

@@ -7,8 +7,10 @@
 namespace photohull::pipeline {
 
 std::span<const MethodEntry> methods() {
-  static const std::array entries = {kHullMethod, kVoxelColoringMethod, kSpaceCarvingMethod,
-                                     kRefineMethod};
+  static const std::array entries = {
+#define PHOTOHULL_METHOD(value, entry) entry,
+#include "pipeline/methods/methods.def"
+  };
   return entries;
 }
 
