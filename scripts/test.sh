@@ -1,20 +1,21 @@
 #!/usr/bin/env bash
-# Usage: scripts/test.sh [--asan]
+# Usage: scripts/test.sh [--all]
 #
-# Sets photohull up (see scripts/setup.sh), runs all its tests, and then checks what tests cannot:
-# formatting, scripts, citations, links in the docs, installation and the Debian package.
+# Sets photohull up (see scripts/setup.sh) and runs all its tests.
 #
-#   --asan   build once more with clang and the address and undefined-behaviour sanitizers, and run
-#            the unit tests so instead of without them; run the fuzzers and clang-tidy too
+#   --all    also check what tests cannot: formatting, scripts, citations, links in the docs,
+#            installation and the Debian package; and build once more with clang and the address and
+#            undefined-behaviour sanitizers, to run the unit tests so instead of without them, the
+#            fuzzers and clang-tidy
 #   --help   print this text
 
 # shellcheck source=scripts/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-with_asan=no
+with_all=no
 while [ $# -gt 0 ]; do
   case $1 in
-    --asan) with_asan=yes ;;
+    --all) with_all=yes ;;
     -h | --help)
       print_help "${BASH_SOURCE[0]}"
       exit 0
@@ -128,26 +129,26 @@ debian_package() {
 }
 
 # Every test runs once: unit tests are built where they run.
-if [ $with_asan = yes ]; then
+if [ $with_all = yes ]; then
   scripts/setup.sh --target program_tests
 else
   scripts/setup.sh
 fi
-install_missing clang clang-format clang-tidy shellcheck dpkg-dev file python3
+[ $with_all = no ] || install_missing clang clang-format clang-tidy shellcheck dpkg-dev file python3
 started=$SECONDS
 
-if [ $with_asan = yes ]; then
+if [ $with_all = yes ]; then
   check_aloud "tests of the program" run_tests release --label-exclude unit
 else
   check_aloud "tests" run_tests release
 fi
-check "clang-format" formatting
-check "shellcheck" shell_scripts
-check "citations" citations
-check "links in the docs" scripts/check_links.py
-check "cmake --install" installation
-check "cpack -G DEB" debian_package
-if [ $with_asan = yes ]; then
+if [ $with_all = yes ]; then
+  check "clang-format" formatting
+  check "shellcheck" shell_scripts
+  check "citations" citations
+  check "links in the docs" scripts/check_links.py
+  check "cmake --install" installation
+  check "cpack -G DEB" debian_package
   check_aloud "build with sanitizers" scripts/setup.sh --preset asan --target unit_tests
   check_aloud "unit tests with sanitizers" run_tests asan --label-regex unit
   check_aloud "fuzzers" scripts/fuzz.sh --seconds 2
