@@ -32,8 +32,9 @@ const StatisticEntry& entry_of(Statistic statistic) {
 const char* to_string(Statistic statistic) { return entry_of(statistic).name; }
 
 std::string statistic_defines(Statistic statistic, bool coverage) {
-  return gpu::include_instead("include/consistency_zncc.glsl",
-                              concat("include/consistency_", to_string(statistic), ".glsl")) +
+  std::string file = concat("include/consistency_", to_string(statistic), ".glsl");
+  std::ranges::replace(file, '-', '_');
+  return gpu::include_instead("include/consistency_zncc.glsl", file) +
          (coverage ? gpu::define("SAMPLE_", "coverage") : "");
 }
 

@@ -50,7 +50,8 @@ TEST(ExpandShader, IncludesWhatIsNamedInstead) {
   const std::string census = include_instead(zncc, "include/consistency_census.glsl");
   EXPECT_THAT(text(""), Not(HasSubstr("Census")));
   EXPECT_THAT(text(census), HasSubstr("Census"));
-  EXPECT_EQ(text(include_instead("include/other.glsl", zncc) + census), text(""));
+  EXPECT_THAT(text(include_instead("include/other.glsl", zncc) + census), HasSubstr("Census"));
+  EXPECT_THAT(text(include_instead("include/other.glsl", zncc)), Not(HasSubstr("Census")));
 }
 
 TEST(ExpandShader, LineDirectivesPointAtTheOriginalLines) {
