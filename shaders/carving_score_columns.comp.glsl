@@ -1,9 +1,8 @@
 #version 450 core
 #extension GL_GOOGLE_include_directive : require
-// Plane sweep, step 3: photo-consistency of the selected voxels, by a statistic
-// over the patches around the voxel on the reference plane, of the views that see the voxel
-// [KutulakosSeitz00]. Normalised cross-correlation unless another is chosen. One thread a selected
-// column. References: those of the statistics.
+// Plane sweep, step 3: photo-consistency of the selected voxels, by a statistic over the patches around
+// the voxel on the reference plane, of the views that see the voxel [KutulakosSeitz00]. One thread a
+// selected column. References: those of the statistics.
 #include "include/dispatch.glsl"
 #include "include/projection.glsl"
 #include "include/layer.glsl"

@@ -16,7 +16,7 @@ int find_shader(std::string_view path) {
   return int(it - shaders.begin());
 }
 
-constexpr std::string_view kIncludeInstead = "#pragma include_instead ";
+constexpr std::string_view kIncludeInstead = "// include_instead ";
 
 /// The file that is included where `path` is, by lines of include_instead.
 std::string_view included(std::string_view path, std::string_view defines) {

@@ -26,7 +26,8 @@ std::string shader_file(int number);
 /// A line that defines `prefix` with a lower-case name in upper case and underscores after it.
 std::string define(std::string_view prefix, std::string_view name);
 
-/// A line that makes shaders include the embedded file `other` where they include `file`.
+/// A line, a comment to compilers, that makes shaders include the embedded file `other` where they
+/// include `file`.
 std::string include_instead(std::string_view file, std::string_view other);
 
 }  // namespace photohull::gpu

@@ -15,8 +15,8 @@
 namespace photohull::pipeline {
 
 struct AgreeingCameras {
-  std::vector<PreparedView>
-      views;                    ///< as given, with their cameras and those of their sources refined
+  /// As given, with their cameras and those of their sources refined.
+  std::vector<PreparedView> views;
   std::set<std::string> right;  ///< names of views whose features confirm their cameras
   CameraFindings findings;
 };
