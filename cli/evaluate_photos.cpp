@@ -82,8 +82,10 @@ std::string make_alike(pipeline::Photometric photometric, const TriMesh& mesh,
   std::vector<double> noise;
   for (const PreparedView& view : prepared.views) noise.push_back(estimate_image_noise(view.image));
   std::nth_element(noise.begin(), noise.begin() + long(noise.size() / 2), noise.end());
-  const pipeline::PhotometricOutcome found = pipeline::correct_photometric(
+  const pipeline::PhotometricOutcome found = pipeline::measure_photometric(
       photometric, mesh, mean_edge(mesh), noise[noise.size() / 2], prepared.views, progress);
+  if (found.used)
+    prepared.views = pipeline::divide_by_gains(std::move(prepared.views), found.calibration);
   if (!found.warning.empty()) prepared.warnings.push_back(found.warning);
   return found.line;
 }

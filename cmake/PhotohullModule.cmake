@@ -1,10 +1,14 @@
-# photohull_module(NAME [VECTOR_ROOTS] SOURCES files... [PUBLIC libs...] [PRIVATE libs...])
-# One static library per folder of src/. PRIVATE links keep a dependency's headers out of the
+# photohull_module(NAME [VECTOR_ROOTS] [FOLDERS names...] [SOURCES files...] [PUBLIC libs...]
+#   [PRIVATE libs...])
+# One static library per folder of src/: all .cpp files that lie there and in FOLDERS inside it, and
+# SOURCES that the build makes. PRIVATE links keep a dependency's headers out of the
 # modules above; the arrows are those of docs/design/architecture.md, and include lines keep to them
 # (CheckIncludes.cmake). VECTOR_ROOTS lets square roots become vector code.
 function(photohull_module name)
-  cmake_parse_arguments(ARG "VECTOR_ROOTS" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
-  add_library(photohull_${name} STATIC ${ARG_SOURCES})
+  cmake_parse_arguments(ARG "VECTOR_ROOTS" "" "FOLDERS;SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  list(TRANSFORM ARG_FOLDERS APPEND /*.cpp)
+  file(GLOB files CONFIGURE_DEPENDS *.cpp ${ARG_FOLDERS})
+  add_library(photohull_${name} STATIC ${files} ${ARG_SOURCES})
   add_library(photohull::${name} ALIAS photohull_${name})
   target_include_directories(photohull_${name} PUBLIC ${PROJECT_SOURCE_DIR}/src)
   target_compile_features(photohull_${name} PUBLIC cxx_std_20)

@@ -10,6 +10,11 @@
 namespace photohull {
 namespace {
 
+// Of one adjustment. The next one finds outliers and tangents anew, so the first few steps are what
+// it needs of this one.
+constexpr int kIterations = 6;
+constexpr double kSettled = 1e-4;  // share of the cost by which the last step lowers it
+
 /// A camera's change: a turn about the object's middle and a move, both in its own frame, in units
 /// that move the object by about a pixel each.
 struct Motion {
@@ -243,8 +248,8 @@ std::vector<Camera> adjust_bundle(const BundleInput& input, std::span<const Came
   hold(input, u, problem);
   ceres::Solver::Options options;
   order_unknowns(u, problem, options);
-  options.max_num_iterations = 30;
-  options.function_tolerance = 1e-7;
+  options.max_num_iterations = kIterations;
+  options.function_tolerance = kSettled;
   options.logging_type = ceres::SILENT;
   options.num_threads = 1;  // sums in the same order on every machine
   ceres::Solver::Summary summary;

@@ -182,6 +182,30 @@ void remove_repeated(std::span<const Track> given, std::vector<Track>& found) {
   });
 }
 
+/// The longest tracks, until each view has so many observations in them; in the order in which
+/// they were.
+std::vector<Track> longest_first(std::vector<Track> tracks, std::size_t views, int enough) {
+  std::vector<std::size_t> order(tracks.size());
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return tracks[a].observations.size() > tracks[b].observations.size();
+  });
+  std::vector<int> counts(views, 0);
+  std::vector<bool> kept(tracks.size(), false);
+  for (const std::size_t i : order) {
+    const std::vector<Observation>& o = tracks[i].observations;
+    kept[i] = std::any_of(o.begin(), o.end(), [&](const Observation& x) {
+      return counts[std::size_t(x.view)] < enough;
+    });
+    if (!kept[i]) continue;
+    for (const Observation& x : o) ++counts[std::size_t(x.view)];
+  }
+  std::vector<Track> result;
+  for (std::size_t i = 0; i < tracks.size(); ++i)
+    if (kept[i]) result.push_back(std::move(tracks[i]));
+  return result;
+}
+
 /// Aligns the other views' patches to that of the view in the middle; those that do not agree go.
 void polish(std::span<const PreparedView> views, std::span<const Camera> cameras,
             const std::vector<Features>& features, const TrackOptions& options, Track& track) {
@@ -221,7 +245,7 @@ std::vector<Track> find_tracks(std::span<const PreparedView> views, const TrackO
   std::vector<Features> features(views.size());
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
     if (!progress.cancelled())
-      features[i] = search ? detect_features(views[i], options.features)
+      features[i] = search ? detect_features(views[i], options.features, options.enough)
                            : Features{{}, {}, smoothed(grey_image(views[i].image))};
   });
   progress.check_cancelled();
@@ -234,6 +258,7 @@ std::vector<Track> find_tracks(std::span<const PreparedView> views, const TrackO
                   std::make_move_iterator(found.end()));
   }
   progress.update(0.8);
+  if (options.enough > 0) tracks = longest_first(std::move(tracks), views.size(), options.enough);
   std::vector<Camera> cameras;
   for (const PreparedView& view : views) cameras.push_back(view.camera);
   tbb::parallel_for(std::size_t(0), tracks.size(), [&](std::size_t t) {

@@ -1,32 +1,69 @@
 #include "cameras/features.h"
 
+#include <algorithm>
 #include <opencv2/features2d.hpp>
+#include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "photo/grey_image.h"
 
 namespace photohull {
 
-Features detect_features(const PreparedView& view, int count) {
+namespace {
+
+/// Where the mask has something, and so much more that features inside do not feel the border.
+cv::Rect around_foreground(const cv::Mat& mask) {
+  constexpr int kMargin = 32;  // pixels
+  const cv::Rect tight = cv::boundingRect(mask);
+  const cv::Rect wide(tight.x - kMargin, tight.y - kMargin, tight.width + 2 * kMargin,
+                      tight.height + 2 * kMargin);
+  return tight.empty() ? tight : wide & cv::Rect({0, 0}, mask.size());
+}
+
+/// Features of an image that is `times` smaller, in pixels of the image itself.
+Features detect_smaller(const cv::Mat& image, const cv::Mat& mask, int times, int count) {
   // Its image is doubled first, which in this version of OpenCV moves it by a quarter pixel.
   constexpr double kShift = 0.25;
   constexpr double kContrast = 0.01;  // low, for plain surfaces: matches are checked in many ways
-  Features features;
+  if (std::min(image.cols, image.rows) < times) return {};
+  cv::Mat small, small_mask;
+  cv::resize(image, small, image.size() / times, 0, 0, cv::INTER_AREA);
+  if (!mask.empty()) cv::resize(mask, small_mask, small.size(), 0, 0, cv::INTER_NEAREST);
+  std::vector<cv::KeyPoint> points;
+  Features found;
+  cv::SIFT::create(count, 3, kContrast)
+      ->detectAndCompute(small, small_mask, points, found.descriptors);
+  for (const cv::KeyPoint& p : points) {
+    const glm::dvec2 middle(p.pt.x - kShift + 0.5, p.pt.y - kShift + 0.5);
+    found.pixels.push_back(middle * double(times) - 0.5);
+  }
+  return found;
+}
+
+}  // namespace
+
+Features detect_features(const PreparedView& view, int count, int enough) {
+  constexpr int kLongest = 1600;  // pixels
   GreyImage grey = grey_image(view.image);
-  cv::Mat bytes, mask;
-  cv::Mat(grey.height, grey.width, CV_32F, grey.values.data()).convertTo(bytes, CV_8U);
+  cv::Mat image, mask;
+  cv::Mat(grey.height, grey.width, CV_32F, grey.values.data()).convertTo(image, CV_8U);
+  cv::Rect part({0, 0}, image.size());
   if (!view.mask.empty()) {
     const cv::Mat coverage(view.mask.height, view.mask.width, CV_8U,
                            const_cast<std::uint8_t*>(view.mask.coverage.data()));
     mask = coverage >= 128;
+    part = around_foreground(mask);
+    mask = mask(part);
   }
-  std::vector<cv::KeyPoint> points;
-  cv::SIFT::create(count, 3, kContrast)
-      ->detectAndCompute(bytes, mask, points, features.descriptors);
-  for (const cv::KeyPoint& p : points)
-    features.pixels.emplace_back(p.pt.x - kShift, p.pt.y - kShift);
-  features.grey = smoothed(std::move(grey));
-  return features;
+  image = image(part);
+  const int times = (std::max(part.width, part.height) + kLongest - 1) / kLongest;
+  Features found;
+  if (enough > 0) found = detect_smaller(image, mask, times + 1, count);
+  if (int(found.pixels.size()) < std::max(enough, 1))
+    found = detect_smaller(image, mask, std::max(times, 1), count);
+  for (glm::dvec2& pixel : found.pixels) pixel += glm::dvec2(part.x, part.y);
+  found.grey = smoothed(std::move(grey));
+  return found;
 }
 
 }  // namespace photohull

@@ -69,14 +69,16 @@ class CameraRefiner {
     if (!(poses.moved_alike > kAlike * poses.moved / std::sqrt(views))) return poses;
     // Some of the tracks suffice to tell.
     const std::vector<Track> all = std::exchange(adjusting_, some(adjusting_, kTrialTracks));
-    const CameraRefinement shared = refine(SharedIntrinsics::kAll);
+    CameraRefinement shared = refine(SharedIntrinsics::kAll);
+    const bool with_all = adjusting_.size() == all.size();
     adjusting_ = all;
     constexpr double kShared = 3;  // parameters, which spare the poses' motions in the images
     const bool spares =
         4 * views * std::log(poses.moved / shared.moved) > kShared * std::log(2 * views);
     const bool fits = shared.all.after < kNoWorse * poses.all.after &&
                       shared.tangents_after < kNoWorse * poses.tangents_after;
-    return spares && fits ? refine(SharedIntrinsics::kAll) : poses;
+    if (!spares || !fits) return poses;
+    return with_all ? shared : refine(SharedIntrinsics::kAll);
   }
 
  private:

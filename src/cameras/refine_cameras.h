@@ -41,7 +41,8 @@ struct RefineCamerasOptions {
   /// where a view has few features.
   std::optional<Box> box;
   int few_features = 100;  ///< observations of a view, in the median
-  TrackOptions tracks;
+  /// Poses have six unknowns a view: some hundred observations determine them.
+  TrackOptions tracks{.features = 1000, .enough = 300};
 };
 
 /// Those that are no matter of what is known of the scene.

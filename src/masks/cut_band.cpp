@@ -15,7 +15,7 @@ constexpr double kBand = 0.012;  // of the shorter side: how far the contour may
 constexpr int kIterations = 2;
 constexpr double kContext = 3;       // bands of surroundings that the colours are learnt from
 constexpr double kMostPixels = 4e6;  // beyond, the cut takes minutes
-constexpr int kFewestCertain = 100;
+constexpr int kFewestCertain = 400;
 
 cv::Mat square(int radius) {
   return cv::getStructuringElement(cv::MORPH_RECT, {2 * radius + 1, 2 * radius + 1});
@@ -40,6 +40,17 @@ cv::Mat coded(const ColourImage& image, const cv::Rect& box) {
       }
     }
   return out;
+}
+
+/// Decides the probable labels. The colours of both sides are learnt at half the resolution, which
+/// takes a fourth of the time and knows them as well.
+void cut(const cv::Mat& colours, cv::Mat& labels) {
+  cv::Mat few, few_labels, behind, front;
+  cv::resize(colours, few, {}, 0.5, 0.5, cv::INTER_AREA);
+  cv::resize(labels, few_labels, few.size(), 0, 0, cv::INTER_NEAREST);
+  cv::setRNGSeed(1);  // its clusters start at random
+  cv::grabCut(few, few_labels, {}, behind, front, kIterations, cv::GC_INIT_WITH_MASK);
+  cv::grabCut(colours, labels, {}, behind, front, 1, cv::GC_EVAL_FREEZE_MODEL);
 }
 
 }  // namespace
@@ -67,13 +78,11 @@ Mask cut_band(const MaskEvidence& evidence, const ColourImage& image, const Mask
   if (cv::countNonZero(labels == cv::GC_FGD) < kFewestCertain ||
       cv::countNonZero(labels == cv::GC_BGD) < kFewestCertain)
     return mask;
-  cv::setRNGSeed(1);  // its clusters start at random
-  cv::Mat behind, front;
-  cv::grabCut(coded(image, box), labels, {}, behind, front, kIterations, cv::GC_INIT_WITH_MASK);
-  cv::Mat cut = (labels == cv::GC_FGD) | (labels == cv::GC_PR_FGD);
-  soften_contour(distance, cut);
+  cut(coded(image, box), labels);
+  cv::Mat inside = (labels == cv::GC_FGD) | (labels == cv::GC_PR_FGD);
+  soften_contour(distance, inside);
   Mask out{mask.width, mask.height, std::vector<std::uint8_t>(mask.coverage.size(), 0)};
-  cut.copyTo(cv::Mat(mask.height, mask.width, CV_8U, out.coverage.data())(box));
+  inside.copyTo(cv::Mat(mask.height, mask.width, CV_8U, out.coverage.data())(box));
   return out;
 }
 

@@ -125,9 +125,10 @@ std::optional<PhotometricOutcome> find_alike(const TriMesh& mesh, double voxel_s
   return out;
 }
 
-PhotometricOutcome correct_photometric(Photometric photometric, const TriMesh& mesh,
+PhotometricOutcome measure_photometric(Photometric photometric, const TriMesh& mesh,
                                        double voxel_size, double noise_sigma,
-                                       std::vector<PreparedView>& views, const Progress& progress) {
+                                       const std::vector<PreparedView>& views,
+                                       const Progress& progress) {
   PHOTOHULL_CHECK(photometric != Photometric::kOff);
   const std::vector<PhotometricFrame> frames = frames_of(views);
   const std::vector<int> lenses = shared_lenses(frames);
@@ -139,7 +140,6 @@ PhotometricOutcome correct_photometric(Photometric photometric, const TriMesh& m
       lenses, {}, progress);
   const PhotometricCalibration& c = out.calibration;
   out.used = c.solved && (photometric == Photometric::kOn || c.pays);
-  if (out.used) apply_photometric(c, frames, lenses, views);
   out.json = to_json(c, views, lenses, out.used);
   out.line = to_line(c, out.used);
   if (photometric == Photometric::kOn && !c.solved)
@@ -158,6 +158,13 @@ PhotometricOutcome correct_photometric(Photometric photometric, const TriMesh& m
                            names, count > 5 ? ", ..." : "");
   }
   return out;
+}
+
+std::vector<PreparedView> divide_by_gains(std::vector<PreparedView> views,
+                                          const PhotometricCalibration& gains) {
+  const std::vector<PhotometricFrame> frames = frames_of(views);
+  apply_photometric(gains, frames, shared_lenses(frames), views);
+  return views;
 }
 
 }  // namespace photohull::pipeline

@@ -1,6 +1,7 @@
 #include "pipeline/photometric_stage.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "carving/fit_grid.h"
 #include "pipeline/photometric.h"
@@ -25,37 +26,39 @@ CoarseHull coarse_hull(int voxels, Hull& hull, const Subject& subject) {
 }
 
 /// A quick look before gains are solved for.
-std::optional<AlikeViews> are_alike(const PhotometricJob& job, const TriMesh& mesh,
-                                    double voxel_size, const std::vector<PreparedView>& views) {
+std::optional<MeasuredGains> are_alike(const PhotometricJob& job, const TriMesh& mesh,
+                                       double voxel_size, const std::vector<PreparedView>& views) {
   if (job.options.photometric != Photometric::kAuto) return std::nullopt;
   const auto found = find_alike(mesh, voxel_size, job.noise_sigma, views, job.progress);
   if (!found) return std::nullopt;
-  return AlikeViews{{found->json, found->line}, false};
+  return MeasuredGains{{found->json, found->line}, std::nullopt};
 }
 
-AlikeViews correct(const PhotometricJob& job, const TriMesh& mesh, double voxel_size,
-                   std::vector<PreparedView>& views) {
-  const PhotometricOutcome found = correct_photometric(job.options.photometric, mesh, voxel_size,
-                                                       job.noise_sigma, views, job.progress);
+MeasuredGains measure(const PhotometricJob& job, const TriMesh& mesh, double voxel_size,
+                      const std::vector<PreparedView>& views) {
+  PhotometricOutcome found = measure_photometric(job.options.photometric, mesh, voxel_size,
+                                                 job.noise_sigma, views, job.progress);
   if (!found.warning.empty()) job.progress.warn(found.warning);
-  return {{found.json, found.line}, found.used};
+  MeasuredGains out{{found.json, found.line}, std::nullopt};
+  if (found.used) out.gains = std::move(found.calibration);
+  return out;
 }
 
 }  // namespace
 
-AlikeViews make_alike_on_hull(const PhotometricJob& job, Hull& hull, Subject& subject) {
+MeasuredGains measure_gains_on_hull(const PhotometricJob& job, Hull& hull, const Subject& subject) {
   if (job.options.photometric == Photometric::kAuto) {
     const CoarseHull quick = coarse_hull(kCheckVoxels, hull, subject);
     if (auto alike = are_alike(job, quick.mesh, quick.voxel_size, subject.views)) return *alike;
   }
   const CoarseHull fine = coarse_hull(kPhotometricVoxels, hull, subject);
-  return correct(job, fine.mesh, fine.voxel_size, subject.views);
+  return measure(job, fine.mesh, fine.voxel_size, subject.views);
 }
 
-AlikeViews make_alike_on(const PhotometricJob& job, const TriMesh& mesh, double voxel_size,
-                         std::vector<PreparedView>& views) {
+MeasuredGains measure_gains_on(const PhotometricJob& job, const TriMesh& mesh, double voxel_size,
+                               const std::vector<PreparedView>& views) {
   if (auto alike = are_alike(job, mesh, voxel_size, views)) return *alike;
-  return correct(job, mesh, voxel_size, views);
+  return measure(job, mesh, voxel_size, views);
 }
 
 }  // namespace photohull::pipeline

@@ -1,5 +1,8 @@
-// The stage that makes the photographs' gains alike, on a surface that is known roughly.
+// The stage that measures the photographs' gains, on a surface that is known roughly.
 #pragma once
+
+#include <optional>
+#include <vector>
 
 #include "core/mesh.h"
 #include "core/progress.h"
@@ -17,16 +20,16 @@ struct PhotometricJob {
   Progress& progress;
 };
 
-struct AlikeViews {
+struct MeasuredGains {
   PhotometricFindings findings;
-  bool changed = false;  ///< were pixels divided by gains?
+  std::optional<PhotometricCalibration> gains;  ///< where pixels are to be divided by them
 };
 
-/// Gains are measured on coarse hulls of the subject, whose views' pixels change where they differ.
-AlikeViews make_alike_on_hull(const PhotometricJob& job, Hull& hull, Subject& subject);
+/// Gains are measured on coarse hulls of the subject.
+MeasuredGains measure_gains_on_hull(const PhotometricJob& job, Hull& hull, const Subject& subject);
 
 /// The same on a surface with voxels of `voxel_size` world units.
-AlikeViews make_alike_on(const PhotometricJob& job, const TriMesh& mesh, double voxel_size,
-                         std::vector<PreparedView>& views);
+MeasuredGains measure_gains_on(const PhotometricJob& job, const TriMesh& mesh, double voxel_size,
+                               const std::vector<PreparedView>& views);
 
 }  // namespace photohull::pipeline

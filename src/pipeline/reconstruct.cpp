@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <span>
 #include <utility>
 
 #include "core/error.h"
@@ -93,17 +94,19 @@ Prepared prepare(Run& run) {
           std::move(found.findings)};
 }
 
-/// Masks are done with when neither sweeps nor stems need them any more. What was made of them
-/// stays.
-void forget_masks(const ReconstructOptions& options, std::vector<PreparedView>& views) {
-  // The other samplers weight by the masks, and lines get their width from them.
-  const bool needed = !method_of(options).from_hull ||
-                      sampler_of(options) != projtex::Sampler::kMipmap ||
-                      std::any_of(views.begin(), views.end(), [](const PreparedView& view) {
-                        return !view.silhouette.lines.empty() || !view.silhouette.widened.empty();
-                      });
-  if (needed) return;
+/// Does anything after the hull go by masks? The other samplers weight by them, and lines get
+/// their width from them.
+bool masks_are_needed(const ReconstructOptions& options, std::span<const PreparedView> views) {
+  return !method_of(options).from_hull || sampler_of(options) != projtex::Sampler::kMipmap ||
+         std::any_of(views.begin(), views.end(), [](const PreparedView& view) {
+           return !view.silhouette.lines.empty() || !view.silhouette.widened.empty();
+         });
+}
+
+/// To free memory; what was made of the masks stays.
+std::vector<PreparedView> without_masks(std::vector<PreparedView> views) {
   for (PreparedView& view : views) std::vector<std::uint8_t>().swap(view.mask.coverage);
+  return views;
 }
 
 void warn_of_surroundings(const ReconstructOptions& options, bool bounded, Progress& progress) {
@@ -175,8 +178,10 @@ class Carver {
   SparseVolume carve_surface() {
     SparseVolume hull = run_.clock.run("hull", Weights::kHull, [&] { return carve_hull(); });
     alike_ = any_mask(subject_.views);
-    if (alike_) make_alike([&] { return make_alike_on_hull(photometric_job(), hull_, subject_); });
-    forget_masks(run_.options, subject_.views);
+    if (alike_)
+      make_alike([&] { return measure_gains_on_hull(photometric_job(), hull_, subject_); });
+    if (!masks_are_needed(run_.options, subject_.views))
+      subject_.views = without_masks(std::move(subject_.views));
     run_.context->release_deleted();
     run_.clock.run("images", Weights::kImages, [&] { upload(); });
     Surface surface;
@@ -211,20 +216,24 @@ class Carver {
 
   PhotometricJob photometric_job() { return {run_.options, subject_.noise_sigma, run_.progress}; }
 
-  /// Makes the photographs' gains alike by `work`, before colours are compared. Did pixels change?
-  template <typename Work>
-  bool make_alike(const Work& work) {
+  /// Divides the photographs by the gains that `measure` finds, before colours are compared. Did
+  /// pixels change?
+  template <typename Measure>
+  bool make_alike(const Measure& measure) {
     if (run_.options.photometric == Photometric::kOff) return false;
-    const AlikeViews alike = run_.clock.run("photometric", Weights::kPhotometric, work);
-    run_.report.photometric = alike.findings;
-    return alike.changed;
+    return run_.clock.run("photometric", Weights::kPhotometric, [&] {
+      const MeasuredGains found = measure();
+      run_.report.photometric = found.findings;
+      if (found.gains) subject_.views = divide_by_gains(std::move(subject_.views), *found.gains);
+      return found.gains.has_value();
+    });
   }
 
   /// Where there were no silhouettes, gains are measured on the surface that was found.
   void make_alike_on_mesh(const TriMesh& mesh) {
     if (alike_) return;
     const bool changed = make_alike([&] {
-      return make_alike_on(photometric_job(), mesh, subject_.grid.voxel_size, subject_.views);
+      return measure_gains_on(photometric_job(), mesh, subject_.grid.voxel_size, subject_.views);
     });
     if (!changed) return;
     images_.reset();

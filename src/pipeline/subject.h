@@ -1,6 +1,6 @@
 // What is carved: views with their silhouettes, the box and the lattice. The stages from the hull
-// on work with it. Only two change it: gains divide the photographs' pixels, and pixels and masks
-// that are not needed any more are freed.
+// on read it. Only `Reconstructor` gives it other views: divided by gains, or without the masks and
+// pixels that are not needed any more.
 #pragma once
 
 #include <optional>

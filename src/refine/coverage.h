@@ -8,7 +8,7 @@
 #include "core/grid.h"
 #include "gpu/context.h"
 #include "projtex/gpu_views.h"
-#include "visibility/depth_maps.h"
+#include "visibility/kernels/depth_maps.h"
 
 namespace photohull::refine {
 

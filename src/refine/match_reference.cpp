@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "refine/view_choice.h"
-#include "visibility/depth_maps.h"
+#include "visibility/kernels/depth_maps.h"
 
 namespace photohull::refine::reference {
 namespace {

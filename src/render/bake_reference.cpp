@@ -4,7 +4,7 @@
 
 #include "render/bake_colour.h"
 #include "shared/bake.h"
-#include "visibility/depth_maps.h"
+#include "visibility/kernels/depth_maps.h"
 
 namespace photohull::render::reference {
 namespace {

@@ -9,7 +9,7 @@
 #include "gpu/program.h"
 #include "render/choose_views.h"
 #include "render/preview.h"
-#include "visibility/visibility_map.h"
+#include "visibility/kernels/visibility_map.h"
 
 namespace photohull::render {
 

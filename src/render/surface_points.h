@@ -7,7 +7,7 @@
 #include "core/grid.h"
 #include "core/mesh.h"
 #include "projtex/photographs.h"
-#include "visibility/depth_maps.h"
+#include "visibility/kernels/depth_maps.h"
 
 namespace photohull::render {
 

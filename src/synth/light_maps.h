@@ -2,7 +2,7 @@
 #pragma once
 
 #include "synth/shading.h"
-#include "visibility/visibility_map.h"
+#include "visibility/kernels/visibility_map.h"
 
 namespace photohull::synth {
 

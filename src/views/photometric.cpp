@@ -21,6 +21,8 @@ namespace photohull {
 namespace {
 
 constexpr int kRounds = 4;         // of solving; the loss's width follows the residuals
+constexpr int kIterations = 10;    // of a round: the next one has another loss
+constexpr double kSettled = 1e-5;  // share of the cost by which the last step lowers it
 constexpr double kFirstWidth = 5;  // deviations
 constexpr double kCauchy = 2.385;  // of the residuals' deviation: 95 % efficient
 constexpr double kMedianToSigma = 1.483;
@@ -181,7 +183,8 @@ class Solver {
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::DENSE_SCHUR;
     options.linear_solver_ordering.reset(order);
-    options.max_num_iterations = 30;
+    options.max_num_iterations = kIterations;
+    options.function_tolerance = kSettled;
     options.num_threads = 1;  // sums are then the same in every run
     options.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;

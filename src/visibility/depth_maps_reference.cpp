@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "visibility/depth_maps.h"
+#include "visibility/kernels/depth_maps.h"
 
 namespace photohull::visibility::reference {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "visibility/visibility_map.h"
+#include "visibility/kernels/visibility_map.h"
 
 namespace photohull::visibility::reference {
 

@@ -9,7 +9,7 @@
 
 #include "core/grid.h"
 #include "raycast/ray_scene.h"
-#include "visibility/visibility_map.h"
+#include "visibility/kernels/visibility_map.h"
 
 namespace photohull::visibility {
 

@@ -10,7 +10,7 @@
 #include "gpu/context.h"
 #include "gpu/program.h"
 #include "shared/sweep.h"
-#include "visibility/depth_maps.h"
+#include "visibility/kernels/depth_maps.h"
 
 namespace photohull::carving::test_kernels {
 

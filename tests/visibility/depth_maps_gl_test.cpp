@@ -1,5 +1,5 @@
 // The splatting kernel against its reference.
-#include "visibility/depth_maps.h"
+#include "visibility/kernels/depth_maps.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "visibility/depth_maps.h"
+#include "visibility/kernels/depth_maps.h"
 
 namespace photohull::visibility::reference {
 namespace {

@@ -6,7 +6,7 @@
 #include "core/camera.h"
 #include "core/mesh.h"
 #include "support/cameras.h"
-#include "visibility/visibility_map.h"
+#include "visibility/kernels/visibility_map.h"
 
 namespace photohull::visibility::test_cases {
 

@@ -16,7 +16,7 @@
 #include "gpu/context.h"
 #include "gpu/program.h"
 #include "projtex/gpu_views.h"
-#include "visibility/depth_maps.h"
+#include "visibility/kernels/depth_maps.h"
 
 namespace photohull::carving {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "lab/visibility/study.h"
-#include "visibility/visibility_map.h"
+#include "visibility/kernels/visibility_map.h"
 
 namespace photohull::visibility {
 

@@ -5,8 +5,8 @@
 
 #include "lab/visibility/study.h"
 #include "raycast/ray_scene.h"
+#include "visibility/kernels/visibility_map.h"
 #include "visibility/layout.h"
-#include "visibility/visibility_map.h"
 
 namespace photohull::visibility {
 

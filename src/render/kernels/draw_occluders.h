@@ -9,7 +9,7 @@
 #include "gpu/buffer.h"
 #include "gpu/context.h"
 #include "render/surface_points.h"
-#include "visibility/depth_maps.h"
+#include "visibility/kernels/depth_maps.h"
 
 namespace photohull::render {
 

@@ -1,7 +1,7 @@
 // Based on: P. Lecocq, J.-E. Marvie, G. Sourimant, P. Gautron, "Sub-pixel shadow mapping", I3D
 // 2014; H. Li, H. Yang, C. Han, J. Zhao, "Coverage detecting algorithm based on sub-pixel geometric
 // primitives", Journal of System Simulation 29(11), 2017.
-#include "visibility/detail.h"
+#include "visibility/kernels/detail.h"
 
 #include <bit>
 #include <limits>

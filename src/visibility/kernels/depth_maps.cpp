@@ -1,4 +1,4 @@
-#include "visibility/depth_maps.h"
+#include "visibility/kernels/depth_maps.h"
 
 #include <algorithm>
 #include <bit>

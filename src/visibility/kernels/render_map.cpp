@@ -5,8 +5,8 @@
 
 #include "core/error.h"
 #include "gpu/gl.h"
-#include "visibility/detail.h"
-#include "visibility/visibility_map.h"
+#include "visibility/kernels/detail.h"
+#include "visibility/kernels/visibility_map.h"
 
 namespace photohull::visibility {
 namespace {

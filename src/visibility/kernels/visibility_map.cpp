@@ -1,4 +1,4 @@
-#include "visibility/visibility_map.h"
+#include "visibility/kernels/visibility_map.h"
 
 #include <algorithm>
 

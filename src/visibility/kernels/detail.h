@@ -1,7 +1,7 @@
 // Maps of triangles instead of depths. Private to visibility.
 #pragma once
 
-#include "visibility/visibility_map.h"
+#include "visibility/kernels/visibility_map.h"
 
 namespace photohull::visibility {
 
