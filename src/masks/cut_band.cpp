@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/gtc/packing.hpp>
 #include <opencv2/imgproc.hpp>
+#include <opencv2/imgproc/detail/gcgraph.hpp>
+#include <vector>
 
 #include "core/error.h"
 #include "masks/mask_evidence.h"
@@ -42,15 +44,132 @@ cv::Mat coded(const ColourImage& image, const cv::Rect& box) {
   return out;
 }
 
+/// Gaussians of one side's colours, as cv::grabCut learns them: shares, means, covariances.
+class Mixture {
+ public:
+  explicit Mixture(const cv::Mat& model) {
+    const double* share = model.ptr<double>();
+    const double *mean = share + kParts, *covariance = mean + 3 * kParts;
+    for (int i = 0; i < kParts; ++i) {
+      const cv::Matx33d matrix(covariance + 9 * i);
+      const double determinant = cv::determinant(matrix);
+      if (!(share[i] > 0) || !(determinant > 0)) continue;
+      parts_.push_back({share[i] / std::sqrt(determinant), cv::Vec3d(mean + 3 * i), matrix.inv()});
+    }
+  }
+
+  /// Negative logarithm of the density, but for a constant.
+  double cost(const cv::Vec3b& colour) const {
+    double density = 0;
+    for (const Part& p : parts_) {
+      const cv::Vec3d d = cv::Vec3d(colour) - p.mean;
+      density += p.scale * std::exp(-0.5 * d.dot(p.inverse * d));
+    }
+    return -std::log(std::max(density, 1e-300));
+  }
+
+ private:
+  static constexpr int kParts = 5;
+  struct Part {
+    double scale;
+    cv::Vec3d mean;
+    cv::Matx33d inverse;
+  };
+  std::vector<Part> parts_;
+};
+
+double squared_difference(const cv::Vec3b& a, const cv::Vec3b& b) {
+  const cv::Vec3d d = cv::Vec3d(a) - cv::Vec3d(b);
+  return d.dot(d);
+}
+
+const cv::Point kNeighbours[] = {{-1, 0}, {-1, -1}, {0, -1}, {1, -1},
+                                 {1, 0},  {1, 1},   {0, 1},  {-1, 1}};
+constexpr int kBefore = 4;  // of them come before a pixel in reading order
+
+/// [Rother04]'s beta: one over twice the mean squared difference of neighbours.
+double contrast(const cv::Mat& colours) {
+  double sum = 0, count = 0;
+  for (int y = 1; y < colours.rows; ++y)
+    for (int x = 1; x < colours.cols; ++x) {
+      const cv::Vec3b& here = colours.at<cv::Vec3b>(y, x);
+      sum += squared_difference(here, colours.at<cv::Vec3b>(y, x - 1)) +
+             squared_difference(here, colours.at<cv::Vec3b>(y - 1, x));
+      count += 2;
+    }
+  return sum > 0 ? count / (2 * sum) : 0;
+}
+
+/// The cut through the probable pixels alone, which are few: their neighbours of certain labels
+/// bind them to source or sink, which gives the same cut as the graph of all pixels.
+class BandGraph {
+ public:
+  BandGraph(const cv::Mat& colours, const cv::Mat& labels)
+      : colours_(colours), labels_(labels), beta_(contrast(colours)), nodes_(labels.size(), -1) {}
+
+  /// Decides the probable labels.
+  cv::Mat cut(const Mixture& behind, const Mixture& front) {
+    const int probable = cv::countNonZero((labels_ == cv::GC_PR_BGD) | (labels_ == cv::GC_PR_FGD));
+    if (probable < 2) return labels_.clone();
+    graph_.create(unsigned(probable), unsigned(2 * kBefore * probable));
+    for_each_probable([&](const cv::Point& at) { add(at, behind, front); });
+    graph_.maxFlow();
+    cv::Mat decided = labels_.clone();
+    for_each_probable([&](const cv::Point& at) {
+      decided.at<std::uint8_t>(at) =
+          graph_.inSourceSegment(nodes_(at)) ? cv::GC_PR_FGD : cv::GC_PR_BGD;
+    });
+    return decided;
+  }
+
+ private:
+  template <typename Visit>
+  void for_each_probable(const Visit& visit) const {
+    for (int y = 0; y < labels_.rows; ++y)
+      for (int x = 0; x < labels_.cols; ++x)
+        if (const std::uint8_t label = labels_.at<std::uint8_t>(y, x);
+            label == cv::GC_PR_BGD || label == cv::GC_PR_FGD)
+          visit(cv::Point(x, y));
+  }
+
+  void add(const cv::Point& at, const Mixture& behind, const Mixture& front) {
+    constexpr double kGamma = 50;  // [Rother04]
+    const cv::Vec3b& here = colours_.at<cv::Vec3b>(at);
+    const int node = nodes_(at) = graph_.addVtx();
+    double to_front = behind.cost(here), to_behind = front.cost(here);
+    for (int i = 0; i < 2 * kBefore; ++i) {
+      const cv::Point there = at + kNeighbours[i];
+      if (!there.inside(cv::Rect({0, 0}, labels_.size()))) continue;
+      const double length = kNeighbours[i].x != 0 && kNeighbours[i].y != 0 ? std::sqrt(2.0) : 1;
+      const double weight =
+          kGamma / length *
+          std::exp(-beta_ * squared_difference(here, colours_.at<cv::Vec3b>(there)));
+      const std::uint8_t label = labels_.at<std::uint8_t>(there);
+      if (label == cv::GC_FGD)
+        to_front += weight;
+      else if (label == cv::GC_BGD)
+        to_behind += weight;
+      else if (i < kBefore)
+        graph_.addEdges(node, nodes_(there), weight, weight);
+    }
+    graph_.addTermWeights(node, to_front, to_behind);
+  }
+
+  const cv::Mat &colours_, &labels_;
+  double beta_;
+  cv::Mat_<int> nodes_;
+  cv::detail::GCGraph<double> graph_;
+};
+
 /// Decides the probable labels. The colours of both sides are learnt at half the resolution, which
 /// takes a fourth of the time and knows them as well.
-void cut(const cv::Mat& colours, cv::Mat& labels) {
+cv::Mat cut(const cv::Mat& colours, const cv::Mat& labels) {
   cv::Mat few, few_labels, behind, front;
   cv::resize(colours, few, {}, 0.5, 0.5, cv::INTER_AREA);
   cv::resize(labels, few_labels, few.size(), 0, 0, cv::INTER_NEAREST);
   cv::setRNGSeed(1);  // its clusters start at random
   cv::grabCut(few, few_labels, {}, behind, front, kIterations, cv::GC_INIT_WITH_MASK);
-  cv::grabCut(colours, labels, {}, behind, front, 1, cv::GC_EVAL_FREEZE_MODEL);
+  return BandGraph(colours, labels).cut(Mixture(behind), Mixture(front));
 }
 
 }  // namespace
@@ -78,7 +197,7 @@ Mask cut_band(const MaskEvidence& evidence, const ColourImage& image, const Mask
   if (cv::countNonZero(labels == cv::GC_FGD) < kFewestCertain ||
       cv::countNonZero(labels == cv::GC_BGD) < kFewestCertain)
     return mask;
-  cut(coded(image, box), labels);
+  labels = cut(coded(image, box), labels);
   cv::Mat inside = (labels == cv::GC_FGD) | (labels == cv::GC_PR_FGD);
   soften_contour(distance, inside);
   Mask out{mask.width, mask.height, std::vector<std::uint8_t>(mask.coverage.size(), 0)};
