@@ -6,7 +6,7 @@ Each spec of datasets/synthetic is photographed small, with two seeds, and recon
 (VARIANTS). results.json of the folder holds for each run F at 0.5 % of the diagonal, of the parts that are
 seen, and the verdict with its reasons and the signals that it rests on. Runs that are there are not repeated.
 The tables at the end count the calls, and in how many of them the first reason is the right one, apart for
-seed 1, on which limits were fitted, and for the others; docs/measurements/stability.md has them."""
+seed 1, on which limits were fitted, and for the others; docs/measurements/verdict.md has the latter."""
 import argparse
 import json
 import re
@@ -76,6 +76,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seeds", type=listed, default="1,2")
     parser.add_argument("--only", nargs="*", default=[])
     parser.add_argument("--variants", type=listed, default=",".join(VARIANTS))
+    parser.add_argument("--json", type=Path, help="file for the calls on other seeds than the first")
 
 
 def first_is_right(key: str, result: dict) -> bool:
@@ -124,10 +125,11 @@ def run(options: argparse.Namespace) -> None:
                       result.get("reasons", result.get("error"))[:1], flush=True)
     fitted = {key for key in results if key.split("|")[1] == "1"}
     summary("fitted on", results, fitted)
-    summary("judged on", results, set(results) - fitted)
+    keep_json(options.json, {"tables": {"calls": summary("judged on", results, set(results) - fitted)}})
 
 
-def summary(title: str, results: dict[str, dict], chosen: set[str]) -> None:
+def summary(title: str, results: dict[str, dict], chosen: set[str]) -> dict:
+    """Prints the calls, and gives their table."""
     rows = []
     for low, high in [(0, 0.8), (0.8, 0.95), (0.95, 2)]:
         runs = [results[key] for key in chosen if "f" in results[key] and low <= results[key]["f_seen"] < high]
@@ -135,9 +137,10 @@ def summary(title: str, results: dict[str, dict], chosen: set[str]) -> None:
         rows.append([f"{100 * low:.0f} to {min(100, 100 * high):.0f} %", *counts, 0])
     rows.append(["no result", 0, 0, 0, sum("f" not in results[key] for key in chosen)])
     print(f"\n{title}:\n")
-    tables.show(COLUMNS, rows)
+    print(tables.markdown(COLUMNS, rows))
     called = [key for key in chosen if results[key].get("reasons")]
     wrong = sorted(key for key in called if not first_is_right(key, results[key]))
     if called:
         print(f"\nThe right cause comes first in {len(called) - len(wrong)} of {len(called)} called "
               f"({100 * (1 - len(wrong) / len(called)):.0f} %); not in: {', '.join(wrong) or 'none'}")
+    return {"columns": COLUMNS, "rows": rows}
