@@ -5,7 +5,8 @@
 Holds out every eighth view, reconstructs by each method, and predicts the held-out views from the mesh (photohull
 evaluate --photos), with colours from all other views and with those at least 20 degrees away only, which is stricter.
 Prints the table of docs/measurements/benchmarks.md. Scenes that do have a true surface (gt.ply) get a row for that
-surface itself, which no mesh should beat, and F-scores at 0.25 % among the figures. --keep leaves meshes and pictures of the worst views in a folder."""
+surface itself, which no mesh should beat, and F-scores at 0.25 % among the figures. --keep leaves meshes and
+pictures of the worst views in a folder."""
 import argparse
 import sys
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What bench/results keeps of a measurement: the figures that pages need, with the program that gave them and the day."""
+"""What bench/results keeps of a measurement: figures that pages need, with the program that gave them and the day."""
 import datetime
 import json
 import re
@@ -59,8 +59,8 @@ def write(name: str, figures: object, program: dict) -> None:
 def identity(photohull: Photohull, commit: str | None) -> dict:
     """Version of the program and the commit that it was built from, which a build in this checkout need not be told."""
     if not commit and photohull.program.is_relative_to(ROOT):
-        commit = subprocess.run(["git", "describe", "--always", "--dirty= with changes"], cwd=ROOT, capture_output=True, text=True,
-                                check=True).stdout.strip()
+        commit = subprocess.run(["git", "describe", "--always", "--dirty= with changes"], cwd=ROOT, capture_output=True,
+                                text=True, check=True).stdout.strip()
     found = {"version": photohull.json("--version")["version"], "sha256": photohull.identity[:16]}
     return found | ({"commit": commit} if commit else {})
 
@@ -101,8 +101,8 @@ def cures(curves: list[dict]) -> dict | None:
     for cure, axis, on, off in CURES:
         if (axis, on) not in points or (axis, off) not in points:
             continue
-        pairs = list(zip(points[axis, off], points[axis, on], strict=True))
-        cells = [(with_["label"], f"{100 * without['f025']:.1f}, **{100 * with_['f025']:.1f}**") for without, with_ in pairs]
+        cells = [(with_["label"], f"{100 * without['f025']:.1f}, **{100 * with_['f025']:.1f}**")
+                 for without, with_ in zip(points[axis, off], points[axis, on], strict=True)]
         others = "; ".join(f"{label}: {text}" for label, text in cells[1:])
         rows.append([cure, axis.replace("-", " "), cells[0][1], others])
     return {"columns": ["cure", "degradation", "clean", "strength: without, with"], "rows": rows} if rows else None

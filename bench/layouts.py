@@ -42,30 +42,31 @@ def chosen(runs: list[dict], entry: dict) -> list[dict]:
 
 
 def rows(runs: list[dict], entry: dict) -> str:
-    """A row a run, a column a template."""
-    columns = entry["columns"]
-    return tables.markdown(list(columns), ([cell(t, run) for t in columns.values()] for run in chosen(runs, entry)))
+    """A row a run, a column a template; columns of which no run knows anything are left out."""
+    runs = chosen(runs, entry)
+    columns = {title: t for title, t in entry["columns"].items() if any(cell(t, run) for run in runs)}
+    return tables.markdown(list(columns), ([cell(t, run) for t in columns.values()] for run in runs))
 
 
 def pivot(runs: list[dict], entry: dict) -> str:
     """Cells by two fields; where it is wanted with the mean of a field over the columns, and the sum of another.
-    A run that failed is nothing in the mean."""
-    titles, found = entry.get("titles", {}), {}
+    A run that failed counts as zero in the mean."""
+    runs, titles, found = chosen(runs, entry), entry.get("titles", {}), {}
+    ends = {name: entry[name] for name in ("mean", "sum") if any(entry.get(name) in run for run in runs)}
     heads: dict[str, None] = {}
-    for run in chosen(runs, entry):
+    for run in runs:
         row, column = cell(entry["rows"], run), cell(entry["columns"], run)
         heads[column] = None
         found.setdefault(row, {})[column] = run
     lines = []
     for row, by_column in found.items():
         line = [titles.get(row, row), *(cell(entry["cell"], by_column[c]) if c in by_column else "" for c in heads)]
-        for name, count in (("mean", len(by_column)), ("sum", 1)):
-            if name in entry:
-                total = sum(run.get(entry[name], 0) for run in by_column.values())
-                line.append(f"{total / count:.{2 if name == 'mean' else 1}f}")
+        for name, field in ends.items():
+            total = sum(run.get(field, 0) for run in by_column.values())
+            line.append(f"{total / len(by_column):.2f}" if name == "mean" else f"{total:.1f}")
         lines.append(line)
-    ends = [title for name, title in (("mean", "mean"), ("sum", "CPU s, all")) if name in entry]
-    return tables.markdown([entry["head"], *(titles.get(c, c) for c in heads), *ends], lines)
+    last = ["mean" if name == "mean" else "CPU s, all" for name in ends]
+    return tables.markdown([entry["head"], *(titles.get(c, c) for c in heads), *last], lines)
 
 
 def kept(results: dict, entry: dict) -> str:

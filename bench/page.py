@@ -84,7 +84,8 @@ def faults(page: str) -> list[str]:
     """The page's tables that are not what the results give."""
     text, tables = path_of(page).read_text(encoding="utf-8"), data(page)
     places = [match[2] for match in TABLE.finditer(text)]
-    found = [f"{page}: the table {name} has no entry in bench/pages/{page}.json" for name in places if name not in tables]
+    found = [f"{page}: the table {name} has no entry in bench/pages/{page}.json"
+             for name in places if name not in tables]
     for name, entry in tables.items():
         if places.count(name) != 1:
             found.append(f"{page}: the table {name} has {places.count(name)} places in the page, and needs one")

@@ -41,7 +41,7 @@ class Results:
     def means(self) -> str:
         """Total error in %, map ms + test ms, MiB."""
         def cell(technique: str, resolution: int) -> str:
-            found = [self.cells[s, technique, resolution] for s in self.scenes if (s, technique, resolution) in self.cells]
+            found = [c for (_, t, r), c in self.cells.items() if (t, r) == (technique, resolution)]
             if not found:
                 return "-"
             return (f"{mean(found, total):.3f}; {mean(found, itemgetter('map_ms')):.0f} + "
@@ -59,7 +59,8 @@ class Results:
         degrees = sorted({a["degrees"] for a in self.data["angles"]})
         found = {(a["technique"], a["degrees"]): a for a in self.data["angles"]}
         return markdown(["map", *(f"{d:g}" for d in degrees)],
-                        ([f"`{t}`", *(f"{total(found[t, d]):.2f} ({found[t, d]['silhouette_texels']:.2f})" for d in degrees)]
+                        ([f"`{t}`", *(f"{total(found[t, d]):.2f} ({found[t, d]['silhouette_texels']:.2f})"
+                                      for d in degrees)]
                          for t in dict.fromkeys(a["technique"] for a in self.data["angles"])))
 
     def detection(self) -> str:
@@ -90,7 +91,8 @@ class Results:
         return markdown(["map", "plain", "coverage", "increase", "increase of `lists`", "paper"], rows)
 
     def li17_models(self) -> str:
-        paper = {"dense": "Dragon: 32.8 34.4, 42.5 43.6, 42.8 44.1", "wires": "Butterfly: 15.7 17.1, 24.6 26.3, 25.4 27.3",
+        paper = {"dense": "Dragon: 32.8 34.4, 42.5 43.6, 42.8 44.1",
+                 "wires": "Butterfly: 15.7 17.1, 24.6 26.3, 25.4 27.3",
                  "leaves": "Tree: 11.1 16.9, 16.9 18.5, 17.2 18.9", "ball": "Ball: 7.6 9.4, 10.7 12.6, 10.9 13.3"}
         columns = {"plain": "plain", "SPSM": "sub-pixel", "coverage": "coverage", "lists": "lists"}
         return markdown(["model", "vertices", "polygons", *(f"{t} {r}" for t in columns for r in (1024, 2048)),
@@ -118,7 +120,8 @@ class Results:
                 ("2 static lights", 2, False, "25, 160"), ("1 dynamic light", 1, True, "22, 45"),
                 ("2 dynamic lights", 2, True, "13, 25")]
         return markdown(["plain map", "whole scene", "near view", "paper"],
-                        ([n, self.frames("plain", l, d, False), self.frames("plain", l, d, True), p] for n, l, d, p in rows))
+                        ([n, *(self.frames("plain", l, d, close) for close in (False, True)), p]
+                         for n, l, d, p in rows))
 
     def celes_acne(self) -> str:
         return markdown(["dynamic lights", "constant: whole", "near", "second-depth: whole", "near", "dual-depth: whole",
@@ -141,7 +144,8 @@ class Results:
         columns = {"PCF 3x3": "pcf3", "adaptive": "pcf3-adaptive", "PCF 5x5": "pcf5", "5x5 adaptive": "pcf5-adaptive",
                    "VSM 3x3": "variance3", "VSM 5x5": "variance"}
         rows = [[n, *(self.frames(t, l, d, True) for t in columns.values()), p]
-                for n, l, d, p in (("1 static", 1, False, "84, 84; 194, 194"), ("2 static", 2, False, "56, 56; 116, 116"),
+                for n, l, d, p in (("1 static", 1, False, "84, 84; 194, 194"),
+                                   ("2 static", 2, False, "56, 56; 116, 116"),
                                    ("1 dynamic", 1, True, "43, 43; 46, 46"), ("2 dynamic", 2, True, "22, 21; 25, 25"))]
         rows.append(["test, ms", *(f"{self.cells[ASSEMBLY, t, 2048]['test_ms']:.1f}" for t in columns.values()), ""])
         return markdown(["lights", *columns, "paper: adaptive 3x3, 5x5; VSM 3x3, 5x5"], rows)
