@@ -56,11 +56,18 @@ def write(name: str, figures: object, program: dict) -> None:
     (RESULTS / f"{name}.json").write_text(f"{{{head}, \"results\": {text}}}\n", encoding="utf-8")
 
 
+def commit_here() -> str:
+    """The commit of this checkout, and whether its sources are changed."""
+    def git(*words: str) -> str:
+        return subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True, check=True).stdout.strip()
+    changed = git("status", "--porcelain", "--", "src", "cli", "shaders", "cmake", "CMakeLists.txt")
+    return git("rev-parse", "--short", "HEAD") + (" with changes" if changed else "")
+
+
 def identity(photohull: Photohull, commit: str | None) -> dict:
     """Version of the program and the commit that it was built from, which a build in this checkout need not be told."""
     if not commit and photohull.program.is_relative_to(ROOT):
-        commit = subprocess.run(["git", "describe", "--always", "--dirty= with changes"], cwd=ROOT, capture_output=True,
-                                text=True, check=True).stdout.strip()
+        commit = commit_here()
     found = {"version": photohull.json("--version")["version"], "sha256": photohull.identity[:16]}
     return found | ({"commit": commit} if commit else {})
 
