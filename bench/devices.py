@@ -1,6 +1,6 @@
 """How far results of other devices are from the default device's.
 
-    python3 -m bench devices [NAME=VALUE[,NAME=VALUE...] ...]
+    python3 -m bench devices [NAME=VALUE[,NAME=VALUE...] ...] [--out FILE]
 
 A synthetic scene is reconstructed by hull, space carving and refinement on the default device and with each set of
 environment variables, for example LP_NATIVE_VECTOR_WIDTH=128 (llvmpipe with vectors half as wide) or
@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from bench import tables
-from bench.runner import Photohull, ProgramError, add_program, f_scores, work_folder
+from bench.runner import Photohull, ProgramError, add_program, f_scores, keep_json, work_folder
 
 SPEC = {
     "geometry": {"shape": "folds", "parameters": {"count": 5, "depth": 0.25, "lean": 0.3}},
@@ -28,6 +28,7 @@ COLUMNS = ["method", "environment", "device", "same bytes", "F 0.25 %", "mean, v
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_program(parser)
     parser.add_argument("environments", nargs="*", help="variables with commas between them")
+    parser.add_argument("--out", type=Path, help="file for the table")
 
 
 def compare(photohull: Photohull, scene: Path, method: str, out: Path, first: Path) -> list[str]:
@@ -56,4 +57,6 @@ def rows(options: argparse.Namespace, folder: Path) -> Iterator[list[str]]:
 
 def run(options: argparse.Namespace) -> None:
     with work_folder(None) as folder:
-        tables.show(COLUMNS, rows(options, folder))
+        found = list(rows(options, folder))
+    print(tables.markdown(COLUMNS, found))
+    keep_json(options.out, {"tables": {"devices": {"columns": COLUMNS, "rows": found}}})

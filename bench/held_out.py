@@ -1,23 +1,21 @@
 """Reconstructions judged by photographs that were not used.
 
-    python3 -m bench held_out [--scenes templeRing,dinoRing] [--out bench/results/held_out.json] [--keep FOLDER]
+    python3 -m bench held_out [--scenes templeRing,dinoRing] [--out FILE] [--keep FOLDER]
 
 Holds out every eighth view, reconstructs by each method, and predicts the held-out views from the mesh (photohull
 evaluate --photos), with colours from all other views and with those at least 20 degrees away only, which is stricter.
-Prints a table for docs/measurements/benchmarks.md; a ratio is that of the mean ZNCC to the hull's. Scenes that do have
-a true surface (gt.ply) get a row for that surface itself, which no mesh should beat, and F-scores at 0.25 % beside the
-ZNCC. --keep leaves meshes and pictures of the worst views in a folder."""
+Prints the table of docs/measurements/benchmarks.md. Scenes that do have a true surface (gt.ply) get a row for that
+surface itself, which no mesh should beat, and F-scores at 0.25 % among the figures. --keep leaves meshes and
+pictures of the worst views in a folder."""
 import argparse
 import sys
 from pathlib import Path
 
-from bench import tables
-from bench.runner import RESULTS, Photohull, add_datasets, add_keep, add_program, keep_json, listed, work_folder
+from bench import page
+from bench.runner import Photohull, add_datasets, add_keep, add_program, keep_json, listed, work_folder
 
 METHODS = ("hull", "space-carving", "refine", "truth")
 ANGLES = (0, 20)
-COLUMNS = ["scene", "method", "CPU s", "ZNCC", "ratio", "ZNCC from 20 degrees", "ratio", "PSNR, dB", "covered %",
-           "excess %", "IoU %", "worst view"]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -25,7 +23,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_datasets(parser)
     parser.add_argument("--scenes", type=listed, default="templeRing,dinoRing")
     parser.add_argument("--resolution", type=int, default=256)
-    parser.add_argument("--out", type=Path, default=RESULTS / "held_out.json")
+    parser.add_argument("--out", type=Path, help="file for the figures")
     add_keep(parser)
 
 
@@ -62,15 +60,6 @@ def judge(photohull: Photohull, scene: Path, method: str, folder: Path, resoluti
     return row
 
 
-def cells(row: dict, hull: dict, with_truth: bool) -> list[str]:
-    near, far = (row["angles"][str(a)]["all"] for a in ANGLES)
-    base = [hull["angles"][str(a)]["all"]["zncc"] for a in ANGLES]
-    found = [row["scene"], row["method"], f"{row['cpu_s']:.1f}" if "cpu_s" in row else "-", f"{near['zncc']:.3f}",
-             f"{near['zncc'] / base[0]:.2f}", f"{far['zncc']:.3f}", f"{far['zncc'] / base[1]:.2f}", f"{near['psnr']:.2f}",
-             *(f"{100 * near[k]:.2f}" for k in ("coverage", "excess", "silhouette_iou")), row["angles"]["0"]["worst"]]
-    return found + ([f"{100 * row['f']:.2f}" if "f" in row else "-"] if with_truth else [])
-
-
 def run(options: argparse.Namespace) -> None:
     photohull, rows = Photohull(options.program), []
     with work_folder(options.keep) as folder:
@@ -79,8 +68,5 @@ def run(options: argparse.Namespace) -> None:
                 print(scene, method, file=sys.stderr, flush=True)
                 row = judge(photohull, options.datasets / scene, method, folder, options.resolution)
                 rows += [row] if row else []
-    hulls = {row["scene"]: row for row in rows if row["method"] == "hull"}
-    with_truth = any("f" in row for row in rows)
-    tables.show(COLUMNS + (["F 0.25 %"] if with_truth else []),
-                (cells(row, hulls[row["scene"]], with_truth) for row in rows))
+    print(page.table_of(page.data("benchmarks")["held-out"], rows))
     keep_json(options.out, rows)

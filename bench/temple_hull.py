@@ -1,6 +1,6 @@
 """Time and memory of the hull of templeRing at two resolutions, from photographs to files.
 
-    python3 -m bench temple_hull [--out bench/results/temple_hull.json]
+    python3 -m bench temple_hull [--out FILE]
 
 Each run is a process of its own; CPU seconds are user + system of the whole process. Run it twice on a new machine: the
 first run of a shader compiles it, later ones read it from the driver's cache. The table is in
@@ -9,16 +9,14 @@ import argparse
 from collections.abc import Iterator
 from pathlib import Path
 
-from bench import tables
-from bench.runner import RESULTS, Photohull, add_datasets, add_program, keep_json, work_folder
-
-COLUMNS = ["resolution", "hull CPU s", "process CPU s", "wall s", "peak MB"]
+from bench import page
+from bench.runner import Photohull, add_datasets, add_program, keep_json, work_folder
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_program(parser)
     add_datasets(parser)
-    parser.add_argument("--out", type=Path, default=RESULTS / "temple_hull.json")
+    parser.add_argument("--out", type=Path, help="file for the figures")
     parser.add_argument("--repeat", type=int, default=5, help="runs; the median counts")
 
 
@@ -36,6 +34,5 @@ def measure(options: argparse.Namespace, folder: Path) -> Iterator[dict]:
 def run(options: argparse.Namespace) -> None:
     with work_folder(None) as folder:
         rows = list(measure(options, folder))
-    tables.show(COLUMNS, ([r["resolution"], *(f"{r[k]:.2f}" for k in ("hull_cpu_s", "process_cpu_s", "wall_s")),
-                           f"{r['peak_mb']:.0f}"] for r in rows))
+    print(page.table_of(page.data("benchmarks")["hull"], rows))
     keep_json(options.out, rows)

@@ -6,7 +6,7 @@ Each spec of datasets/synthetic is photographed small, with two seeds, and recon
 (VARIANTS). results.json of the folder holds for each run F at 0.5 % of the diagonal, of the parts that are
 seen, and the verdict with its reasons and the signals that it rests on. Runs that are there are not repeated.
 The tables at the end count the calls, and in how many of them the first reason is the right one, apart for
-seed 1, on which limits were fitted, and for the others; docs/measurements/stability.md has them."""
+seed 1, on which limits were fitted, and for the others; docs/measurements/verdict.md has the latter."""
 import argparse
 import json
 import re
@@ -64,9 +64,8 @@ SPEC_CAUSES = {
     "wheel": ["stems", "voxels"],
 }
 
-
 COLUMNS = ["F of what is seen, 0.5 %", "good", "doubtful", "failed", "refused"]
-
+CAUSES = ["called", "the first reason is the right cause"]
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_program(parser)
@@ -76,20 +75,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seeds", type=listed, default="1,2")
     parser.add_argument("--only", nargs="*", default=[])
     parser.add_argument("--variants", type=listed, default=",".join(VARIANTS))
-
+    parser.add_argument("--json", type=Path, help="file for the calls on other seeds than the first")
 
 def first_is_right(key: str, result: dict) -> bool:
     spec, _, variant = key.split("|")
     causes = VARIANT_CAUSES[variant] + ([] if variant == "small box" else SPEC_CAUSES.get(spec, []))
     return any(re.search(WORDS[cause], result["reasons"][0]) for cause in causes)
 
-
 def arguments_of(variant: str, views: int, resolution: int) -> list[str]:
     if variant == "every third view":
         return ["--views", f"spread:{max(5, views // 3)}", "--resolution", str(resolution)]
     given = VARIANTS[variant]
     return given if "--quality" in given or "--resolution" in given else given + ["--resolution", str(resolution)]
-
 
 def measure(photohull: Photohull, scene: Path, out: Path, arguments: list[str]) -> dict:
     try:
@@ -101,7 +98,6 @@ def measure(photohull: Photohull, scene: Path, out: Path, arguments: list[str]) 
     return {"exit": done.status, "f": f_scores(judged)[0.005], "f_seen": f_scores(judged["seen"])[0.005],
             "level": verdict["level"], "reasons": verdict["reasons"], "verdict": verdict,
             "cpu_seconds": done.report["cpu_seconds"]}
-
 
 def run(options: argparse.Namespace) -> None:
     photohull, file = Photohull(options.program), options.folder / "results.json"
@@ -124,10 +120,10 @@ def run(options: argparse.Namespace) -> None:
                       result.get("reasons", result.get("error"))[:1], flush=True)
     fitted = {key for key in results if key.split("|")[1] == "1"}
     summary("fitted on", results, fitted)
-    summary("judged on", results, set(results) - fitted)
+    keep_json(options.json, {"tables": summary("judged on", results, set(results) - fitted)})
 
-
-def summary(title: str, results: dict[str, dict], chosen: set[str]) -> None:
+def summary(title: str, results: dict[str, dict], chosen: set[str]) -> dict:
+    """Prints the calls and in how many the right cause comes first, and gives both as tables."""
     rows = []
     for low, high in [(0, 0.8), (0.8, 0.95), (0.95, 2)]:
         runs = [results[key] for key in chosen if "f" in results[key] and low <= results[key]["f_seen"] < high]
@@ -135,9 +131,11 @@ def summary(title: str, results: dict[str, dict], chosen: set[str]) -> None:
         rows.append([f"{100 * low:.0f} to {min(100, 100 * high):.0f} %", *counts, 0])
     rows.append(["no result", 0, 0, 0, sum("f" not in results[key] for key in chosen)])
     print(f"\n{title}:\n")
-    tables.show(COLUMNS, rows)
+    print(tables.markdown(COLUMNS, rows))
     called = [key for key in chosen if results[key].get("reasons")]
     wrong = sorted(key for key in called if not first_is_right(key, results[key]))
     if called:
         print(f"\nThe right cause comes first in {len(called) - len(wrong)} of {len(called)} called "
               f"({100 * (1 - len(wrong) / len(called)):.0f} %); not in: {', '.join(wrong) or 'none'}")
+    return {"calls": {"columns": COLUMNS, "rows": rows},
+            "causes": {"columns": CAUSES, "rows": [[len(called), len(called) - len(wrong)]]}}

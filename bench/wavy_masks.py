@@ -4,8 +4,8 @@
     python3 -m bench wavy_masks out/scene out/wavy            # by 1 pixel, the deviation in x and in y
     build/release/photohull reconstruct out/wavy --out out/result --resolution 192
 
-Needs numpy, and oiiotool (OpenImageIO). What such masks do to results is in docs/measurements/benchmarks.md, "Evidence
-of all views"."""
+Needs numpy, and oiiotool (OpenImageIO). What such masks do to results is in
+docs/design/decisions/0005-where-evidence-begins.md."""
 import argparse
 import shutil
 from pathlib import Path

@@ -12,7 +12,7 @@
 namespace photohull::assess {
 
 /// Fitted on the runs of bench/plans/stress.json, seed 1, but where another fit is told of
-/// (docs/measurements/stability.md): beyond the first figure results are doubtful, beyond the
+/// (docs/measurements/verdict.md): beyond the first figure results are doubtful, beyond the
 /// second they count as failed.
 struct Limits {
   double doubtful, failed;

@@ -12,7 +12,7 @@ namespace {
 
 // Of what the photographs show without silhouettes, from runs with --masks none: scenes as they
 // are, and at 128 voxels with cameras turned by 1 to 20 pixels and with wrong boxes (the table in
-// docs/measurements/stability.md). Unexplained: at most 0.18 where F at 0.5 % is above 90, 0.27 to
+// docs/measurements/verdict.md). Unexplained: at most 0.18 where F at 0.5 % is above 90, 0.27 to
 // 0.34 at 54 to 72, 0.39 to 0.55 at 42 to 49, 0.76 and more below 13. Cut: at most 0.04 in right
 // boxes, 0.04 to 0.10 in those of 0.7 of the size, 0.13 to 0.31 in those of half of it. Bare: at
 // most 0.44 in right boxes with right cameras, 0.84 and more where F is below 6. From behind, on

@@ -20,7 +20,7 @@ constexpr Limits kUnseen{0.5, 0.8};           // of the surface
 constexpr Limits kAtBox{0.08, INFINITY};      // of the surface
 constexpr Limits kExcess{0.06, 0.3};          // of the surface's projection
 // Of the surface: texture that is not found again, and what else has little confidence. Fitted on
-// `python3 -m bench verdict_scenes`, seed 1 (docs/measurements/stability.md): at most 0.25 where F
+// `python3 -m bench verdict_scenes`, seed 1 (docs/measurements/verdict.md): at most 0.25 where F
 // at 0.5 % is above 95, 0.31 to 0.41 at 60 to 69. Rendered and real scenes of that quality have up
 // to 0.26, without silhouettes.
 constexpr Limits kUnconfirmed{0.27, INFINITY};

@@ -1,4 +1,4 @@
-// What a reconstruction says of itself, without knowing the truth (docs/measurements/stability.md).
+// What a reconstruction says of itself, without knowing the truth (docs/measurements/verdict.md).
 #pragma once
 
 #include <optional>
