@@ -28,6 +28,7 @@ constexpr double kLeastTangentSigma = 0.15;  // pixels: contours err alike where
 constexpr double kUsualError = 1;            // pixels, of given poses
 constexpr double kAlike = 1.5;    // times what independent errors of poses leave in their mean
 constexpr double kHeldOut = 0.2;  // share of the tracks and tangents that only judge
+constexpr double kWorthwhile = 0.99;  // of the cost: what a round must leave for another one
 constexpr int kRounds = 8;        // at most; each one finds outliers and tangents anew
 constexpr double kNoWorse = 1.2;  // times the residual without what views share
 
@@ -121,7 +122,7 @@ class CameraRefiner {
     cameras = std::move(better);
     result.focal_factor *= shared[0];
     result.principal += glm::dvec2(shared[1], shared[2]);
-    return after.cost <= 0.999 * before.cost;
+    return after.cost <= kWorthwhile * before.cost;
   }
 
   struct Judgement {

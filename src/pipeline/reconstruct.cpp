@@ -11,6 +11,7 @@
 #include "core/option_word.h"
 #include "core/process_limits.h"
 #include "mesh/join_meshes.h"
+#include "photo/opencv_threads.h"
 #include "pipeline/agree_cameras.h"
 #include "pipeline/find_silhouettes.h"
 #include "pipeline/finish_mesh.h"
@@ -321,6 +322,7 @@ Reconstruction Reconstructor::run(const Photographs& photographs, Progress& give
   const auto start = std::chrono::steady_clock::now();
   check_process_limits(options_.threads);
   const auto limit = limit_threads(options_.threads);
+  const OneOpenCvThread one_thread;
   RecordingProgress progress(given);
   Run run{options_, photographs, progress};
   Prepared prepared = prepare(run);
