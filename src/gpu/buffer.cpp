@@ -7,6 +7,7 @@
 #include "gpu/gl.h"
 #include "gpu/gl_error.h"
 #include "gpu/limits.h"
+#include "gpu/traffic.h"
 
 namespace photohull::gpu {
 
@@ -20,6 +21,7 @@ Buffer::Buffer(std::size_t bytes, const void* data) : bytes_(bytes) {
     glDeleteBuffers(1, &id_);
     throw_gl_error(error, concat("a buffer of ", bytes >> 20, " MiB"));
   }
+  if (data && bytes >= 16) count_upload(bytes);
   if (data && bytes > 0 && bytes < 16) write(0, bytes, data);
 }
 
@@ -43,7 +45,9 @@ void Buffer::bind_uniform(unsigned binding) const {
 
 void Buffer::write(std::size_t offset, std::size_t size, const void* data) {
   PHOTOHULL_CHECK_OP(offset + size, <=, bytes_);
-  if (size) glNamedBufferSubData(id_, GLintptr(offset), GLsizeiptr(size), data);
+  if (size == 0) return;
+  glNamedBufferSubData(id_, GLintptr(offset), GLsizeiptr(size), data);
+  count_upload(size);
 }
 
 void Buffer::read(std::size_t offset, std::size_t size, void* data) const {
@@ -51,6 +55,7 @@ void Buffer::read(std::size_t offset, std::size_t size, void* data) const {
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   if (size == 0) return;
   glGetNamedBufferSubData(id_, GLintptr(offset), GLsizeiptr(size), data);
+  count_download(size);
   check_gl("reading a buffer");
 }
 

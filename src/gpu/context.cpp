@@ -59,6 +59,7 @@ Context::Context(int egl_device_index) : egl_(std::make_unique<Egl>()) {
     throw;
   }
   set_current_limits(&limits_);
+  set_current_traffic(&traffic_);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
 }
@@ -66,6 +67,7 @@ Context::Context(int egl_device_index) : egl_(std::make_unique<Egl>()) {
 Context::~Context() {
   programs_.clear();
   set_current_limits(nullptr);
+  set_current_traffic(nullptr);
   destroy_context(*egl_);
 }
 

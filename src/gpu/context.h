@@ -8,6 +8,7 @@
 
 #include "gpu/device.h"
 #include "gpu/limits.h"
+#include "gpu/traffic.h"
 
 namespace photohull::gpu {
 
@@ -16,8 +17,9 @@ class Program;
 /// Time spent in the launches of one name.
 struct LaunchStatistics {
   std::int64_t launches = 0;
-  double seconds = 0;      ///< by the clock
-  double cpu_seconds = 0;  ///< of all the process's threads; what software devices cost
+  std::int64_t groups = 0;  ///< work groups of kernels, in all
+  double seconds = 0;       ///< by the clock
+  double cpu_seconds = 0;   ///< of all the process's threads; what software devices cost
 };
 
 class Context {
@@ -43,6 +45,7 @@ class Context {
 
   /// Seconds and count per launch name since the start; kernels add to it through `Launch`.
   std::map<std::string, LaunchStatistics>& statistics() { return statistics_; }
+  const Traffic& traffic() const { return traffic_; }
   /// Programs that live as long as the context; Program::compute and raster fill it.
   std::map<std::string, std::shared_ptr<const Program>>& programs() { return programs_; }
 
@@ -52,6 +55,7 @@ class Context {
   DeviceInfo device_;
   Limits limits_;
   std::map<std::string, LaunchStatistics> statistics_;
+  Traffic traffic_;
   std::map<std::string, std::shared_ptr<const Program>> programs_;
 };
 

@@ -138,6 +138,7 @@ void Program::dispatch(Context& context, const char* name, std::size_t groups_x,
         }
     glMemoryBarrier(GL_ALL_BARRIER_BITS);
   }
+  context.statistics()[name].groups += std::int64_t(groups_x * groups_y * groups_z);
   context.check_errors(name);
 }
 

@@ -9,36 +9,38 @@
 #include "gpu/gl.h"
 #include "gpu/gl_error.h"
 #include "gpu/limits.h"
+#include "gpu/traffic.h"
 
 namespace photohull::gpu {
 namespace {
 
 struct FormatInfo {
   GLenum internal, layout, type;
+  std::size_t bytes;  ///< of a texel, in the client's memory
 };
 
 FormatInfo info_of(TextureFormat format) {
   switch (format) {
     case TextureFormat::kSrgb8Alpha8:
-      return {GL_SRGB8_ALPHA8, GL_RGBA, GL_UNSIGNED_BYTE};
+      return {GL_SRGB8_ALPHA8, GL_RGBA, GL_UNSIGNED_BYTE, 4};
     case TextureFormat::kRgba8:
-      return {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE};
+      return {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, 4};
     case TextureFormat::kRgba16f:
-      return {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT};
+      return {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT, 8};
     case TextureFormat::kRg8:
-      return {GL_RG8, GL_RG, GL_UNSIGNED_BYTE};
+      return {GL_RG8, GL_RG, GL_UNSIGNED_BYTE, 2};
     case TextureFormat::kR8:
-      return {GL_R8, GL_RED, GL_UNSIGNED_BYTE};
+      return {GL_R8, GL_RED, GL_UNSIGNED_BYTE, 1};
     case TextureFormat::kR16f:
-      return {GL_R16F, GL_RED, GL_FLOAT};
+      return {GL_R16F, GL_RED, GL_FLOAT, 2};
     case TextureFormat::kR32f:
-      return {GL_R32F, GL_RED, GL_FLOAT};
+      return {GL_R32F, GL_RED, GL_FLOAT, 4};
     case TextureFormat::kRg32f:
-      return {GL_RG32F, GL_RG, GL_FLOAT};
+      return {GL_RG32F, GL_RG, GL_FLOAT, 8};
     case TextureFormat::kR32ui:
-      return {GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT};
+      return {GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, 4};
     case TextureFormat::kRgba32ui:
-      return {GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT};
+      return {GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT, 16};
   }
   check_failed(__FILE__, __LINE__, "texture format");
 }
@@ -98,12 +100,14 @@ void TextureArray::swap(TextureArray& other) noexcept {
 void TextureArray::upload(int layer, int width, int height, const void* pixels, int level) {
   const FormatInfo f = info_of(format_);
   glTextureSubImage3D(id_, level, 0, 0, layer, width, height, 1, f.layout, f.type, pixels);
+  count_upload(std::size_t(width) * std::size_t(height) * f.bytes);
 }
 
 void TextureArray::read(int level, std::size_t bytes, void* pixels) const {
   const FormatInfo f = info_of(format_);
   glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
   glGetTextureImage(id_, level, f.layout, f.type, GLsizei(bytes), pixels);
+  count_download(bytes);
   check_gl("reading a texture");
 }
 
@@ -113,6 +117,7 @@ void TextureArray::read_layer(int layer, int width, int height, std::size_t byte
   glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
   glGetTextureSubImage(id_, 0, 0, 0, layer, width, height, 1, f.layout, f.type, GLsizei(bytes),
                        pixels);
+  count_download(bytes);
   check_gl("reading a texture");
 }
 

@@ -83,6 +83,19 @@ struct HullFindings {
   std::int64_t samples = 0;  ///< look-ups in silhouettes
 };
 
+/// What a kernel, or a drawing, took.
+struct KernelFindings {
+  std::string name;
+  std::int64_t launches = 0, groups = 0;  ///< groups: work groups, in all; 0 of drawings
+  double seconds = 0, cpu_seconds = 0;    ///< up to the end of the work, of all threads
+};
+
+/// The device's work. Each launch and each download is waited for.
+struct DeviceFindings {
+  std::vector<KernelFindings> kernels;
+  std::int64_t uploads = 0, bytes_up = 0, downloads = 0, bytes_down = 0;
+};
+
 struct PhotometricFindings {
   std::string json;  ///< pipeline/photometric.h; empty: not asked for
   std::string line;  ///< the same, for the screen

@@ -306,6 +306,14 @@ class Carver {
   MeshFindings mesh_findings_;
 };
 
+DeviceFindings device_work(gpu::Context& context) {
+  const gpu::Traffic& traffic = context.traffic();
+  DeviceFindings work{{}, traffic.uploads, traffic.bytes_up, traffic.downloads, traffic.bytes_down};
+  for (const auto& [name, s] : context.statistics())
+    work.kernels.push_back({name, s.launches, s.groups, s.seconds, s.cpu_seconds});
+  return work;
+}
+
 std::unique_ptr<tbb::global_control> limit_threads(int threads) {
   if (threads == 0) return nullptr;
   return std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
@@ -333,6 +341,7 @@ Reconstruction Reconstructor::run(const Photographs& photographs, Progress& give
   out.report.option_line = option_line(options_, photographs.load);
   out.report.warnings = progress.warnings();
   out.report.stages = run.clock.stages();
+  out.report.device_work = device_work(*run.context);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   out.report.wall_seconds = elapsed.count();
   out.report.cpu_seconds = process_cpu_seconds();

@@ -158,6 +158,20 @@ void add_stages(const std::vector<StageTime>& stages, ordered_json& j) {
                            {"peak_memory_bytes", s.peak_memory_bytes}});
 }
 
+void add_device_work(const DeviceFindings& work, ordered_json& j) {
+  j["device_work"] = {{"uploads", work.uploads},
+                      {"bytes_up", work.bytes_up},
+                      {"downloads", work.downloads},
+                      {"bytes_down", work.bytes_down},
+                      {"kernels", ordered_json::array()}};
+  for (const KernelFindings& k : work.kernels)
+    j["device_work"]["kernels"].push_back({{"name", k.name},
+                                           {"launches", k.launches},
+                                           {"groups", k.groups},
+                                           {"seconds", k.seconds},
+                                           {"cpu_seconds", k.cpu_seconds}});
+}
+
 }  // namespace
 
 std::string Report::to_json() const {
@@ -168,6 +182,7 @@ std::string Report::to_json() const {
   add_views(*this, j);
   add_verdict(verdict, j);
   add_stages(stages, j);
+  add_device_work(device_work, j);
   j["hull"] = {{"nodes_tested", hull.nodes_tested}, {"bricks_evaluated", hull.bricks_evaluated}};
   add_sweeps(surface.sweep, j);
   add_refinement(surface.refine, j);

@@ -27,6 +27,7 @@ struct Report {
   double full_evidence =
       0;  ///< pixels outside an outline at which one view alone carves; 0: at once
   HullFindings hull;
+  DeviceFindings device_work;
   PhotometricFindings photometric;
   SurfaceFindings surface;
   std::int64_t voxels_kept = 0, bricks_stored = 0;

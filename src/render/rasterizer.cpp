@@ -61,6 +61,7 @@ class Target {
     std::vector<std::uint8_t> rgba(std::size_t(width_) * height_ * 4);
     glReadBuffer(GLenum(GL_COLOR_ATTACHMENT0 + attachment));
     glReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+    gpu::count_download(rgba.size());
     return rgba;
   }
 

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "gpu/buffer.h"
 #include "gpu/gl.h"
+#include "gpu/texture.h"
 #include "support/gl_context.h"
 
 namespace photohull::gpu {
@@ -38,6 +40,20 @@ TEST(Context, LaunchesAreCountedByName) {
   for (int i = 0; i < 3; ++i) Launch launch(context, "counted");
   EXPECT_EQ(context.statistics()["counted"].launches, 3);
   EXPECT_GE(context.statistics()["counted"].seconds, 0);
+}
+
+TEST(Context, CountsWhatGoesToTheDeviceAndBack) {
+  const Context& context = test::gl_context();
+  const Traffic before = context.traffic();
+  const Buffer buffer = Buffer::of(std::vector<float>(100));
+  EXPECT_EQ(buffer.download<float>(50).size(), 50u);
+  TextureArray texture(TextureFormat::kRgba16f, 4, 2, 1);
+  texture.upload(0, 4, 2, std::vector<std::uint16_t>(4 * 4 * 2).data());
+  const Traffic& after = context.traffic();
+  EXPECT_EQ(after.uploads - before.uploads, 2);
+  EXPECT_EQ(after.bytes_up - before.bytes_up, 100 * 4 + 4 * 2 * 8);
+  EXPECT_EQ(after.downloads - before.downloads, 1);
+  EXPECT_EQ(after.bytes_down - before.bytes_down, 50 * 4);
 }
 
 }  // namespace

@@ -9,10 +9,12 @@ namespace {
 
 void add_charts(const ChartInput& input, std::vector<Chart>& charts) {
   if (input.outcomes.empty()) return;
-  charts.push_back(speed_chart(input));
+  charts.push_back(speed_chart(input, TimeKind::kCpu));
   const auto own = [&](auto&& wanted) {
     return std::any_of(input.outcomes.begin(), input.outcomes.end(), wanted);
   };
+  if (own([](const Outcome& o) { return o.wall_seconds.has_value(); }))
+    charts.push_back(speed_chart(input, TimeKind::kWall));
   if (own([](const Outcome& o) { return o.resolution.has_value(); })) {
     charts.push_back(accuracy_chart(input));
     charts.push_back(cost_chart(input));

@@ -26,9 +26,9 @@ struct ChartInput {
   double threshold_percent = 0.25;
 };
 
-/// CPU seconds (logarithmic) against the F-score, stretched towards 100 %, with the Pareto front,
+/// Seconds (logarithmic) against the F-score, stretched towards 100 %, with the Pareto front,
 /// lines of equal quality and labelled points.
-Chart speed_chart(const ChartInput& input);
+Chart speed_chart(const ChartInput& input, TimeKind kind);
 /// Error (log-log, with fitted slopes) and F-score against resolution.
 Chart accuracy_chart(const ChartInput& input);
 /// CPU seconds and memory against resolution (log-log, with fitted exponents).

@@ -103,13 +103,15 @@ std::vector<Outcome> means_over(const std::vector<Outcome>& outcomes,
   return means;
 }
 
-std::vector<std::size_t> front_of(const std::vector<Outcome>& outcomes, double threshold_percent) {
+std::vector<std::size_t> front_of(const std::vector<Outcome>& outcomes, double threshold_percent,
+                                  TimeKind kind) {
   std::vector<Choice> choices;
   std::vector<std::size_t> index;
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     const auto f = outcomes[i].figures.f_at(threshold_percent);
-    if (!outcomes[i].complete() || !outcomes[i].cpu_seconds || !f) continue;
-    choices.push_back({*outcomes[i].cpu_seconds, *f});
+    const auto& seconds = outcomes[i].seconds(kind);
+    if (!outcomes[i].complete() || !seconds || !f) continue;
+    choices.push_back({*seconds, *f});
     index.push_back(i);
   }
   std::vector<std::size_t> front;

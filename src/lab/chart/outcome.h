@@ -15,6 +15,8 @@ struct StageTime {
   double cpu_seconds = 0;
 };
 
+enum class TimeKind { kCpu, kWall };
+
 struct Outcome {
   std::string scene;
   std::string variant;            ///< option set, or the external tool
@@ -32,6 +34,9 @@ struct Outcome {
 
   /// "space-carving 256".
   std::string label() const;
+  const std::optional<double>& seconds(TimeKind kind) const {
+    return kind == TimeKind::kCpu ? cpu_seconds : wall_seconds;
+  }
   /// Present, and nothing failed, in every scene.
   bool complete() const { return !failed && covered == scenes && failed_scenes == 0; }
 };
@@ -44,8 +49,9 @@ Outcome outcome_of(const RunRecord& record);
 std::vector<Outcome> means_over(const std::vector<Outcome>& outcomes,
                                 const std::vector<std::string>& scenes);
 
-/// Indices of those on the Pareto front of CPU time and F-score, by rising CPU time. Failed and
+/// Indices of those on the Pareto front of time and F-score, by rising time. Failed and
 /// incomplete ones are not on it.
-std::vector<std::size_t> front_of(const std::vector<Outcome>& outcomes, double threshold_percent);
+std::vector<std::size_t> front_of(const std::vector<Outcome>& outcomes, double threshold_percent,
+                                  TimeKind kind = TimeKind::kCpu);
 
 }  // namespace photohull::chart

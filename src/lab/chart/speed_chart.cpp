@@ -18,16 +18,16 @@ constexpr double kLevels[] = {0,  25, 50,   70,   80,   90,    95,    97,
 /// A position on the chart. The vertical axis is what lacks to 100 %, logarithmic and turned over.
 struct Point {
   const Outcome* outcome;
-  double cpu, lack;
+  double seconds, lack;
 };
 
 class SpeedChart {
  public:
-  explicit SpeedChart(const ChartInput& input) : in_(input) {
+  SpeedChart(const ChartInput& input, TimeKind kind) : in_(input), kind_(kind) {
     for (const Outcome& o : in_.outcomes) {
       const auto f = o.failed ? 0.0 : o.figures.f_at(in_.threshold_percent);
-      if (o.cpu_seconds && f)
-        points_.push_back({&o, std::max(*o.cpu_seconds, 1e-3), std::max(100 - *f, 0.01)});
+      if (const auto& seconds = o.seconds(kind); seconds && f)
+        points_.push_back({&o, std::max(*seconds, 1e-3), std::max(100 - *f, 0.01)});
     }
     set_ranges();
   }
@@ -39,12 +39,19 @@ class SpeedChart {
     legend.push_back(kFrontName);
     if (any_failed()) legend.push_back("failed");
     top_edge_ += legend_room(legend);
-    Chart c{"speed-accuracy--" + in_.group, in_.group, 1000, int(top_edge_ + kPlot + kBottom), {}};
-    c.option = base_option("Speed against accuracy: " + in_.heading, legend);
+    const bool wall = kind_ == TimeKind::kWall;
+    Chart c{concat(wall ? "wall" : "speed", "-accuracy--", in_.group),
+            in_.group,
+            1000,
+            int(top_edge_ + kPlot + kBottom),
+            {}};
+    c.option = base_option(
+        concat(wall ? "Time to wait" : "Speed", " against accuracy: ", in_.heading), legend);
     c.option["grid"] = {
         {"left", kLeft}, {"right", kRight}, {"top", top_edge_}, {"bottom", kBottom}};
     c.option["xAxis"] =
-        log_axis("CPU time (s, user + system, logarithmic)", low_, high_, log_ticks(low_, high_));
+        log_axis(wall ? "wall time (s, logarithmic)" : "CPU time (s, user + system, logarithmic)",
+                 low_, high_, log_ticks(low_, high_));
     c.option["yAxis"] = y_axis();
     place();
     c.option["series"].push_back(front_series());
@@ -57,14 +64,14 @@ class SpeedChart {
 
  private:
   void set_ranges() {
-    std::vector<double> cpu;
+    std::vector<double> seconds;
     double worst = 20, best = 10;
     for (const Point& p : points_) {
-      cpu.push_back(p.cpu);
+      seconds.push_back(p.seconds);
       worst = std::max(worst, p.lack);
       best = std::min(best, p.lack);
     }
-    std::tie(low_, high_) = log_range(cpu);
+    std::tie(low_, high_) = log_range(seconds);
     if (high_ / low_ < 4) {
       low_ /= 2;
       high_ *= 2;
@@ -101,9 +108,9 @@ class SpeedChart {
     return axis;
   }
 
-  glm::dvec2 pixel(const Point& p) const { return pixel_of(p.cpu, p.lack); }
-  glm::dvec2 pixel_of(double cpu, double lack) const {
-    const double x = std::log(cpu / low_) / std::log(high_ / low_);
+  glm::dvec2 pixel(const Point& p) const { return pixel_of(p.seconds, p.lack); }
+  glm::dvec2 pixel_of(double seconds, double lack) const {
+    const double x = std::log(seconds / low_) / std::log(high_ / low_);
     const double y = std::log(lack / top_) / std::log(bottom_ / top_);
     return {kLeft + x * (1000 - kLeft - kRight), top_edge_ + y * kPlot};
   }
@@ -119,7 +126,7 @@ class SpeedChart {
   /// Labels of points on the front are placed first.
   void place() {
     std::vector<std::size_t> order;
-    front_ = front_of(in_.outcomes, in_.threshold_percent);
+    front_ = front_of(in_.outcomes, in_.threshold_percent, kind_);
     const auto on_front = [&](const Point& p) {
       const auto i = std::size_t(p.outcome - in_.outcomes.data());
       return std::find(front_.begin(), front_.end(), i) != front_.end();
@@ -212,7 +219,7 @@ class SpeedChart {
   Json datum(std::size_t i) const {
     const Point& p = points_[i];
     Json d = {{"name", p.outcome->label()},
-              {"value", {p.cpu, p.lack}},
+              {"value", {p.seconds, p.lack}},
               {"label", labels_[i]},
               {"tooltip", {{"formatter", hover_text(*p.outcome)}}}};
     if (p.outcome->covered < p.outcome->scenes) d["itemStyle"] = {{"opacity", 0.45}};
@@ -242,7 +249,7 @@ class SpeedChart {
     Json data = Json::array();
     for (const std::size_t i : front_) {
       const Outcome& o = in_.outcomes[i];
-      data.push_back({std::max(*o.cpu_seconds, 1e-3),
+      data.push_back({std::max(*o.seconds(kind_), 1e-3),
                       std::max(100 - *o.figures.f_at(in_.threshold_percent), 0.01)});
     }
     if (!data.empty()) data.push_back({high_, data.back()[1]});
@@ -270,6 +277,7 @@ class SpeedChart {
   }
 
   const ChartInput& in_;
+  TimeKind kind_;
   std::vector<Point> points_;
   std::vector<Json> labels_;
   std::vector<std::size_t> front_;
@@ -280,6 +288,8 @@ class SpeedChart {
 
 }  // namespace
 
-Chart speed_chart(const ChartInput& input) { return SpeedChart(input).chart(); }
+Chart speed_chart(const ChartInput& input, TimeKind kind) {
+  return SpeedChart(input, kind).chart();
+}
 
 }  // namespace photohull::chart

@@ -38,9 +38,9 @@ TEST(MakeCharts, DrawsEverySceneAndTheMean) {
   const auto charts = make_charts(example_outcomes(), {"ball", "cube"}, {}, 0.25);
   for (const std::string group : {"mean", "ball", "cube"})
     for (const std::string kind :
-         {"speed-accuracy", "accuracy-resolution", "cost-resolution", "stages"})
+         {"speed-accuracy", "wall-accuracy", "accuracy-resolution", "cost-resolution", "stages"})
       EXPECT_THAT(ids(charts), Contains(kind + "--" + group));
-  EXPECT_EQ(charts.size(), 12u);
+  EXPECT_EQ(charts.size(), 15u);
 }
 
 TEST(MakeCharts, OneSceneHasNoMean) {
@@ -72,6 +72,19 @@ TEST(SpeedChart, PutsPointsWhereTheyBelong) {
   EXPECT_EQ(series(c, "peer")["data"].size(), 1u);
   EXPECT_EQ(series(c, "failed")["data"].size(), 1u);
   EXPECT_EQ(c.option["xAxis"]["type"], "log");
+}
+
+TEST(SpeedChart, ShowsTheTimeToWaitBesideTheWork) {
+  std::vector<Outcome> outcomes = example_outcomes();
+  for (Outcome& o : outcomes) o.wall_seconds.reset();
+  const auto without = make_charts(outcomes, {"ball"}, {}, 0.25);
+  EXPECT_THAT(ids(without), Not(Contains("wall-accuracy--ball")));
+  for (Outcome& o : outcomes) o.wall_seconds = 0.5 * *o.cpu_seconds;
+  const auto charts = make_charts(outcomes, {"ball"}, {}, 0.25);
+  const Chart& c = chart(charts, "wall-accuracy--ball");
+  EXPECT_EQ(series(c, "hull")["data"][0]["value"][0], 0.5);
+  EXPECT_EQ(series(c, "Pareto front")["data"].size(), 5u);
+  EXPECT_THAT(c.option["xAxis"]["name"].get<std::string>(), HasSubstr("wall"));
 }
 
 TEST(SpeedChart, ShowsTheFront) {

@@ -1,0 +1,54 @@
+"""What reconstructions ask of the device, and how long they would take on a GPU, by a model.
+
+    python3 -m bench device_work [--scenes armadillo,templeRing] [--out FILE]
+
+Launches, transfers and shader time are those that report.json counts (`device_work`), on the device that runs it. The
+model adds up what a GPU would leave: the wall time beside launches as it is here, bytes over PCIe, a wait for each launch
+and each download, and look-ups over the rate of textures. Its assumptions are constants of this file; it leaves out
+arithmetic of the shaders, and threads that wait less on other processors. The table is in
+docs/measurements/device_work.md."""
+import argparse
+from collections.abc import Iterator
+from pathlib import Path
+
+from bench import page
+from bench.runner import Photohull, add_datasets, add_program, keep_json, listed, work_folder
+
+PCIE = 12e9  # bytes a second, of a 16-lane PCIe 3 link in use
+WAIT = 30e-6  # seconds that a launch or a download is waited for
+LOOKUPS = 50e9  # a second: a fourth of what GPUs of 2020 filter
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    add_program(parser)
+    add_datasets(parser)
+    parser.add_argument("--scenes", type=listed, default="armadillo,fandisk,plaster,templeRing")
+    parser.add_argument("--out", type=Path, help="file for the figures")
+
+
+def row(scene: str, report: dict) -> dict:
+    work, kernels = report["device_work"], report["device_work"]["kernels"]
+    launches = sum(kernel["launches"] for kernel in kernels)
+    shader_wall = sum(kernel["seconds"] for kernel in kernels)
+    samples = sum(stage["samples"] for stage in report["stages"])
+    host = report["wall_seconds"] - shader_wall
+    moved = work["bytes_up"] + work["bytes_down"]
+    return {"scene": scene, "launches": launches, "downloads": work["downloads"], "up_mb": work["bytes_up"] / 1e6,
+            "down_mb": work["bytes_down"] / 1e6, "lookups_m": samples / 1e6, "cpu_s": report["cpu_seconds"],
+            "wall_s": report["wall_seconds"], "shader_cpu_s": sum(kernel["cpu_seconds"] for kernel in kernels),
+            "host_wall_s": host, "pcie_s": moved / PCIE, "waits_s": WAIT * (launches + work["downloads"]),
+            "lookups_s": samples / LOOKUPS,
+            "model_s": host + moved / PCIE + WAIT * (launches + work["downloads"]) + samples / LOOKUPS}
+
+
+def measure(options: argparse.Namespace, folder: Path) -> Iterator[dict]:
+    photohull = Photohull(options.program)
+    for scene in options.scenes:
+        yield row(scene, photohull.reconstruct(options.datasets / scene, folder / scene).report)
+
+
+def run(options: argparse.Namespace) -> None:
+    with work_folder(None) as folder:
+        rows = list(measure(options, folder))
+    print(page.table_of(page.data("device_work")["work"], rows))
+    keep_json(options.out, rows)
