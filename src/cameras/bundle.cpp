@@ -12,8 +12,8 @@ namespace {
 
 // Of one adjustment. The next one finds outliers and tangents anew, so the first few steps are what
 // it needs of this one.
-constexpr int kIterations = 6;
-constexpr double kSettled = 1e-4;  // share of the cost by which the last step lowers it
+constexpr int kIterations = 12;
+constexpr double kSettled = 1e-5;  // share of the cost by which the last step lowers it
 
 /// A camera's change: a turn about the object's middle and a move, both in its own frame, in units
 /// that move the object by about a pixel each.

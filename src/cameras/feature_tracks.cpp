@@ -245,7 +245,7 @@ std::vector<Track> find_tracks(std::span<const PreparedView> views, const TrackO
   std::vector<Features> features(views.size());
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
     if (!progress.cancelled())
-      features[i] = search ? detect_features(views[i], options.features, options.enough)
+      features[i] = search ? detect_features(views[i], options.features)
                            : Features{{}, {}, smoothed(grey_image(views[i].image))};
   });
   progress.check_cancelled();

@@ -13,7 +13,7 @@ namespace {
 
 /// Where the mask has something, and so much more that features inside do not feel the border.
 cv::Rect around_foreground(const cv::Mat& mask) {
-  constexpr int kMargin = 32;  // pixels
+  constexpr int kMargin = 48;  // pixels
   const cv::Rect tight = cv::boundingRect(mask);
   const cv::Rect wide(tight.x - kMargin, tight.y - kMargin, tight.width + 2 * kMargin,
                       tight.height + 2 * kMargin);
@@ -42,7 +42,7 @@ Features detect_smaller(const cv::Mat& image, const cv::Mat& mask, int times, in
 
 }  // namespace
 
-Features detect_features(const PreparedView& view, int count, int enough) {
+Features detect_features(const PreparedView& view, int count) {
   constexpr int kLongest = 1600;  // pixels
   GreyImage grey = grey_image(view.image);
   cv::Mat image, mask;
@@ -57,10 +57,7 @@ Features detect_features(const PreparedView& view, int count, int enough) {
   }
   image = image(part);
   const int times = (std::max(part.width, part.height) + kLongest - 1) / kLongest;
-  Features found;
-  if (enough > 0) found = detect_smaller(image, mask, times + 1, count);
-  if (int(found.pixels.size()) < std::max(enough, 1))
-    found = detect_smaller(image, mask, std::max(times, 1), count);
+  Features found = detect_smaller(image, mask, std::max(times, 1), count);
   for (glm::dvec2& pixel : found.pixels) pixel += glm::dvec2(part.x, part.y);
   found.grey = smoothed(std::move(grey));
   return found;

@@ -15,9 +15,9 @@ struct Features {
   GreyImage grey;       ///< smoothed a little, for align_patch
 };
 
-/// The `count` strongest features, on the object where the view has a mask. Where `enough` (> 0) of
-/// them are found in an image of half the size, which takes a fourth of the time, these are
-/// returned: their places are to be refined in the image itself (align_patch).
-Features detect_features(const PreparedView& view, int count, int enough = 0);
+/// The `count` strongest features, on the object where the view has a mask. Of large objects,
+/// beyond 1600 pixels, in an image that is smaller: places are refined in the image itself
+/// (align_patch).
+Features detect_features(const PreparedView& view, int count);
 
 }  // namespace photohull

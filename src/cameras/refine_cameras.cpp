@@ -26,11 +26,11 @@ constexpr double kOutlier = 4;               // spreads
 constexpr double kLeastSigma = 0.03;         // pixels: nothing is measured better
 constexpr double kLeastTangentSigma = 0.15;  // pixels: contours err alike where they touch
 constexpr double kUsualError = 1;            // pixels, of given poses
-constexpr double kAlike = 1.5;    // times what independent errors of poses leave in their mean
-constexpr double kHeldOut = 0.2;  // share of the tracks and tangents that only judge
-constexpr double kWorthwhile = 0.99;  // of the cost: what a round must leave for another one
-constexpr int kRounds = 8;        // at most; each one finds outliers and tangents anew
-constexpr double kNoWorse = 1.2;  // times the residual without what views share
+constexpr double kAlike = 1.5;         // times what independent errors of poses leave in their mean
+constexpr double kHeldOut = 0.2;       // share of the tracks and tangents that only judge
+constexpr double kWorthwhile = 0.999;  // of the cost: what a round must leave for another one
+constexpr int kRounds = 8;             // at most; each one finds outliers and tangents anew
+constexpr double kNoWorse = 1.2;       // times the residual without what views share
 
 using Cameras = std::vector<Camera>;
 

@@ -42,7 +42,7 @@ struct RefineCamerasOptions {
   std::optional<Box> box;
   int few_features = 100;  ///< observations of a view, in the median
   /// Poses have six unknowns a view: some hundred observations determine them.
-  TrackOptions tracks{.features = 1000, .enough = 300};
+  TrackOptions tracks{.features = 1500, .enough = 300};
 };
 
 /// Those that are no matter of what is known of the scene.

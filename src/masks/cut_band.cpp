@@ -113,6 +113,7 @@ class BandGraph {
     if (probable < 2) return labels_.clone();
     graph_.create(unsigned(probable), unsigned(2 * kBefore * probable));
     for_each_probable([&](const cv::Point& at) { add(at, behind, front); });
+    graph_.addEdges(0, 1, 0, 0);  // it must have one
     graph_.maxFlow();
     cv::Mat decided = labels_.clone();
     for_each_probable([&](const cv::Point& at) {

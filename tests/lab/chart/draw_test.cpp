@@ -50,7 +50,7 @@ class Draw : public testing::Test {
 };
 
 TEST_F(Draw, WritesThePageAndEveryChartTwice) {
-  EXPECT_EQ(files_.size(), 1u + 2 * 12);
+  EXPECT_EQ(files_.size(), 1u + 2 * 15);
   EXPECT_EQ(files_[0], "index.html");
   for (const std::string& name : files_) EXPECT_GT(fs::file_size(file(name)), 1000u);
 }
