@@ -10,10 +10,12 @@
 namespace photohull {
 namespace {
 
-// Of one adjustment. The next one finds outliers and tangents anew, so the first few steps are what
-// it needs of this one.
-constexpr int kIterations = 12;
-constexpr double kSettled = 1e-5;  // share of the cost by which the last step lowers it
+// Steps of one adjustment, and the share of the cost by which the last one lowers it. The next
+// adjustment finds outliers and tangents anew, so the first few steps are what it needs of this
+// one, unless cameras are far from where they belong: beyond kFar pixels of residuals.
+constexpr double kFar = 1;
+constexpr int kIterations = 12, kIterationsFromFar = 30;
+constexpr double kSettled = 1e-5, kSettledFromFar = 1e-7;
 
 /// A camera's change: a turn about the object's middle and a move, both in its own frame, in units
 /// that move the object by about a pixel each.
@@ -248,8 +250,10 @@ std::vector<Camera> adjust_bundle(const BundleInput& input, std::span<const Came
   hold(input, u, problem);
   ceres::Solver::Options options;
   order_unknowns(u, problem, options);
-  options.max_num_iterations = kIterations;
-  options.function_tolerance = kSettled;
+  // Where most views are held, residuals do not tell how far the others are.
+  const bool far = !input.held.empty() || std::max(input.track_sigma, input.tangent_sigma) > kFar;
+  options.max_num_iterations = far ? kIterationsFromFar : kIterations;
+  options.function_tolerance = far ? kSettledFromFar : kSettled;
   options.logging_type = ceres::SILENT;
   options.num_threads = 1;  // sums in the same order on every machine
   ceres::Solver::Summary summary;
