@@ -16,7 +16,7 @@ from bench.runner import Photohull, add_datasets, add_program, keep_json, listed
 
 PCIE = 12e9  # bytes a second, of a 16-lane PCIe 3 link in use
 WAIT = 30e-6  # seconds that a launch or a download is waited for
-LOOKUPS = 50e9  # a second: a fourth of what GPUs of 2020 filter
+LOOKUPS = 50e9  # a second, filtered: assumed
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -28,7 +28,9 @@ struct TrackOptions {
   double epipolar = 10;       ///< pixels: matches may lie so far from where the cameras have them
   double ratio = 0.8;         ///< of the best to the second-best descriptor's distance [Lowe04]
   int patch_radius = 7;       ///< pixels
-  int enough = 0;  ///< observations of a view; what no view needs for that is left out. 0: all stay
+  /// Observations of a view: tracks that no view needs for so many are left out, short ones first.
+  /// 0: all stay.
+  int enough = 0;
   double least_agreement = 0.8;  ///< normalised cross-correlation of patches once they are aligned
   /// Views that are matched, each pair once and ascending; empty: each one with its `neighbours`.
   std::vector<std::pair<int, int>> pairs;

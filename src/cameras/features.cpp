@@ -8,7 +8,6 @@
 #include "photo/grey_image.h"
 
 namespace photohull {
-
 namespace {
 
 /// Where the mask has something, and so much more that features inside do not feel the border.

@@ -17,7 +17,7 @@ constexpr double kBand = 0.012;  // of the shorter side: how far the contour may
 constexpr int kIterations = 2;
 constexpr double kContext = 3;       // bands of surroundings that the colours are learnt from
 constexpr double kMostPixels = 4e6;  // beyond, the cut takes minutes
-constexpr int kFewestCertain = 400;
+constexpr int kFewestCertain = 100;
 
 cv::Mat square(int radius) {
   return cv::getStructuringElement(cv::MORPH_RECT, {2 * radius + 1, 2 * radius + 1});
@@ -113,7 +113,7 @@ class BandGraph {
     if (probable < 2) return labels_.clone();
     graph_.create(unsigned(probable), unsigned(2 * kBefore * probable));
     for_each_probable([&](const cv::Point& at) { add(at, behind, front); });
-    graph_.addEdges(0, 1, 0, 0);  // it must have one
+    graph_.addEdges(0, 1, 0, 0);  // maxFlow needs an edge, and all pixels may be apart
     graph_.maxFlow();
     cv::Mat decided = labels_.clone();
     for_each_probable([&](const cv::Point& at) {
@@ -162,14 +162,21 @@ class BandGraph {
   cv::detail::GCGraph<double> graph_;
 };
 
-/// Decides the probable labels. The colours of both sides are learnt from some of the pixels, which
-/// know them as well.
+/// Are there enough pixels of both sides to learn colours from?
+bool tell_both_sides(const cv::Mat& labels) {
+  return cv::countNonZero(labels == cv::GC_FGD) >= kFewestCertain &&
+         cv::countNonZero(labels == cv::GC_BGD) >= kFewestCertain;
+}
+
+/// Decides the probable labels. The colours of both sides are learnt from some of the pixels, or
+/// from all where these hold too few of a side.
 cv::Mat cut(const cv::Mat& colours, const cv::Mat& labels) {
   constexpr double kPixels = 20000;
   const double scale = std::min(1.0, std::sqrt(kPixels / double(colours.total())));
   cv::Mat few, few_labels, behind, front;
   cv::resize(colours, few, {}, scale, scale, cv::INTER_NEAREST);
   cv::resize(labels, few_labels, few.size(), 0, 0, cv::INTER_NEAREST);
+  if (!tell_both_sides(few_labels)) few = colours, few_labels = labels.clone();
   cv::setRNGSeed(1);  // its clusters start at random
   cv::grabCut(few, few_labels, {}, behind, front, kIterations, cv::GC_INIT_WITH_MASK);
   return BandGraph(colours, labels).cut(Mixture(behind), Mixture(front));
@@ -197,9 +204,7 @@ Mask cut_band(const MaskEvidence& evidence, const ColourImage& image, const Mask
   labels.setTo(cv::GC_PR_BGD, outer & weak);
   labels.setTo(cv::GC_PR_FGD, object);
   labels.setTo(cv::GC_FGD, inner | (object & strong));
-  if (cv::countNonZero(labels == cv::GC_FGD) < kFewestCertain ||
-      cv::countNonZero(labels == cv::GC_BGD) < kFewestCertain)
-    return mask;
+  if (!tell_both_sides(labels)) return mask;
   labels = cut(coded(image, box), labels);
   cv::Mat inside = (labels == cv::GC_FGD) | (labels == cv::GC_PR_FGD);
   soften_contour(distance, inside);

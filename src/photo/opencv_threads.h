@@ -3,8 +3,9 @@
 
 namespace photohull {
 
-/// While it lives, OpenCV works on the thread that calls it: views are worked on side by side, and
-/// threads of its own would wait for one another, busily, and be bounded by no option.
+/// While it lives, OpenCV works on the thread that calls it. Views are worked on side by side, on
+/// as many threads as the caller allows; OpenCV's own would come on top of these. Concerns the
+/// whole process.
 class OneOpenCvThread {
  public:
   OneOpenCvThread();

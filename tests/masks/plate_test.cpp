@@ -175,5 +175,50 @@ TEST(CutBand, PutsAContourThatIsTooWideBack) {
   EXPECT_EQ(cut_band(evidence, image, wide).coverage, cut.coverage);  // the same every time
 }
 
+TEST(CutBand, GoesByColoursWhereTheEvidenceIsTheSameOnBothSides) {
+  const ColourImage image = scene();
+  MaskEvidence evidence{cv::Mat(kHeight, kWidth, CV_8U, cv::Scalar(0)), 50, 100, 0};
+  Mask wide{kWidth, kHeight, std::vector<std::uint8_t>(std::size_t(kWidth) * kHeight, 0)};
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const double radius = std::hypot(x - 110, y - 90);
+      evidence.distance.at<std::uint8_t>(y, x) = radius < 38 ? 100 : radius < 46 ? 90 : 0;
+      if (radius < 43) wide.coverage[std::size_t(y) * kWidth + std::size_t(x)] = 255;
+    }
+  EXPECT_LT(iou_of_disc(wide), 0.91);
+  EXPECT_GT(iou_of_disc(cut_band(evidence, image, wide)), 0.97);
+}
+
+/// Two upright bars, 2 pixels wide, in corners of a box so large that a sample of it misses both.
+void expect_bars_to_stay(int apart) {
+  constexpr int kSide = 600, kFirst = 60, kBar = 2, kHeight = 30;
+  const auto inside = [&](int x, int y) {
+    const auto on_bar = [&](int from) {
+      return x >= from && x < from + kBar && y >= from && y < from + kHeight;
+    };
+    return on_bar(kFirst) || on_bar(kFirst + apart);
+  };
+  ColourImage image{kSide, kSide, ColourImage::Encoding::kSrgb8, false,
+                    std::vector<std::uint8_t>(std::size_t(4) * kSide * kSide, 255)};
+  Mask mask{kSide, kSide, std::vector<std::uint8_t>(std::size_t(kSide) * kSide, 0)};
+  MaskEvidence evidence{cv::Mat(kSide, kSide, CV_8U, cv::Scalar(0)), 10, 30, 0};
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
+      const std::size_t i = std::size_t(y) * kSide + std::size_t(x);
+      const auto grey = std::uint8_t((inside(x, y) ? 200 : 20) + (x * 7 + y * 3) % 5);
+      for (const std::size_t c : {0, 1, 2}) image.bytes[4 * i + c] = grey;
+      if (!inside(x, y)) continue;
+      mask.coverage[i] = 255;
+      evidence.distance.at<std::uint8_t>(y, x) = 200;
+    }
+  const Mask cut = cut_band(evidence, image, mask);
+  for (std::size_t i = 0; i < cut.coverage.size(); ++i)
+    ASSERT_EQ(cut.coverage[i] >= 128, mask.coverage[i] >= 128) << "pixel " << i;
+}
+
+TEST(CutBand, LearnsFromAllPixelsWhereTheObjectHasFew) {
+  for (int apart = 424; apart < 434; ++apart) EXPECT_NO_THROW(expect_bars_to_stay(apart)) << apart;
+}
+
 }  // namespace
 }  // namespace photohull
