@@ -10,7 +10,7 @@
 namespace photohull {
 namespace {
 
-/// Where the mask has something, and so much more that features inside do not feel the border.
+/// Where the mask has something, and a margin: the border disturbs features near it.
 cv::Rect around_foreground(const cv::Mat& mask) {
   constexpr int kMargin = 48;  // pixels
   const cv::Rect tight = cv::boundingRect(mask);
