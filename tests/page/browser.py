@@ -45,6 +45,7 @@ class Page:
             self.call(f"{domain}.enable")
 
     session = None
+    flights = 0.9  # seconds until they have ended
 
     def close(self) -> None:
         self.process.kill()
@@ -103,9 +104,11 @@ class Page:
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=scale, mobile=touch)
         self.call("Emulation.setTouchEmulationEnabled", enabled=touch)
 
-    def dark(self, on: bool) -> None:
-        features = [{"name": "prefers-color-scheme", "value": "dark" if on else "light"}]
+    def prefers(self, dark: bool = False, still: bool = False) -> None:
+        features = [{"name": "prefers-color-scheme", "value": "dark" if dark else "light"},
+                    {"name": "prefers-reduced-motion", "value": "reduce" if still else "no-preference"}]
         self.call("Emulation.setEmulatedMedia", features=features)
+        self.flights = 0.0 if still else 0.9
 
     def load(self, path: Path) -> float:
         """Seconds until the page says that it is ready."""
@@ -131,7 +134,8 @@ class Page:
 
     def settle(self) -> None:
         """Until flights have ended and pictures are drawn."""
-        self.evaluate("new Promise(done => setTimeout(() => requestAnimationFrame(() => requestAnimationFrame(done)), 1000))")
+        self.evaluate("new Promise(done => setTimeout(() => requestAnimationFrame(() => requestAnimationFrame(done)), "
+                      f"{1000 * self.flights + 50}))")
 
     def press(self, key: str) -> None:
         for kind in ("keyDown", "keyUp"):

@@ -124,7 +124,7 @@ TEST(ReportPage, IsTheSameEveryTime) {
 
 class EncodedModel : public testing::Test {
  protected:
-  static constexpr int kRings = 40;
+  static constexpr int kRings = 20;
   const TriMesh ball_ = wrinkled_ball(kRings);
   const page::Shown shown_ = sample_shown(ball_);
   const Unpacked unpacked_ = unpack(shown_.model);

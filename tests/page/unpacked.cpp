@@ -24,19 +24,27 @@ std::vector<std::uint8_t> from_base64(const std::string& text) {
   return bytes;
 }
 
-std::vector<std::uint8_t> inflated(const std::vector<std::uint8_t>& bytes) {
-  std::vector<std::uint8_t> out(std::size_t(1) << 26);
+namespace {
+
+std::vector<std::uint8_t> inflated(const std::vector<std::uint8_t>& bytes, std::size_t length) {
+  std::vector<std::uint8_t> out(length);
   uLongf size = uLongf(out.size());
   if (uncompress(out.data(), &size, bytes.data(), uLong(bytes.size())) != Z_OK)
     throw std::runtime_error("no deflated bytes");
-  out.resize(size);
+  if (size != length) throw std::runtime_error("fewer bytes than the streams have");
   return out;
 }
 
+}  // namespace
+
 Unpacked unpack(const page::Model& model) {
-  const std::vector<std::uint8_t> bytes = inflated(from_base64(model.packed));
   Unpacked out{nlohmann::json::parse(model.table), {}, {}};
   const std::size_t vertices = out.table["vertices"], triangles = out.table["triangles"];
+  std::size_t length = 0;
+  for (const auto& stream : out.table["streams"])
+    length += (stream["name"] == "triangles" ? 3 * triangles : vertices) *
+              stream["components"].get<std::size_t>() * stream["bytes"].get<std::size_t>();
+  const std::vector<std::uint8_t> bytes = inflated(from_base64(model.packed), length);
   std::size_t at = 0;
   for (const auto& stream : out.table["streams"]) {
     const bool corners = stream["name"] == "triangles";
@@ -55,7 +63,6 @@ Unpacked unpack(const page::Model& model) {
       }
     out.streams[stream["name"]] = values;
   }
-  if (at != bytes.size()) throw std::runtime_error("bytes of no stream");
   std::uint32_t next = 0;
   std::vector<std::uint32_t>& codes = out.streams["triangles"];
   for (std::uint32_t& code : codes) {

@@ -12,9 +12,7 @@
 
 namespace photohull::test {
 
-/// The bytes of base64 text, deflated or not.
 std::vector<std::uint8_t> from_base64(const std::string& text);
-std::vector<std::uint8_t> inflated(const std::vector<std::uint8_t>& bytes);
 
 struct Unpacked {
   nlohmann::json table;
@@ -22,6 +20,7 @@ struct Unpacked {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
+/// Throws std::runtime_error where the bytes are not those of the table.
 Unpacked unpack(const page::Model& model);
 
 }  // namespace photohull::test

@@ -21,8 +21,9 @@ function fillReport() {
   const name = report.scene.path.split("/").filter(part => part && part !== ".").pop() || report.scene.path;
   document.title = name + ": photohull report";
   byId("scene").textContent = name;
-  byId("summary").textContent = [report.scene.views + " photographs", "method " + report.options.method,
-    shown(report.mesh.triangles) + " triangles", duration(report.wall_seconds)].join(" \u00b7 ");
+  const summary = [report.scene.views + " photographs", "method " + report.options.method,
+    shown(report.mesh.triangles) + " triangles", duration(report.wall_seconds)];
+  byId("summary").append(...summary.flatMap((text, i) => [i ? " \u00b7 " : "", element("span", {}, text)]));
   document.body.classList.add(report.verdict.level);
   byId("light").setAttribute("aria-label", "Verdict: " + report.verdict.level);
   byId("light").lastElementChild.textContent = report.verdict.level;
@@ -53,7 +54,8 @@ function fillCameras() {
   data.views.forEach((view, i) => {
     byId("camera").add(new Option(view.name, String(i)));
     if (!view.jpeg) return;
-    const picture = element("img", { src: pictureOf(view), alt: "", loading: "lazy" });
+    const width = Math.round(56 * view.size[0] / view.size[1]);
+    const picture = element("img", { src: pictureOf(view), alt: "", loading: "lazy", style: "width: " + width + "px" });
     const button = element("button", { type: "button", title: view.name, "aria-label": "Look through " + view.name, "aria-pressed": "false",
       onclick: () => viewer.lookThrough(viewer.through === i ? -1 : i) }, picture);
     button.dataset.view = i;

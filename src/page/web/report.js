@@ -8,7 +8,7 @@ const LEVELS = {
 // Words of reasons that a layer of the model shows the place of.
 const SHOWN_BY = [["no view sees", "views"], ["fewer than three views", "views"], ["confidence", "confidence"]];
 
-/** Text with the names of views in it as buttons that look through them. */
+/** Text with the names of views in it as buttons that look through them, and options in one piece. */
 function withViews(text, views, show) {
   const names = views.map((view, i) => [view.name, i]).filter(([name]) => name && text.includes(name))
     .sort((a, b) => b[0].length - a[0].length);
@@ -16,7 +16,8 @@ function withViews(text, views, show) {
   for (const [name, i] of names)
     parts = parts.flatMap(part => typeof part !== "string" ? [part] : part.split(name).flatMap((piece, k) =>
       k === 0 ? [piece] : [element("button", { type: "button", className: "link", onclick: () => show(i) }, name), piece]));
-  return parts;
+  return parts.flatMap(part => typeof part !== "string" ? [part] : part.split(/(--[a-z][a-z-]*)/).map((piece, k) =>
+    k % 2 ? element("code", {}, piece) : piece));
 }
 
 /** What is wrong in bold, and what to do. */
