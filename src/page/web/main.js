@@ -12,7 +12,7 @@ const actions = {
   },
   hasLayer: id => data.model.streams.some(stream => stream.name === id),
   layer: id => {
-    byId("layer-" + id).click();
+    byId("layer-" + id)?.click();
     byId("viewport").scrollIntoView({ block: "nearest" });
   },
 };
@@ -116,7 +116,8 @@ fillReport();
 try {
   await start();
 } catch (error) {
-  byId("message").textContent = "The model cannot be drawn: " + error.message +
+  byId("model").classList.add("undrawn");
+  byId("message").textContent = "The model cannot be drawn: " + error.message.replace(/\.+$/, "") +
     ". It needs WebGL 2 and a browser of 2023 or later; preview.png beside this page shows the model, too.";
 }
 byId("viewport").setAttribute("aria-busy", "false");

@@ -22,6 +22,7 @@ class Viewer {
     this.reset();
     this.canvas.addEventListener("pointermove", event => this.point(event));
     this.canvas.addEventListener("pointerleave", () => this.point(null));
+    this.canvas.addEventListener("webglcontextrestored", () => this.draw());
     new ResizeObserver(() => this.resize()).observe(byId("viewport"));
     this.photographs.load(() => this.draw());
     this.resize();
@@ -77,6 +78,7 @@ class Viewer {
 
   /** From beside the camera that shows the model best, and a little above. */
   reset() {
+    this.leave();
     this.orbit.target.set(0, 0, 0);
     const start = (this.photographs.centres[this.first] || new this.THREE.Vector3(1, 0, 0)).clone();
     start.addScaledVector(this.orbit.up, 0.15 * start.length()).applyAxisAngle(this.orbit.up, 0.3);
@@ -93,12 +95,8 @@ class Viewer {
   /** Flies to a camera; -1: away from it. */
   lookThrough(i) {
     if (i === this.through) return;
-    if (i < 0) {
-      this.orbit.target.set(0, 0, 0);
-      this.orbit.lookFrom(this.photographs.centres[this.through]);
-      return;
-    }
-    this.flyFrom(i);
+    if (i < 0) this.leave();
+    else this.flyFrom(i);
   }
 
   flyFrom(to) {
@@ -110,22 +108,15 @@ class Viewer {
     this.draw();
   }
 
-  /** The circling camera moved: it takes over. */
+  /** The circling camera takes over, from where the camera stands that is looked through. */
   leave() {
     if (this.through >= 0) {
-      this.orbitFromThrough();
+      const centre = this.photographs.centres[this.through];
       this.flyFrom(-1);
+      this.orbit.target.set(0, 0, 0);
+      this.orbit.lookFrom(centre);
     }
     this.draw();
-  }
-
-  /** Circles on from where the camera stands. */
-  orbitFromThrough() {
-    const i = this.through;
-    this.through = -1;
-    this.orbit.target.set(0, 0, 0);
-    this.orbit.lookFrom(this.photographs.centres[i]);
-    this.through = i;
   }
 
   throughChanged() {

@@ -62,7 +62,7 @@ function viewsCard(report, views, judged, show) {
     ...signs.map(sign => element("th", { className: "n", title: sign.says }, sign.title)));
   const table = element("table", {}, element("thead", {}, head),
     element("tbody", {}, ...ranked.map(view => viewRow(view, views[view.index], signs, show))));
-  const parts = [element("p", { className: "hint" }, beyond === 0 ? "None stands out. The first agrees least." :
+  const parts = [element("p", { className: "hint" }, !ranked.length ? "Nothing is known of single views." : beyond === 0 ? "None stands out. The first agrees least." :
     beyond + " of " + ranked.length + " are worse, in what is marked, than a good result may be as a whole. The first agrees least.")];
   if (ranked.length) parts.push(element("div", { className: "scroll rank", tabIndex: 0, role: "region", "aria-label": "Views by agreement" }, table));
   const notes = element("details", { className: "hint" }, element("summary", {}, "What the columns say"),
