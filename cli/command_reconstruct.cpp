@@ -106,7 +106,9 @@ void add_reconstruct(CLI::App& app) {
   CLI::App* c = add_command(app, "reconstruct");
   add_options(*c, *a);
   c->footer(
-      "Writes volume.vdb, mesh.ply, preview.png and report.json into the output folder.\n\n"
+      "Writes volume.vdb, mesh.ply, preview.png, report.json and report.html (the page to look "
+      "at:\n"
+      "'photohull view DIR') into the output folder.\n\n"
       "Examples:\n"
       "  photohull reconstruct datasets/templeSparseRing --out out/temple\n"
       "  photohull reconstruct scan --out out/scan --quality draft\n"

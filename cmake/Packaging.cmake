@@ -9,6 +9,8 @@ install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
 # The program holds a copy of ECharts (third_party/echarts): its licence and notices go along.
 install(FILES third_party/echarts/LICENSE third_party/echarts/NOTICE
   third_party/echarts/licenses/LICENSE-d3 DESTINATION ${CMAKE_INSTALL_DOCDIR}/echarts)
+# And of three.js (third_party/three).
+install(FILES third_party/three/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR}/three)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 set(CPACK_GENERATOR DEB)

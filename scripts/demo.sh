@@ -27,6 +27,7 @@ OpenGL works here."
 cat <<'TEXT'
 
 Open in out/temple/:
+  report.html   the model to turn, its cameras, and what to think of it    any browser
   preview.png   what was made, beside a photograph    any image viewer
   mesh.ply      the surface with colours              MeshLab, Blender (Import > Stanford PLY)
   volume.vdb    surface, colour and confidence grids  Blender (Add > Volume), Houdini (File node)

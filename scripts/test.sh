@@ -134,7 +134,7 @@ if [ $with_all = yes ]; then
 else
   scripts/setup.sh
 fi
-[ $with_all = no ] || install_missing clang clang-format clang-tidy shellcheck dpkg-dev file python3
+[ $with_all = no ] || install_missing clang clang-format clang-tidy shellcheck dpkg-dev file python3 chromium
 started=$SECONDS
 
 if [ $with_all = yes ]; then

@@ -7,7 +7,6 @@
 #include <unordered_set>
 
 #include "core/error.h"
-#include "mesh/simplify_mesh.h"
 
 namespace photohull {
 namespace {
@@ -65,8 +64,7 @@ void append_mesh(const TriMesh& from, TriMesh& to) {
     to.triangles.push_back({a + first, b + first, c + first});
 }
 
-void leave_out_covered(const TriMesh& fine, double reach, TriMesh& coarse,
-                       std::vector<float>* more) {
+void leave_out_covered(const TriMesh& fine, double reach, TriMesh& coarse, MoreNumbers more) {
   PHOTOHULL_CHECK_OP(reach, >, 0.0);
   const Cells cells(fine, reach / 1.5);  // the cells around a point's own reach one to two widths
   std::vector<bool> covered(coarse.positions.size());

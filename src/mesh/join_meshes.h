@@ -1,9 +1,8 @@
 // Meshes of several grids made one.
 #pragma once
 
-#include <vector>
-
 #include "core/mesh.h"
+#include "mesh/simplify_mesh.h"
 
 namespace photohull {
 
@@ -13,9 +12,9 @@ void append_mesh(const TriMesh& from, TriMesh& to);
 
 /// Leaves out of a coarse mesh what a finer one has: triangles whose corners all lie within `reach`
 /// (world units, > 0) of a vertex of `fine`, to within half of it. Where the finer surface ends,
-/// the coarse one goes on after an overlap of about `reach`. `more`, a number for each vertex of
-/// `coarse`, loses those of the dropped ones. The finer mesh's edges are much shorter than `reach`.
-void leave_out_covered(const TriMesh& fine, double reach, TriMesh& coarse,
-                       std::vector<float>* more = nullptr);
+/// the coarse one goes on after an overlap of about `reach`. The lists of `more`, of
+/// the vertices of `coarse`, lose the numbers of the dropped ones. The finer mesh's edges are much
+/// shorter than `reach`.
+void leave_out_covered(const TriMesh& fine, double reach, TriMesh& coarse, MoreNumbers more = {});
 
 }  // namespace photohull

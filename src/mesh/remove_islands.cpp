@@ -105,7 +105,7 @@ class Cells {
 }  // namespace
 
 RemovedIslands remove_islands(TriMesh& mesh, std::span<const float> views,
-                              const IslandOptions& options) {
+                              const IslandOptions& options, MoreNumbers more) {
   PHOTOHULL_CHECK_OP(views.size(), ==, mesh.positions.size());
   PHOTOHULL_CHECK_OP(mesh.confidence.size(), ==, mesh.positions.size());
   if (!(options.voxel_size > 0))
@@ -154,7 +154,7 @@ RemovedIslands remove_islands(TriMesh& mesh, std::span<const float> views,
   }
   if (total > 0) removed.area_share /= total;
   std::erase_if(mesh.triangles, [&](const auto& t) { return !kept[pieces.of_vertex[t[0]]]; });
-  keep_used_vertices(mesh);
+  keep_used_vertices(mesh, more);
   return removed;
 }
 

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "core/mesh.h"
+#include "mesh/simplify_mesh.h"
 
 namespace photohull {
 
@@ -33,8 +34,9 @@ struct RemovedIslands {
 /// dashes.
 ///
 /// `views` counts, for each vertex, the views that see it. Vertices keep their attributes and
-/// order. A mesh without triangles comes back as it is. Throws UsageError unless voxel_size > 0.
+/// order; the lists of `more` lose the numbers of those that go. A mesh without triangles comes
+/// back as it is. Throws UsageError unless voxel_size > 0.
 RemovedIslands remove_islands(TriMesh& mesh, std::span<const float> views,
-                              const IslandOptions& options);
+                              const IslandOptions& options, MoreNumbers more = {});
 
 }  // namespace photohull

@@ -6,8 +6,6 @@
 #include <numeric>
 #include <vector>
 
-#include "mesh/simplify_mesh.h"
-
 namespace photohull {
 namespace {
 
@@ -99,7 +97,7 @@ void remove_ears(const std::vector<std::array<std::uint32_t, 3>>& across, Flags&
 
 }  // namespace
 
-TriMesh remove_unseen(const TriMesh& mesh, double least_confidence, std::vector<float>* more) {
+TriMesh remove_unseen(const TriMesh& mesh, double least_confidence, MoreNumbers more) {
   if (mesh.confidence.empty()) return mesh;
   std::vector<std::array<std::uint32_t, 3>> across = neighbours(mesh);
   Flags removed(mesh.triangles.size());

@@ -1,9 +1,8 @@
 // Surface that no camera sees, left out of a mesh.
 #pragma once
 
-#include <vector>
-
 #include "core/mesh.h"
+#include "mesh/simplify_mesh.h"
 
 namespace photohull {
 
@@ -13,9 +12,8 @@ namespace photohull {
 /// photographed; islands of fewer that removal would leave go, and so do triangles left hanging by
 /// one edge. Vertices that are left keep their attributes and order; the border may have vertices
 /// of confidence 0. A mesh without confidence comes back as it is.
-/// `more`, a number for each vertex, loses those of the vertices that go.
-TriMesh remove_unseen(const TriMesh& mesh, double least_confidence = 0,
-                      std::vector<float>* more = nullptr);
+/// The lists of `more` lose the numbers of the vertices that go.
+TriMesh remove_unseen(const TriMesh& mesh, double least_confidence = 0, MoreNumbers more = {});
 
 constexpr int kLeastPatch = 32;
 

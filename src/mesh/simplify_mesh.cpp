@@ -188,7 +188,7 @@ MeshDistance measure_distance(const TriMesh& first, const TriMesh& second, doubl
   return {sum / double(distances.size()), at(0.95), at(0.999), at(1)};
 }
 
-void keep_used_vertices(TriMesh& mesh, std::vector<float>* more) {
+void keep_used_vertices(TriMesh& mesh, MoreNumbers more) {
   std::vector<std::uint32_t> rank(mesh.positions.size()), used;
   for (const auto& triangle : mesh.triangles)
     for (const std::uint32_t v : triangle) rank[v] = 1;
@@ -201,7 +201,7 @@ void keep_used_vertices(TriMesh& mesh, std::vector<float>* more) {
   take(mesh.normals, used);
   take(mesh.colours, used);
   take(mesh.confidence, used);
-  if (more) take(*more, used);
+  for (std::vector<float>* numbers : more) take(*numbers, used);
   for (auto& triangle : mesh.triangles)
     for (std::uint32_t& v : triangle) v = rank[v];
 }

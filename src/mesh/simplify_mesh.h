@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <initializer_list>
 #include <vector>
 
 #include "core/mesh.h"
@@ -38,8 +39,11 @@ double mean_edge(const TriMesh& mesh);
 /// a mesh without triangles.
 TriMesh simplify_mesh(const TriMesh& mesh, double error);
 
-/// Drops vertices that no triangle uses, with their attributes; `more`, a number for each vertex,
-/// loses those of the dropped ones.
-void keep_used_vertices(TriMesh& mesh, std::vector<float>* more = nullptr);
+/// Lists of numbers beside a mesh's attributes, one for each vertex.
+using MoreNumbers = std::initializer_list<std::vector<float>*>;
+
+/// Drops vertices that no triangle uses, with their attributes; each list of `more` loses the
+/// numbers of the dropped ones.
+void keep_used_vertices(TriMesh& mesh, MoreNumbers more = {});
 
 }  // namespace photohull

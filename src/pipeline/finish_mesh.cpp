@@ -31,6 +31,15 @@ std::int64_t fit_stems(const SurfaceJob& job, TriMesh& mesh) {
 
 }  // namespace
 
+SeenVertices seen_vertices(const std::vector<render::PooledEvidence>& evidence) {
+  SeenVertices seen;
+  for (const render::PooledEvidence& e : evidence) {
+    seen.views.push_back(e.views);
+    seen.disagreement.push_back(e.seen ? e.disagreement : NAN);
+  }
+  return seen;
+}
+
 void remove_dust(const SurfaceJob& job, SparseVolume& volume) {
   remove_small_components(volume, kDebrisFraction, [&](auto pieces) {
     return refine::are_asked_for(job.context, volume, pieces,
@@ -73,14 +82,16 @@ bool leaves_open(const ReconstructOptions& options, bool bounded) {
   return !bounded && method_of(options).needs_no_silhouettes;
 }
 
-TriMesh open_unseen(const SurfaceJob& job, const TriMesh& mesh, std::vector<float> views_that_see,
+TriMesh open_unseen(const SurfaceJob& job, const TriMesh& mesh, SeenVertices& seen,
                     MeshFindings& findings) {
   const Subject& subject = job.subject;
   const bool by_photographs = !job.bounded;
-  TriMesh open = remove_unseen(mesh, by_photographs ? kMoreLikelyRight : 0, &views_that_see);
+  TriMesh open =
+      remove_unseen(mesh, by_photographs ? kMoreLikelyRight : 0, {&seen.views, &seen.disagreement});
   if (by_photographs) {
     const RemovedIslands gone =
-        remove_islands(open, views_that_see, {.voxel_size = subject.grid.voxel_size});
+        remove_islands(open, seen.views, {.voxel_size = subject.grid.voxel_size},
+                       {&seen.views, &seen.disagreement});
     findings.islands = std::int64_t(gone.pieces);
     findings.islands_area_share = gone.area_share;
   }

@@ -12,6 +12,14 @@
 
 namespace photohull::pipeline {
 
+/// What is known of each vertex beside the mesh's attributes.
+struct SeenVertices {
+  std::vector<float> views;         ///< that see it, up to kMaxBakeViews
+  std::vector<float> disagreement;  ///< PooledEvidence::disagreement; NaN where no view sees it
+};
+
+SeenVertices seen_vertices(const std::vector<render::PooledEvidence>& evidence);
+
 /// Small pieces go, but for those that masks ask for.
 void remove_dust(const SurfaceJob& job, SparseVolume& volume);
 
@@ -29,8 +37,8 @@ bool leaves_open(const ReconstructOptions& options, bool bounded);
 
 /// Leaves out what no camera sees, and without silhouettes what is more likely wrong than right.
 /// After colouring, which tells what is seen, and before simplification, which keeps the border.
-/// `views_that_see`: how many see each vertex. Throws Error where nothing remains.
-TriMesh open_unseen(const SurfaceJob& job, const TriMesh& mesh, std::vector<float> views_that_see,
+/// `seen` loses what is known of the vertices that go. Throws Error where nothing remains.
+TriMesh open_unseen(const SurfaceJob& job, const TriMesh& mesh, SeenVertices& seen,
                     MeshFindings& findings);
 
 /// Fewer triangles, as far from the uniform mesh as the options allow.

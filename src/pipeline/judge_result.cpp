@@ -36,7 +36,7 @@ Judgement judge_result(const SurfaceJob& job, const Judged& judged, bool picture
   for (const PreparedView& view : subject.views) names.push_back(view.name);
   Judgement out;
   out.findings.verdict = assess::judge(signals, names);
-  out.findings.json = to_json(out.findings.verdict, signals, subject.views);
+  out.findings.json = to_json(out.findings.verdict, signals, subject.views, fits);
   if (!pictures) return out;
   out.missing = draw_missing(result, fits);
   out.explained = draw_explained(subject.views, signals.explained);

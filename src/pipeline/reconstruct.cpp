@@ -15,6 +15,7 @@
 #include "pipeline/agree_cameras.h"
 #include "pipeline/find_silhouettes.h"
 #include "pipeline/finish_mesh.h"
+#include "pipeline/given_words.h"
 #include "pipeline/judge_result.h"
 #include "pipeline/methods/sampler.h"
 #include "pipeline/photometric_stage.h"
@@ -22,6 +23,7 @@
 #include "pipeline/prepare_scene.h"
 #include "pipeline/read_scene.h"
 #include "pipeline/recording_progress.h"
+#include "pipeline/show_result.h"
 #include "pipeline/stage_weights.h"
 #include "pipeline/surroundings.h"
 #include "render/choose_views.h"
@@ -130,8 +132,7 @@ Evidence keep_evidence(const TriMesh& mesh, const std::vector<render::PooledEvid
 }
 
 /// The other photographs' pixels have done their work; memory peaks in the stages to come.
-void keep_only_preview_photograph(const TriMesh& mesh, std::vector<PreparedView>& views) {
-  const int kept = render::choose_main_view(mesh, views);
+void keep_only_photograph(int kept, std::vector<PreparedView>& views) {
   for (int i = 0; i < int(views.size()); ++i)
     if (i != kept) std::vector<std::uint8_t>().swap(views[std::size_t(i)].image.bytes);
 }
@@ -156,16 +157,19 @@ class Carver {
     out.mesh = clock.run("mesh", Weights::kMesh,
                          [&] { return extract_surface(job(), out.volume, mesh_findings_); });
     make_alike_on_mesh(out.mesh);
-    const std::vector<float> views_that_see = colour(out);
+    SeenVertices seen = colour(out);
     // What silhouettes bound is judged by them as a whole; else what is delivered is.
     const bool open = leaves_open(run_.options, bounded_);
-    if (open && !bounded_) out.mesh = open_unseen(job(), out.mesh, views_that_see, mesh_findings_);
+    if (open && !bounded_) out.mesh = open_unseen(job(), out.mesh, seen, mesh_findings_);
     const Around around = surround(out.mesh, open);
     images_.reset();
     run_.context->release_deleted();
     judge(around, out);
-    if (open && bounded_) out.mesh = open_unseen(job(), out.mesh, views_that_see, mesh_findings_);
+    if (open && bounded_) out.mesh = open_unseen(job(), out.mesh, seen, mesh_findings_);
     append_mesh(around.mesh, out.mesh);
+    if (run_.options.report_page == ReportPage::kOn)
+      out.shown = clock.run("page", Weights::kPage,
+                            [&] { return show_result(out.mesh, std::move(seen), subject_.views); });
     deliver(out);
     return out;
   }
@@ -242,15 +246,12 @@ class Carver {
     upload();
   }
 
-  /// Returns how many views see each vertex.
-  std::vector<float> colour(Reconstruction& out) {
+  SeenVertices colour(Reconstruction& out) {
     return run_.clock.run("colour", Weights::kColour, [&] {
       const auto evidence = colour_surface(job(), out.mesh, mesh_findings_);
       if (run_.options.evidence) out.evidence = keep_evidence(out.mesh, evidence);
       out.attributes = attributes_from_mesh(out.volume, out.mesh);
-      std::vector<float> views;
-      for (const render::PooledEvidence& e : evidence) views.push_back(e.views);
-      return views;
+      return seen_vertices(evidence);
     });
   }
 
@@ -288,7 +289,9 @@ class Carver {
     run_.report.bricks_stored = std::int64_t(out.volume.bricks.size());
     run_.report.hull = hull_.findings();
     run_.clock.count_samples("hull", hull_.findings().samples);  // later stages carve hulls, too
-    keep_only_preview_photograph(out.mesh, subject_.views);
+    const int main = render::choose_main_view(out.mesh, subject_.views);
+    if (out.shown) out.shown->first_view = main;
+    keep_only_photograph(main, subject_.views);
     out.preview = run_.clock.run("preview", Weights::kPreview, [&] {
       return render_preview(*run_.context, out.mesh, subject_.views);
     });
@@ -339,6 +342,7 @@ Reconstruction Reconstructor::run(const Photographs& photographs, Progress& give
   out.report.version = PHOTOHULL_VERSION;
   out.report.options = named_options(options_, photographs.load);
   out.report.option_line = option_line(options_, photographs.load);
+  out.report.given_words = given_words(options_, photographs.load);
   out.report.warnings = progress.warnings();
   out.report.stages = run.clock.stages();
   out.report.device_work = device_work(*run.context);

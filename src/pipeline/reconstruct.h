@@ -7,6 +7,7 @@
 #include "core/mesh.h"
 #include "core/progress.h"
 #include "io/mesh/write_mesh.h"
+#include "page/make_page.h"
 #include "pipeline/missing_picture.h"
 #include "pipeline/photographs.h"
 #include "pipeline/reconstruct_options.h"
@@ -32,6 +33,7 @@ struct Reconstruction {
   TriMesh mesh;                 ///< with colours, normals and confidence
   PreviewImage preview;
   std::optional<Evidence> evidence;  ///< on demand
+  std::optional<page::Shown> shown;  ///< what report.html shows, unless it is off
   Report report;                     ///< of all but writing files
 };
 

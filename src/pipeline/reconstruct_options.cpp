@@ -214,6 +214,9 @@ void describe_run(Described& to, ReconstructOptions& o) {
           "write evidence.ply too, the uniform mesh with what confidence is computed from, and "
           "missing.png: where the model leaves the masks empty, or without masks explained.png: "
           "what of a photograph it explains");
+  to.choice("report_page", &o.report_page, std::array{ReportPage::kOn, ReportPage::kOff},
+            "write report.html, too: the model to turn, its cameras, the verdict and the figures, "
+            "as one page for a browser");
   std::string formats;
   for (const MeshWriter& writer : mesh_writers())
     formats += concat(formats.empty() ? "" : ", ", writer.name, " (", writer.what, ")");
@@ -275,6 +278,8 @@ const char* to_string(Surroundings surroundings) {
   }
   return "?";
 }
+
+const char* to_string(ReportPage page) { return page == ReportPage::kOn ? "on" : "off"; }
 
 double footprint_factor(Quality quality, bool silhouettes) {
   switch (quality) {

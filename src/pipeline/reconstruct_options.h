@@ -36,12 +36,15 @@ enum class Lattice { kFit, kFixed };
 /// Whether what surrounds the box is reconstructed too, on coarser grids. Auto does so where the
 /// box was found (not given) and fewer than half of the views have silhouettes.
 enum class Surroundings { kAuto, kOn, kOff };
+/// Whether report.html is made.
+enum class ReportPage { kOn, kOff };
 
 const char* to_string(Quality quality);
 const char* to_string(Method method);
 const char* to_string(Unseen unseen);
 const char* to_string(Lattice lattice);
 const char* to_string(Surroundings surroundings);
+const char* to_string(ReportPage page);
 
 /// How far mesh.ply may be from the uniform mesh; 0 keeps the uniform one.
 struct MeshError {
@@ -74,6 +77,7 @@ struct ReconstructOptions {
   std::optional<double> r_consistency;
   bool fresh = false;
   bool evidence = false;
+  ReportPage report_page = ReportPage::kOn;
   /// Formats that the mesh is written in beside PLY (io/mesh/mesh_writers.h).
   std::vector<std::string> exports;
   std::optional<double> image_scale;       ///< nothing: as the voxels need it (image_scale.h)

@@ -17,6 +17,7 @@ struct Report {
   std::string version, device;
   NamedValues options;
   std::string option_line;  ///< those that affect the result, in one line
+  std::string given_words;  ///< those that were given, as words of a command line
   SceneFindings scene;
   Box box;
   std::string box_source;

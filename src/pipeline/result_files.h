@@ -32,6 +32,7 @@ class ResultFiles {
   /// Puts the files in place. Throws Error when that fails, and says so when the folder then has
   /// files of two runs.
   void commit();
+  const std::filesystem::path& folder() const { return folder_; }
   const std::vector<std::string>& names() const { return names_; }
 
  private:

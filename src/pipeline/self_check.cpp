@@ -163,10 +163,30 @@ ordered_json explained_json(const assess::Explained& e, std::span<const Prepared
   return j;
 }
 
+void add_views(const assess::Signals& s, std::span<const PreparedView> views,
+               std::span<const assess::SilhouetteFit> fits, ordered_json& j) {
+  for (std::size_t i = 0; i < views.size() && i < s.match.views.size(); ++i)
+    j["views"].push_back({{"name", views[i].name},
+                          {"residual", s.match.views[i].pixels},
+                          {"matches", s.match.views[i].matches},
+                          {"pixel_size", s.match.views[i].pixel_size}});
+  for (std::size_t i = 0; i < views.size() && i < s.compared.views.size(); ++i) {
+    j["views"][i]["told"] = s.compared.views[i].told();
+    j["views"][i]["disagreeing"] = s.compared.views[i].count(assess::Place::kDisagreeing);
+  }
+  for (std::size_t i = 0; i < views.size() && i < fits.size(); ++i) {
+    if (fits[i].foreground == 0) continue;  // its silhouette is not known
+    j["views"][i]["missed"] = fits[i].missed;
+    j["views"][i]["excess"] = fits[i].excess;
+    j["views"][i]["beyond_box"] = fits[i].beyond_box;
+  }
+}
+
 }  // namespace
 
 std::string to_json(const assess::Verdict& verdict, const assess::Signals& s,
-                    std::span<const PreparedView> views) {
+                    std::span<const PreparedView> views,
+                    std::span<const assess::SilhouetteFit> fits) {
   ordered_json j = {{"level", assess::to_string(verdict.level)},
                     {"reasons", verdict.reasons},
                     {"notes", verdict.notes},
@@ -211,15 +231,7 @@ std::string to_json(const assess::Verdict& verdict, const assess::Signals& s,
         {"moved_sigma", s.common.shift_sigma}, {"focal_factor", s.common.focal_factor},
         {"focal_sigma", s.common.focal_sigma}, {"disagree_then", s.common.after},
         {"tangents", s.common.tangents}};
-  for (std::size_t i = 0; i < views.size() && i < s.match.views.size(); ++i)
-    j["views"].push_back({{"name", views[i].name},
-                          {"residual", s.match.views[i].pixels},
-                          {"matches", s.match.views[i].matches},
-                          {"pixel_size", s.match.views[i].pixel_size}});
-  for (std::size_t i = 0; i < views.size() && i < s.compared.views.size(); ++i) {
-    j["views"][i]["told"] = s.compared.views[i].told();
-    j["views"][i]["disagreeing"] = s.compared.views[i].count(assess::Place::kDisagreeing);
-  }
+  add_views(s, views, fits, j);
   if (s.explained.looked_at() > 0) j["photographs"] = explained_json(s.explained, views);
   return j.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }

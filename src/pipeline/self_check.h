@@ -38,8 +38,10 @@ struct CheckedResult {
 assess::Signals gather_signals(const CheckedResult& result,
                                std::vector<assess::SilhouetteFit>* fits = nullptr);
 
-/// JSON: level, reasons and signals.
+/// JSON: level, reasons and signals, and what is known of each view. `fits` as gather_signals gives
+/// them: empty where there are no silhouettes.
 std::string to_json(const assess::Verdict& verdict, const assess::Signals& signals,
-                    std::span<const PreparedView> views);
+                    std::span<const PreparedView> views,
+                    std::span<const assess::SilhouetteFit> fits);
 
 }  // namespace photohull::pipeline

@@ -15,8 +15,8 @@ double total_weight(const ReconstructOptions& options) {
          (options.photometric != Photometric::kOff ? Weights::kPhotometric : 0) + Weights::kDevice +
          Weights::kSilhouettes + Weights::kHull + Weights::kImages + method_of(options).weight +
          (options.mesh_error.value > 0 ? Weights::kSimplify : 0) + Weights::kClean +
-         Weights::kMesh + Weights::kColour + Weights::kVerdict + Weights::kPreview +
-         Weights::kFiles;
+         (options.report_page == ReportPage::kOn ? Weights::kPage : 0) + Weights::kMesh +
+         Weights::kColour + Weights::kVerdict + Weights::kPreview + Weights::kFiles;
 }
 
 }  // namespace photohull::pipeline

@@ -61,8 +61,8 @@ TriMesh surface_in(const SurfaceJob& job, const Shell& shell, const TriMesh& kno
   volume = {};
   if (mesh.triangles.empty()) return mesh;
   std::vector<float> views = colour(job, shell.grid, mesh);
-  if (open) mesh = remove_unseen(mesh, kMoreLikelyRight, &views);
-  leave_out_covered(known, kCovered * shell.grid.voxel_size, mesh, &views);
+  if (open) mesh = remove_unseen(mesh, kMoreLikelyRight, {&views});
+  leave_out_covered(known, kCovered * shell.grid.voxel_size, mesh, {&views});
   if (open) remove_islands(mesh, views, {.voxel_size = shell.grid.voxel_size});
   return mesh;
 }

@@ -5,10 +5,13 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/option_word.h"
 #include "io/image_file.h"
 #include "io/mesh/mesh_writers.h"
 #include "io/mesh/write_mesh.h"
+#include "page/make_page.h"
 #include "pipeline/checkpoint_folder.h"
+#include "pipeline/given_words.h"
 #include "pipeline/recording_progress.h"
 #include "pipeline/result_files.h"
 #include "pipeline/stage_weights.h"
@@ -27,11 +30,13 @@ std::vector<std::pair<std::string, const MeshWriter*>> mesh_files(
   return files;
 }
 
-/// What a job with or without evidence may write.
-std::vector<std::string> file_names(const std::vector<std::string>& formats, bool evidence) {
+/// What a job with or without evidence and a page may write.
+std::vector<std::string> file_names(const std::vector<std::string>& formats, bool evidence,
+                                    bool page) {
   std::vector<std::string> names = {"volume.vdb", "preview.png"};
   for (const auto& [name, writer] : mesh_files(formats)) names.push_back(name);
   if (evidence) names.insert(names.end(), {"evidence.ply", "missing.png", "explained.png"});
+  if (page) names.push_back("report.html");
   names.push_back("report.json");
   return names;
 }
@@ -64,6 +69,13 @@ void write_evidence(const Evidence& evidence, ResultFiles& files, Report& report
   add("explained.png", evidence.explained);
 }
 
+/// That makes the result again; empty for programs that have no flags.
+std::string command_line(const Report& report, const std::filesystem::path& folder) {
+  if (!option_word("out").starts_with("--")) return "";
+  return concat("photohull reconstruct ", shell_word(report.scene.path), " ",
+                option_word("out", shell_word(folder.string())), report.given_words);
+}
+
 Report write_all(const Reconstruction& result, const std::vector<std::string>& formats,
                  ResultFiles& files, Progress& given) {
   const auto start = std::chrono::steady_clock::now();
@@ -82,6 +94,7 @@ Report write_all(const Reconstruction& result, const std::vector<std::string>& f
     report.files.push_back("preview.png");
     if (result.evidence) write_evidence(*result.evidence, files, report);
   });
+  if (result.shown) report.files.push_back("report.html");
   report.files.push_back("report.json");
   report.stages.push_back(clock.stages().back());
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
@@ -90,6 +103,11 @@ Report write_all(const Reconstruction& result, const std::vector<std::string>& f
   report.peak_memory_bytes = process_peak_memory();
   for (const std::string& text : progress.warnings()) report.warnings.push_back(text);
   const std::string text = report.to_json();
+  if (result.shown) {
+    const std::string page =
+        page::make_page(text, command_line(report, files.folder()), *result.shown);
+    files.open("report.html").write(page.data(), page.size());
+  }
   files.open("report.json").write(text.data(), text.size());
   progress.check_cancelled();
   files.commit();
@@ -101,7 +119,8 @@ Report write_all(const Reconstruction& result, const std::vector<std::string>& f
 Report write(const Reconstruction& result, const std::filesystem::path& folder, Progress& progress,
              const std::vector<std::string>& formats) {
   for (const std::string& format : formats) find_mesh_writer("formats", format);
-  ResultFiles files(folder, file_names(formats, result.evidence.has_value()));
+  ResultFiles files(folder,
+                    file_names(formats, result.evidence.has_value(), result.shown.has_value()));
   return write_all(result, formats, files, progress);
 }
 
@@ -111,7 +130,8 @@ Report reconstruct_to_folder(const ReconstructOptions& options, const Photograph
   with_checkpoint.checkpoint = folder;
   const Reconstructor reconstructor(with_checkpoint);
   // What can fail at once does so before the photographs are decoded.
-  ResultFiles files(folder, file_names(options.exports, options.evidence));
+  ResultFiles files(folder, file_names(options.exports, options.evidence,
+                                       options.report_page == ReportPage::kOn));
   const Report report =
       write_all(reconstructor.run(photographs, progress), options.exports, files, progress);
   remove_checkpoint(folder);

@@ -10,8 +10,9 @@
 
 namespace photohull::pipeline {
 
-/// Writes volume.vdb, mesh.ply, preview.png and report.json; the mesh in further formats
-/// (io/mesh/mesh_writers.h); and with evidence also evidence.ply and missing.png or explained.png.
+/// Writes volume.vdb, mesh.ply, preview.png and report.json; report.html where the result has what
+/// that shows; the mesh in further formats (io/mesh/mesh_writers.h); and with evidence also
+/// evidence.ply and missing.png or explained.png.
 /// The folder is made where it does not exist. Returns the report with what writing took and the
 /// names of the files. Throws Error when that fails; earlier results then stay as they were (but
 /// see ResultFiles::commit), and no half-written file is left.

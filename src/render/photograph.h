@@ -1,4 +1,4 @@
-// Private to module render: photographs for the eye.
+// Photographs for the eye.
 #pragma once
 
 #include "core/image.h"

@@ -22,15 +22,15 @@ class Output : public SphereScene {
   /// Results of an earlier run that a failing one must not touch.
   void put_earlier_results() const {
     fs::create_directories(out());
-    for (const char* name : {"mesh.ply", "preview.png", "report.json", "volume.vdb"})
+    for (const char* name : {"mesh.ply", "preview.png", "report.html", "report.json", "volume.vdb"})
       write_bytes(fs::path(out()) / name, "earlier");
   }
   void expect_earlier_results() const {
-    for (const char* name : {"mesh.ply", "preview.png", "report.json", "volume.vdb"})
+    for (const char* name : {"mesh.ply", "preview.png", "report.html", "report.json", "volume.vdb"})
       EXPECT_EQ(read_bytes(fs::path(out()) / name), "earlier") << name;
     std::vector<std::string> files = listing(out());
     std::erase(files, ".photohull-checkpoint");  // for a rerun to go on from
-    EXPECT_EQ(files.size(), 4u);
+    EXPECT_EQ(files.size(), 5u);
   }
   /// A job of several seconds.
   Arguments long_job() const { return reconstruct({"--resolution", "160"}); }

@@ -27,10 +27,10 @@ class ReconstructBlock : public Reconstruct {
   }
 };
 
-TEST_F(Reconstruct, WritesFourFilesWithAClosedMeshOfTheSphere) {
+TEST_F(Reconstruct, WritesFiveFilesWithAClosedMeshOfTheSphere) {
   const Finished run = succeed(reconstruct());
-  EXPECT_THAT(listing(out()), ElementsAre("mesh.ply", "preview.png", "report.json", "volume.vdb"));
-  for (const char* name : {"mesh.ply", "preview.png", "report.json", "volume.vdb"})
+  EXPECT_THAT(listing(out()), ElementsAre("mesh.ply", "preview.png", "report.html", "report.json", "volume.vdb"));
+  for (const char* name : {"mesh.ply", "preview.png", "report.html", "report.json", "volume.vdb"})
     EXPECT_THAT(run.out, HasSubstr(path(std::string("out/") + name)));
   const TriMesh sphere = mesh();
   EXPECT_EQ(open_edges(sphere), 0u);
@@ -84,7 +84,7 @@ TEST_F(Reconstruct, ReportHasTheDocumentedFields) {
   for (const json& stage : r["stages"]) stages.push_back(stage["name"]);
   EXPECT_THAT(stages, ElementsAre("scene", "device", "views", "cameras", "silhouettes", "hull",
                                   "photometric", "images", "refine", "clean", "mesh", "colour",
-                                  "verdict", "preview", "files"));
+                                  "verdict", "page", "preview", "files"));
 }
 
 TEST_F(Reconstruct, MeshErrorLeavesFewerTriangles) {

@@ -25,7 +25,8 @@ RunOptions failing(const Fault& fault, long number) {
 
 /// Reports tell of time and memory, the others mark or keep what is not complete.
 bool differs_rightly(const std::string& name) {
-  return name == "report.json" || name == "INCOMPLETE" || name == ".photohull-checkpoint";
+  return name == "report.json" || name == "report.html" || name == "INCOMPLETE" ||
+         name == ".photohull-checkpoint";
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ TEST(JoinMeshes, WhatTheFinerMeshHasGoes) {
   const TriMesh fine = square(2, 0.05, {0, 0, 0.02});
   TriMesh coarse = square(8, 0.2);
   std::vector<float> more(coarse.positions.size(), 1);
-  leave_out_covered(fine, reach, coarse, &more);
+  leave_out_covered(fine, reach, coarse, {&more});
   EXPECT_EQ(area_within(coarse, 0.5), 0);                  // two layers nowhere in the middle
   EXPECT_NEAR(area_within(coarse, 4), 64 - 2.5 * 2.5, 3);  // and all beyond an overlap
   EXPECT_GT(area_within(coarse, 1.5), 9 - 2.9 * 2.9);      // which begins near the border

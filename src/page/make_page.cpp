@@ -1,0 +1,80 @@
+#include "page/make_page.h"
+
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "core/error.h"
+#include "page/embedded_files.h"
+#include "page/pack.h"
+
+namespace photohull::page {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// JSON that may stand inside a <script> element: nothing in it ends the element.
+std::string script_json(const ordered_json& json) {
+  std::string text;
+  for (const char c : json.dump(-1, ' ', false, ordered_json::error_handler_t::replace))
+    text += c == '<' ? std::string("\\u003c") : std::string(1, c);
+  return text;
+}
+
+ordered_json view_json(const ShownView& view) {
+  const Intrinsics& k = view.camera.intrinsics;
+  const glm::dmat3& r = view.camera.cam_from_world.rotation;
+  const glm::dvec3 c = view.camera.center();
+  ordered_json rows = ordered_json::array();
+  for (int row = 0; row < 3; ++row) rows.push_back({r[0][row], r[1][row], r[2][row]});
+  return {{"name", view.name},         {"size", {k.width, k.height}},
+          {"focal", {k.fx, k.fy}},     {"skew", k.skew},
+          {"principal", {k.cx, k.cy}}, {"rotation", rows},
+          {"centre", {c.x, c.y, c.z}}, {"jpeg", base64(view.jpeg)}};
+}
+
+/// What the page needs of the report: not the digests of the files that were read, nor the work of
+/// each kernel, of which there is much.
+ordered_json shown_report(const std::string& report) {
+  ordered_json json = ordered_json::parse(report, nullptr, false);
+  if (!json.is_object()) throw Error("the report that a page is to be made of is not JSON");
+  json.erase("inputs");
+  json.erase("device_work");
+  return json;
+}
+
+std::string data_json(const std::string& report, const std::string& command, const Shown& shown) {
+  ordered_json data = {{"report", shown_report(report)},
+                       {"command", command},
+                       {"model", ordered_json::parse(shown.model.table)},
+                       {"first_view", shown.first_view},
+                       {"views", ordered_json::array()}};
+  for (const ShownView& view : shown.views) data["views"].push_back(view_json(view));
+  return script_json(data);
+}
+
+std::string packed_text(std::string_view text) {
+  return packed({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+}  // namespace
+
+std::string make_page(const std::string& report, const std::string& command, const Shown& shown) {
+  const std::string_view page = page_template();
+  std::string html;
+  std::size_t from = 0;
+  for (;;) {
+    const std::size_t start = page.find("@@", from);
+    const std::size_t end = start == page.npos ? start : page.find("@@", start + 2);
+    html.append(page.substr(from, end == page.npos ? page.npos : start - from));
+    if (end == page.npos) return html;
+    const std::string_view name = page.substr(start + 2, end - start - 2);
+    if (name == "STYLE") html += page_style();
+    if (name == "DATA") html += data_json(report, command, shown);
+    if (name == "MODEL") html += shown.model.packed;
+    if (name == "THREE") html += packed_text(three_js());
+    if (name == "SCRIPT") html += page_script();
+    from = end + 2;
+  }
+}
+
+}  // namespace photohull::page

@@ -1,0 +1,49 @@
+#include "pipeline/given_words.h"
+
+#include <algorithm>
+#include <string_view>
+
+#include "core/option_word.h"
+
+namespace photohull::pipeline {
+namespace {
+
+bool is_plain(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+         std::string_view("_-./=,:+@%").find(c) != std::string_view::npos;
+}
+
+std::string words_of(const Option& option) {
+  if (std::holds_alternative<bool*>(option.place)) return " " + option_word(option.name);
+  std::string words;
+  if (const auto* texts = std::get_if<std::vector<std::string>*>(&option.place);
+      texts && !option.list) {
+    for (const std::string& text : **texts)
+      words += " " + option_word(option.name, shell_word(text));
+    return words;
+  }
+  return " " + option_word(option.name, shell_word(text_of(option)));
+}
+
+}  // namespace
+
+std::string shell_word(const std::string& text) {
+  if (!text.empty() && std::all_of(text.begin(), text.end(), is_plain)) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+std::string given_words(ReconstructOptions options, io::LoadSceneOptions load) {
+  ReconstructOptions defaults;
+  io::LoadSceneOptions usual_load;
+  Described given, usual;
+  describe(given, options, load);
+  describe(usual, defaults, usual_load);
+  std::string words;
+  for (const Option& option : given.options())
+    if (text_of(option) != text_of(*usual.find(option.name))) words += words_of(option);
+  return words;
+}
+
+}  // namespace photohull::pipeline

@@ -1,0 +1,83 @@
+#include "pipeline/show_result.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "io/encode_jpeg.h"
+#include "mesh/reduce_mesh.h"
+#include "render/photograph.h"
+
+namespace photohull::pipeline {
+namespace {
+
+constexpr double kLargestEdge = 400, kSmallestEdge = 48;  // pixels of pictures
+constexpr int kQuality = 78;
+constexpr double kPixelBytes = 0.2;         // of such JPEGs, to begin with
+constexpr double kMostDisagreement = 0.25;  // of full scale, square roots of linear light
+constexpr double kMostViews = 254;          // one step a view
+
+std::vector<std::uint8_t> picture(const ColourImage& image, double edge) {
+  const double scale = std::min(1.0, edge / std::max(image.width, image.height));
+  const int width = std::max(1, int(std::lround(scale * image.width)));
+  const int height = std::max(1, int(std::lround(scale * image.height)));
+  const PreviewImage small = render::cut_photograph(image, 0, 0, scale, width, height);
+  return io::encode_jpeg(width, height, small.rgb, kQuality);
+}
+
+/// The views that get a picture, evenly among all.
+std::vector<int> pictured(int views) {
+  std::vector<int> chosen;
+  const int count = std::min(views, kMostPictures);
+  for (int i = 0; i < count; ++i) chosen.push_back(int(std::int64_t(i) * views / count));
+  return chosen;
+}
+
+/// As large as all of them may be together.
+std::vector<std::vector<std::uint8_t>> pictures(std::span<const PreparedView> views,
+                                                std::span<const int> which) {
+  double pixels = 0;  // of pictures with an edge of one pixel
+  for (const int i : which) {
+    const ColourImage& image = views[std::size_t(i)].image;
+    const double a = image.width, b = image.height;
+    pixels += std::min(a, b) / std::max(a, b);
+  }
+  double edge = std::sqrt(double(kPictureBytes) / (kPixelBytes * std::max(pixels, 1e-9)));
+  for (;;) {
+    edge = std::clamp(edge, kSmallestEdge, kLargestEdge);
+    std::vector<std::vector<std::uint8_t>> made;
+    std::size_t bytes = 0;
+    for (const int i : which) {
+      made.push_back(picture(views[std::size_t(i)].image, edge));
+      bytes += made.back().size();
+    }
+    if (bytes <= kPictureBytes || edge <= kSmallestEdge) return made;
+    edge *= 0.95 * std::sqrt(double(kPictureBytes) / double(bytes));
+  }
+}
+
+}  // namespace
+
+page::Shown show_result(const TriMesh& mesh, SeenVertices seen,
+                        std::span<const PreparedView> views) {
+  constexpr float kNotKnown = std::numeric_limits<float>::quiet_NaN();
+  seen.views.resize(mesh.positions.size(), kNotKnown);
+  seen.disagreement.resize(mesh.positions.size(), kNotKnown);
+  const TriMesh reduced = reduce_mesh(mesh, kShownTriangles, {&seen.views, &seen.disagreement});
+  std::vector<page::Layer> layers;
+  if (!reduced.confidence.empty()) layers.push_back({"confidence", reduced.confidence, 1});
+  layers.push_back({"views", std::move(seen.views), kMostViews});
+  layers.push_back({"disagreement", std::move(seen.disagreement), kMostDisagreement});
+  page::Shown shown;
+  shown.model = page::encode_model(reduced, layers);
+  for (const PreparedView& view : views) shown.views.push_back({view.name, view.camera, {}});
+  const std::vector<int> which = pictured(int(views.size()));
+  std::vector<std::vector<std::uint8_t>> made = pictures(views, which);
+  for (std::size_t k = 0; k < which.size(); ++k)
+    shown.views[std::size_t(which[k])].jpeg = std::move(made[k]);
+  return shown;
+}
+
+}  // namespace photohull::pipeline

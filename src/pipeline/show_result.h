@@ -1,0 +1,24 @@
+// What the report's page shows of a result (page/make_page.h).
+#pragma once
+
+#include <span>
+
+#include "core/mesh.h"
+#include "core/prepared_view.h"
+#include "page/make_page.h"
+#include "pipeline/finish_mesh.h"
+
+namespace photohull::pipeline {
+
+/// The mesh in at most kShownTriangles triangles, with confidence, views that see it and their
+/// disagreement, and the views with their photographs made small: all pictures together take at
+/// most kPictureBytes, and no more than kMostPictures views have one. `seen` tells of the mesh's
+/// first vertices; of the others, what surrounds the box, it is not known.
+page::Shown show_result(const TriMesh& mesh, SeenVertices seen,
+                        std::span<const PreparedView> views);
+
+inline constexpr std::size_t kShownTriangles = 200000;
+inline constexpr std::size_t kPictureBytes = 480000;
+inline constexpr int kMostPictures = 240;
+
+}  // namespace photohull::pipeline

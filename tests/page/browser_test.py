@@ -1,0 +1,248 @@
+#!/usr/bin/env python3
+"""Opens pages of reports in a headless Chromium: browser_test.py WRITE_SAMPLE_PAGE PHOTOHULL SCENE
+
+One page is of a result that nobody made, whose names want to be markup; the other of a small reconstruction of the scene. Of
+each: nothing in the console, nothing loaded from elsewhere, the model in the picture, and controls that change it. Ends with 77
+where there is no Chromium (CHROMIUM names another program than chromium)."""
+import os
+import shlex
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+import zlib
+from pathlib import Path
+from typing import ClassVar
+
+from browser import Page
+
+NO_BROWSER = 77
+WINDOW = (480, 640)  # pixels
+WRITE_SAMPLE, PHOTOHULL, SCENE = sys.argv[1:4] if len(sys.argv) == 4 else ("", "", "")
+CHROMIUM = shutil.which(os.environ.get("CHROMIUM", "chromium"))
+
+
+class Picture:
+    """Pixels of a PNG as Chromium writes it: 8 bits a channel, not interlaced."""
+
+    def __init__(self, png: bytes) -> None:
+        at, packed = 8, b""
+        while at < len(png):
+            size, kind = struct.unpack(">I4s", png[at:at + 8])
+            if kind == b"IHDR":
+                self.width, self.height, depth, colours = struct.unpack(">IIBB", png[at + 8:at + 18])
+                assert depth == 8 and colours in (2, 6), (depth, colours)
+            if kind == b"IDAT":
+                packed += png[at + 8:at + 8 + size]
+            at += size + 12
+        step = 3 if colours == 2 else 4
+        data, row = zlib.decompress(packed), bytearray(self.width * step)
+        self.pixels: list[bytes] = []
+        for y in range(self.height):
+            start = y * (len(row) + 1)
+            row = self.unfiltered(data[start], bytearray(data[start + 1:start + 1 + len(row)]), row, step)
+            self.pixels += [bytes(row[x:x + 3]) for x in range(0, len(row), step)]
+
+    @staticmethod
+    def unfiltered(kind: int, row: bytearray, above: bytearray, step: int) -> bytearray:
+        for i in range(len(row)):
+            left, corner = (row[i - step], above[i - step]) if i >= step else (0, 0)
+            up = above[i]
+            if kind == 1:
+                guess = left
+            elif kind == 2:
+                guess = up
+            elif kind == 3:
+                guess = (left + up) // 2
+            elif kind == 4:
+                p = left + up - corner
+                guess = min((left, up, corner), key=lambda value: abs(p - value))
+            else:
+                guess = 0
+            row[i] = (row[i] + guess) & 255
+        return row
+
+
+def difference(one: Picture, other: Picture) -> float:
+    """Share of the pixels that differ clearly."""
+    assert (one.width, one.height) == (other.width, other.height)
+    far = sum(1 for a, b in zip(one.pixels, other.pixels) if max(abs(x - y) for x, y in zip(a, b)) > 24)
+    return far / len(one.pixels)
+
+
+class PageCase(unittest.TestCase):
+    page: ClassVar[Page]
+    path: ClassVar[Path]
+    folder: ClassVar[tempfile.TemporaryDirectory]
+
+    @classmethod
+    def write(cls, folder: Path) -> Path:
+        raise NotImplementedError
+
+    @classmethod
+    def setUpClass(cls) -> None:
+        cls.folder = tempfile.TemporaryDirectory(prefix="photohull_page_")
+        cls.path = cls.write(Path(cls.folder.name))
+        cls.page = Page(CHROMIUM)
+        cls.page.size(*WINDOW)
+        cls.page.prefers(still=True)
+        seconds = cls.page.load(cls.path)
+        print(f"{cls.__name__}: {cls.path.stat().st_size / 1e6:.2f} MB, ready after {seconds:.2f} s")
+
+    @classmethod
+    def tearDownClass(cls) -> None:
+        cls.page.close()
+        cls.folder.cleanup()
+
+    def tearDown(self) -> None:
+        self.assertEqual(self.page.errors, [])
+
+    def picture(self) -> Picture:
+        self.page.settle()
+        return Picture(self.page.screenshot("#viewport"))
+
+    def click(self, selector: str) -> None:
+        self.page.evaluate(f"document.querySelector('{selector}').click()")
+
+    def text(self, selector: str) -> str:
+        return self.page.evaluate(f"document.querySelector('{selector}').textContent")
+
+    def check_basics(self) -> None:
+        """The model is in the picture, and each switch changes it."""
+        self.click("#cameras")  # off
+        self.page.evaluate("document.getElementById('canvas').style.visibility = 'hidden'")
+        empty = self.picture()
+        self.page.evaluate("document.getElementById('canvas').style.visibility = ''")
+        shown = [self.picture()]
+        self.assertGreater(difference(shown[0], empty), 0.05)
+        for layer in ("clay", "confidence", "views", "disagreement"):
+            self.click(f"#layer-{layer}")
+            shown.append(self.picture())
+            for before in shown[:-1]:
+                self.assertGreater(difference(shown[-1], before), 0.02, layer)
+        self.assertIn("differ", self.text("#legend"))
+        self.click("#layer-colour")
+        self.assertLess(difference(self.picture(), shown[0]), 0.001)
+        self.click("#cameras")  # on
+        self.assertGreater(difference(self.picture(), shown[0]), 0.002)
+
+    def check_keys(self) -> None:
+        """The keyboard alone turns the model, flies to cameras and comes back."""
+        self.page.prefers(still=False)
+        self.addCleanup(self.page.prefers, still=True)
+        self.page.evaluate("document.getElementById('canvas').focus()")
+        self.page.press("Home")
+        start = self.picture()
+        self.page.press("ArrowLeft")
+        self.assertGreater(difference(self.picture(), start), 0.01)
+        self.page.press("Home")
+        self.assertLess(difference(self.picture(), start), 0.001)
+        self.page.press("PageDown")
+        self.page.settle()
+        self.assertEqual(self.page.evaluate("document.getElementById('camera').value"), "0")
+        self.assertFalse(self.page.evaluate("document.getElementById('photograph').hidden"))
+        self.page.press("Home")
+        self.assertLess(difference(self.picture(), start), 0.001)
+        self.page.press("PageUp")
+        self.page.settle()
+        self.assertNotEqual(self.page.evaluate("document.getElementById('camera').value"), "-1")
+        self.page.press("Escape")
+        self.page.settle()
+        self.assertEqual(self.page.evaluate("document.getElementById('camera').value"), "-1")
+        self.assertTrue(self.page.evaluate("document.getElementById('photograph').hidden"))
+
+    def check_loads_nothing(self) -> None:
+        own = self.path.absolute().as_uri()
+        others = [url for url in self.page.requests
+                  if url not in (own, "about:blank") and not url.startswith(("data:", "blob:"))]
+        self.assertEqual(others, [])
+
+
+class SamplePage(PageCase):
+    @classmethod
+    def write(cls, folder: Path) -> Path:
+        path = folder / "report.html"
+        subprocess.run([WRITE_SAMPLE, str(path)], check=True)
+        return path
+
+    def test_model_and_switches(self) -> None:
+        self.check_basics()
+
+    def test_keys(self) -> None:
+        self.check_keys()
+
+    def test_names_stay_text(self) -> None:
+        self.assertEqual(self.page.evaluate("document.querySelectorAll('script').length"), 4)
+        self.assertEqual(self.page.evaluate("document.querySelectorAll('img[src=x]').length"), 0)
+        self.assertIn("<img src=x onerror=alert(2)>", self.text("#details"))
+        self.assertIn("view2a</script><script>alert(1)</script>", self.text("#details"))
+        self.check_loads_nothing()
+
+    def test_worst_view_comes_first(self) -> None:
+        self.assertEqual(self.text(".rank tbody tr .link"), "view4.jpg")
+        self.assertEqual(self.text(".rank td.beyond"), "70 %")
+
+    def test_reason_leads_to_its_view_and_to_its_place(self) -> None:
+        self.click(".reasons li .link")
+        self.page.settle()
+        self.assertEqual(self.page.evaluate("document.getElementById('camera').value"), "2")
+        self.click(".reasons li:nth-child(2) .link")
+        self.assertTrue(self.page.evaluate("document.getElementById('layer-views').checked"))
+        self.click("#layer-colour")
+        self.page.evaluate("document.getElementById('camera').value = '-1'")
+        self.page.evaluate("document.getElementById('camera').dispatchEvent(new Event('change'))")
+
+    def test_blends_the_photograph_over_the_model(self) -> None:
+        """The camera's own picture of the model lies below its photograph, which is of one grey."""
+        self.click("#strip button:nth-child(6)")
+        for opacity, covered in ((100, True), (0, False)):
+            self.page.evaluate(f"document.getElementById('opacity').value = {opacity}")
+            self.page.evaluate("document.getElementById('opacity').dispatchEvent(new Event('input'))")
+            picture = self.picture()
+            middle = picture.pixels[picture.width * (picture.height // 2) + picture.width // 2]
+            grey = max(abs(value - 190) for value in middle) < 6
+            self.assertEqual(grey, covered, middle)
+        self.click("#strip button:nth-child(6)")
+
+    def test_fits_narrow_windows(self) -> None:
+        self.page.size(360, 740, 2, touch=True)
+        try:
+            self.page.settle()
+            self.assertLessEqual(self.page.evaluate("document.documentElement.scrollWidth"), 360)
+        finally:
+            self.page.size(*WINDOW)
+
+    def test_controls_have_names(self) -> None:
+        unnamed = self.page.evaluate(
+            "[...document.querySelectorAll('button, select, input')].filter(e => !(e.textContent.trim() || e.ariaLabel || "
+            "e.labels?.[0]?.textContent.trim())).map(e => e.outerHTML)")
+        self.assertEqual(unnamed, [])
+
+
+class ReconstructionPage(PageCase):
+    @classmethod
+    def write(cls, folder: Path) -> Path:
+        out = folder / "it's <b>"
+        subprocess.run([PHOTOHULL, "reconstruct", SCENE, "--out", str(out), "--quality", "draft", "--resolution", "64"],
+                       check=True, capture_output=True)
+        return out / "report.html"
+
+    def test_model_and_switches(self) -> None:
+        self.check_basics()
+
+    def test_keys(self) -> None:
+        self.check_keys()
+
+    def test_command_makes_it_again(self) -> None:
+        self.assertEqual(shlex.split(self.text("pre code")),
+                         ["photohull", "reconstruct", SCENE, "--out", str(self.path.parent), "--quality", "draft", "--resolution", "64"])
+        self.check_loads_nothing()
+
+
+if __name__ == "__main__":
+    if not CHROMIUM:
+        print("There is no chromium here; scripts/test.sh installs it.")
+        sys.exit(NO_BROWSER)
+    unittest.main(argv=sys.argv[:1], verbosity=2)
