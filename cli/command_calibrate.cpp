@@ -7,6 +7,7 @@
 
 #include "calib/calibrate_rig.h"
 #include "calib/judge_calibration.h"
+#include "calib/turntable_angles.h"
 #include "calibration_json.h"
 #include "cli/front/command_table.h"
 #include "commands.h"
@@ -15,7 +16,6 @@
 #include "io/board_images.h"
 #include "io/image_file.h"
 #include "io/read_lens.h"
-#include "number_list.h"
 #include "option_flags.h"
 #include "other_board.h"
 #include "terminal_progress.h"
@@ -28,8 +28,8 @@ namespace fs = std::filesystem;
 struct Arguments {
   std::vector<std::string> images;
   std::string out, coverage;
-  std::optional<std::string> rig, angles, lens_from;
-  std::optional<double> step;
+  std::optional<std::string> rig, lens_from;
+  TurntableAngles angles;
   BoardSpec spec;
   CalibrateOptions options;
   bool json = false;
@@ -56,14 +56,9 @@ class BoardFinder {
 
 /// Degrees of each picture; none where they are to be found.
 std::vector<double> angles_of(const Arguments& a, std::size_t pictures) {
-  if (a.step && a.angles) throw UsageError("--step and --angles: give one of them");
-  if ((a.step || a.angles) && !a.options.turntable)
+  if (a.angles.given() && !a.options.turntable)
     throw UsageError("--step and --angles are for --turntable");
-  if (a.angles) return parse_numbers("--angles", *a.angles);
-  std::vector<double> angles;
-  if (a.step)
-    for (std::size_t i = 0; i < pictures; ++i) angles.push_back(double(i) * *a.step);
-  return angles;
+  return a.angles.of(pictures);
 }
 
 void write_result(const Arguments& a, const std::string& text) {
@@ -195,10 +190,7 @@ void add_calibrate(CLI::App& app) {
                 "scene of one lens in any format")
       ->excludes(lens);
   add_flags_of(*c, a->options, {"turntable"});
-  c->add_option("--step", a->step,
-                "turntable: degrees from each picture to the next (in natural order of names), "
-                "where they are known");
-  c->add_option("--angles", a->angles, "turntable: degrees of each picture, \"0 7.5 20 ...\"");
+  add_flags_of(*c, a->angles);
   c->add_option("--rig", a->rig,
                 "several cameras that see the board at the same moments: how their pictures are "
                 "called below the folder given, such as \"{camera}/{moment}\"");

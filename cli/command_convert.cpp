@@ -1,11 +1,12 @@
 #include <cstdio>
 #include <memory>
 
+#include "calib/turntable_angles.h"
 #include "cli/front/command_table.h"
 #include "commands.h"
 #include "core/error.h"
 #include "io/write_scene.h"
-#include "number_list.h"
+#include "option_flags.h"
 #include "pipeline/convert.h"
 #include "scene_arguments.h"
 #include "terminal_progress.h"
@@ -16,21 +17,20 @@ namespace {
 struct Arguments {
   SceneArguments scene;
   std::string to, out;
-  std::optional<std::string> angles, moment;
-  std::optional<double> step;
+  TurntableAngles angles;
+  std::optional<std::string> moment;
   bool undistort = false;
 };
 
 io::LoadSceneOptions options_of(const Arguments& a) {
   a.scene.check();
   io::LoadSceneOptions options = a.scene.load;
-  if (!a.step && !a.angles && !a.moment) return options;
+  if (!a.angles.given() && !a.moment) return options;
   if (options.images.empty())
     throw UsageError("--step, --angles and --moment are for calibrations with --images");
-  if (a.step && a.angles) throw UsageError("--step and --angles: give one of them");
-  options.calibrated = io::CalibratedImages{options.images, a.step, {}, a.moment.value_or("")};
+  options.calibrated =
+      io::CalibratedImages{options.images, a.angles.step, a.angles.of(0), a.moment.value_or("")};
   options.images.clear();
-  if (a.angles) options.calibrated->angles = parse_numbers("--angles", *a.angles);
   return options;
 }
 
@@ -73,8 +73,7 @@ void add_convert(CLI::App& app) {
           "folder of the photographs, where they are not where the scene has them; of a file of "
           "'photohull calibrate' those of the object");
   c->add_option("--moment", a->moment, "rig: which of each camera's photographs, by name");
-  c->add_option("--step", a->step, "turntable: degrees from each photograph to the next");
-  c->add_option("--angles", a->angles, "turntable: degrees of each photograph, \"0 7.5 20 ...\"");
+  add_flags_of(*c, a->angles);
   c->footer(
       "Cameras, box and sparse points are written in the format's own axes and pixel convention; "
       "images stay where they are, unless the format wants them at a place of its own. What a "

@@ -7,6 +7,8 @@
 #include "cli/front/command_table.h"
 #include "commands.h"
 #include "core/error.h"
+#include "gpu/device_options.h"
+#include "option_flags.h"
 #include "synth/synthesize.h"
 #include "terminal_progress.h"
 
@@ -14,11 +16,11 @@ namespace photohull::cli {
 namespace {
 
 struct Arguments {
-  std::string spec, out, device = "auto";
+  std::string spec, out;
+  gpu::DeviceOptions device;
   std::optional<std::string> size;
   std::optional<int> views;
   std::optional<std::uint64_t> seed;
-  int threads = 0;
   bool list = false;
 };
 
@@ -53,14 +55,13 @@ void run(const Arguments& a) {
   if (a.spec.empty())
     throw UsageError("a spec is missing: give a JSON file, or --list; see --help");
   if (a.out.empty()) throw UsageError("--out is missing: give the folder for the scene");
-  if (a.threads < 0 || a.threads > 4096)
-    throw UsageError(concat("--threads ", a.threads, ": expected a number from 0 to 4096"));
   std::optional<tbb::global_control> limit;
-  if (a.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, a.threads);
+  if (a.device.threads > 0)
+    limit.emplace(tbb::global_control::max_allowed_parallelism, a.device.threads);
   const synth::Spec spec = read_spec(a);
   TerminalProgress progress(synth::total_weight(spec));
   const synth::SynthesizedScene made =
-      synth::synthesize(spec, a.out, progress, a.device, a.threads);
+      synth::synthesize(spec, a.out, progress, a.device.device, a.device.threads);
   progress.finish();
   std::printf("%d views of %zu triangles, %g across; the object covers up to %.0f %% of a frame\n",
               made.views, made.triangles, made.diagonal, 100 * made.largest_fill);
@@ -80,15 +81,12 @@ void add_synthesize(CLI::App& app) {
   c->add_option("--views", a->views, "number of views in place of the spec's");
   c->add_option("--size", a->size, "image size in place of the spec's, such as 640x480");
   c->add_option("--seed", a->seed, "seed of everything random in place of the spec's");
-  c->add_option("--device", a->device,
-                "for shadows by maps (light.shadow_test): auto, software, or an index from "
-                "'photohull devices'")
-      ->capture_default_str();
-  c->add_option("--threads", a->threads, "threads to use (0: one a core)")->capture_default_str();
+  add_flags_of(*c, a->device);
   c->add_flag("--list", a->list, "print the built-in shapes with their parameters and stop");
   c->footer(
       "Writes images, masks, depth and normal maps, the exact mesh gt.ply, gt_visible.ply, cameras "
-      "in every format and spec.json. The same spec gives the same bytes.\n\n"
+      "in every format and spec.json. The same spec gives the same bytes. Shadows by maps "
+      "(light.shadow_test) are drawn on the device.\n\n"
       "Examples:\n"
       "  photohull synthesize datasets/synthetic/block.json --out out/block\n"
       "  photohull synthesize datasets/synthetic/plant.json --out out/plant --size 1280x960\n"

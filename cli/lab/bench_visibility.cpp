@@ -12,6 +12,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "gpu/context.h"
+#include "gpu/device_options.h"
 #include "io/image_file.h"
 #include "lab/chart/png.h"
 #include "lab/chart/sampling_chart.h"
@@ -29,10 +30,10 @@ using visibility::VisibilityErrors;
 constexpr int kCropEdge = 220;  // pixels of a picture of errors
 
 struct Arguments {
-  std::string json, out, device = "auto";
+  std::string json, out;
+  gpu::DeviceOptions device;
   visibility::StudyOptions options;
   bool quick = false;
-  int threads = 0;
 };
 
 double rounded(double value) { return std::round(value * 1e4) / 1e4; }
@@ -174,7 +175,7 @@ void run_visibility(Arguments a) {
     a.options.repeats = 1;
   }
   a.options.validate();
-  const auto context = gpu::Context::create(a.device, a.threads);
+  const auto context = gpu::Context::create(a.device.device, a.device.threads);
   TerminalProgress progress(1);
   progress.stage("visibility", 1);
   const Study study = study_visibility(*context, a.options, progress);
@@ -202,9 +203,7 @@ void add_bench_visibility(CLI::App& bench) {
   s->add_option("--out", a->out, "folder for visibility.json, a plot and crops of pictures");
   add_flags_of(*s, a->options, {"scenes", "resolutions", "techniques", "repeats"});
   s->add_flag("--quick", a->quick, "one small scene and map: shows that all works, no more");
-  s->add_option("--device", a->device, "auto, software, or an index from 'photohull devices'")
-      ->capture_default_str();
-  s->add_option("--threads", a->threads, "threads to use (0: one a core)")->capture_default_str();
+  add_flags_of(*s, a->device);
   s->footer(
       "Truth is by exact rays from the viewpoint to what a second camera sees. Times on software "
       "devices\n"

@@ -14,6 +14,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "gpu/context.h"
+#include "gpu/device_options.h"
 #include "lab/chart/png.h"
 #include "lab/chart/sampling_chart.h"
 #include "lab/chart/svg_renderer.h"
@@ -27,9 +28,9 @@ using projtex::StudyCell;
 using projtex::SweepRate;
 
 struct Arguments {
-  std::string json, out, device = "auto";
+  std::string json, out;
+  gpu::DeviceOptions device;
   projtex::StudyOptions options;
-  int threads = 0;
 };
 
 struct Results {
@@ -136,7 +137,7 @@ void run_sampling(const Arguments& a) {
   Results results;
   results.options = a.options;
   results.options.validate();
-  const auto context = gpu::Context::create(a.device, a.threads);
+  const auto context = gpu::Context::create(a.device.device, a.device.threads);
   results.device = context->device().renderer;
   TerminalProgress progress(10);
   progress.stage("samplers", 9);
@@ -165,9 +166,7 @@ void add_bench(CLI::App& app) {
   s->add_option("--json", a->json, "file for all figures");
   s->add_option("--out", a->out, "folder for sampling.json and a plot as SVG and PNG");
   add_flags_of(*s, a->options);
-  s->add_option("--device", a->device, "auto, software, or an index from 'photohull devices'")
-      ->capture_default_str();
-  s->add_option("--threads", a->threads, "threads to use (0: one a core)")->capture_default_str();
+  add_flags_of(*s, a->device);
   s->footer(
       "Errors are against the exact integral of the image over the projected square, in linear "
       "light,\n"

@@ -2,10 +2,12 @@
 #include "cameras/bundle.h"
 
 #include <ceres/ceres.h>
-#include <ceres/rotation.h>
 
-#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 #include <memory>
+
+#include "cameras/moved_camera.h"
 
 namespace photohull {
 namespace {
@@ -17,137 +19,89 @@ constexpr double kFar = 1;
 constexpr int kIterations = 12, kIterationsFromFar = 30;
 constexpr double kSettled = 1e-5, kSettledFromFar = 1e-7;
 
-/// A camera's change: a turn about the object's middle and a move, both in its own frame, in units
-/// that move the object by about a pixel each.
-struct Motion {
-  glm::dvec3 middle{0.0};  ///< of the object, in the camera's frame
-  double turn = 1;         ///< radians a unit
-  double move = 1;         ///< world units a unit
-  Camera camera;
+using Unit6 = std::array<double, 6>;
 
-  Motion(const Camera& c, const glm::dvec3& world) : middle(c.to_camera(world)), camera(c) {
-    const double depth = std::max(std::abs(middle.z), 1e-9);
-    turn = 4 / camera.intrinsics.fx;
-    move = depth / camera.intrinsics.fx;
-  }
+/// What an adjustment moves: its cameras and points, and what all cameras share. `cameras` are
+/// moved by `poses`, once for all residuals.
+struct Unknowns : ceres::EvaluationCallback {
+  std::vector<Motion> motions;
+  std::vector<Unit6> poses;
+  std::vector<MovedCamera> cameras;
+  std::vector<glm::dvec3> points;
+  SharedUnknowns shared{0, 0, 0};
 
-  template <typename T>
-  void apply(const T* unit, const T* point, T* result) const {
-    const T turns[3] = {unit[0] * turn, unit[1] * turn, unit[2] * turn};
-    const T arm[3] = {point[0] - middle.x, point[1] - middle.y, point[2] - middle.z};
-    ceres::AngleAxisRotatePoint(turns, arm, result);
-    for (int i = 0; i < 3; ++i) result[i] += middle[i] + unit[3 + i] * move;
-  }
-
-  Camera moved(const double* unit) const {
-    Camera result = camera;
-    const glm::dvec3 turns = turn * glm::dvec3(unit[0], unit[1], unit[2]);
-    double rotation[9];
-    ceres::AngleAxisToRotationMatrix(&turns.x, rotation);  // by columns, as glm
-    glm::dmat3 r;
-    for (int i = 0; i < 9; ++i) r[i / 3][i % 3] = rotation[i];
-    Pose& pose = result.cam_from_world;
-    pose.rotation = r * pose.rotation;
-    pose.translation =
-        r * (pose.translation - middle) + middle + move * glm::dvec3(unit[3], unit[4], unit[5]);
-    return result;
+  void PrepareForEvaluation(bool, bool new_point) override {
+    if (!new_point) return;
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      cameras[i] = MovedCamera(motions[i], poses[i].data());
   }
 };
 
-/// Focal factor's logarithm and principal point's offset in units of a pixel or so.
-struct Shared {
-  static constexpr double kFocal = 1e-3;
+/// Weighted derivatives of two residuals to where Ceres wants them, row by row.
+template <std::size_t N>
+void put(const std::array<std::array<double, N>, 2>& rows, double weight, double* to) {
+  if (!to) return;
+  for (const auto& row : rows)
+    for (const double value : row) *to++ = weight * value;
+}
 
-  template <typename T>
-  static T focal(const T* shared) {
-    using std::exp;
-    return exp(shared[0] * kFocal);
-  }
-};
+/// Of a pose, a point, and what all cameras share.
+class TrackCost : public ceres::SizedCostFunction<2, 6, 3, 3> {
+ public:
+  TrackCost(const Unknowns& all, int view, glm::dvec2 pixel, double weight)
+      : all_(all), view_(std::size_t(view)), pixel_(pixel), weight_(weight) {}
 
-struct TrackResidual {
-  const Motion& motion;
-  glm::dvec2 pixel;
-  double weight;
-
-  template <typename T>
-  bool operator()(const T* pose, const T* point, const T* shared, T* residual) const {
-    const Pose& base = motion.camera.cam_from_world;
-    T start[3], p[3];
-    for (int i = 0; i < 3; ++i)
-      start[i] = point[0] * base.rotation[0][i] + point[1] * base.rotation[1][i] +
-                 point[2] * base.rotation[2][i] + base.translation[i];
-    motion.apply(pose, start, p);
-    if (!(p[2] > 0.0)) return false;
-    const Intrinsics& k = motion.camera.intrinsics;
-    const T f = Shared::focal(shared), x = p[0] / p[2], y = p[1] / p[2];
-    residual[0] = weight * (f * (k.fx * x + k.skew * y) + k.cx + shared[1] - pixel.x);
-    residual[1] = weight * (f * k.fy * y + k.cy + shared[2] - pixel.y);
+  bool Evaluate(double const* const* unknowns, double* residuals,
+                double** jacobians) const override {
+    const double *point = unknowns[1], *shared = unknowns[2];
+    TrackDerivatives by;
+    glm::dvec2 residual;
+    if (!track_residual(all_.cameras[view_], {shared[0], shared[1], shared[2]},
+                        {point[0], point[1], point[2]}, pixel_, residual,
+                        jacobians ? &by : nullptr))
+      return false;
+    residuals[0] = weight_ * residual.x;
+    residuals[1] = weight_ * residual.y;
+    if (!jacobians) return true;
+    put(by.by_pose, weight_, jacobians[0]);
+    put(by.by_point, weight_, jacobians[1]);
+    put(by.by_shared, weight_, jacobians[2]);
     return true;
   }
+
+ private:
+  const Unknowns& all_;
+  std::size_t view_;
+  glm::dvec2 pixel_;
+  double weight_;
 };
 
-/// Distances of the tangents' pixels from each other's epipolar lines.
-struct TangentResidual {
-  const Motion &a, &b;
-  FrontierPair pair;
-  double weight;
+/// Of two poses, and what all cameras share.
+class TangentCost : public ceres::SizedCostFunction<2, 6, 6, 3> {
+ public:
+  TangentCost(const Unknowns& all, const FrontierPair& pair, double weight)
+      : all_(all), pair_(pair), weight_(weight) {}
 
-  template <typename T>
-  using V = Eigen::Matrix<T, 3, 1>;
-
-  /// Ray of a pixel in the camera's own frame as it was given, and the camera's centre, both
-  /// brought into the world.
-  template <typename T>
-  static void look(const Motion& m, const T* unit, const T* shared, const glm::dvec2& pixel,
-                   V<T>& center, V<T>& ray, Eigen::Matrix<T, 3, 3>& world_from_cam) {
-    const Intrinsics& k = m.camera.intrinsics;
-    const T f = Shared::focal(shared);
-    const T y = (pixel.y - k.cy - shared[2]) / (f * k.fy);
-    const T x = (pixel.x - k.cx - shared[1] - f * k.skew * y) / (f * k.fx);
-    const T turns[3] = {unit[0] * m.turn, unit[1] * m.turn, unit[2] * m.turn};
-    T rotation[9];
-    ceres::AngleAxisToRotationMatrix(turns, rotation);
-    const Eigen::Map<const Eigen::Matrix<T, 3, 3>> turn(rotation);
-    Eigen::Matrix<T, 3, 3> base;
-    V<T> middle, shift;
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) base(i, j) = T(m.camera.cam_from_world.rotation[j][i]);
-      middle[i] = T(m.middle[i]);
-      shift[i] = turn(i, 0) * (m.camera.cam_from_world.translation[0] - m.middle[0]) +
-                 turn(i, 1) * (m.camera.cam_from_world.translation[1] - m.middle[1]) +
-                 turn(i, 2) * (m.camera.cam_from_world.translation[2] - m.middle[2]) + m.middle[i] +
-                 unit[3 + i] * m.move;
-    }
-    world_from_cam = (turn * base).transpose();
-    center = -(world_from_cam * shift);
-    ray = world_from_cam * V<T>(x, y, T(1));
-  }
-
-  /// Distance in pixels, to first order, of a pixel from a plane through its camera.
-  template <typename T>
-  static T distance(const Motion& m, const V<T>& plane, const V<T>& ray,
-                    const Eigen::Matrix<T, 3, 3>& world_from_cam, const T& f) {
-    using std::sqrt;
-    const V<T> n = world_from_cam.transpose() * plane;
-    const T gx = n[0] / (f * m.camera.intrinsics.fx);
-    const T gy = (n[1] - n[0] * m.camera.intrinsics.skew / m.camera.intrinsics.fx) /
-                 (f * m.camera.intrinsics.fy);
-    return plane.dot(ray) / sqrt(gx * gx + gy * gy + 1e-300);
-  }
-
-  template <typename T>
-  bool operator()(const T* pose_a, const T* pose_b, const T* shared, T* residual) const {
-    V<T> center_a, center_b, ray_a, ray_b;
-    Eigen::Matrix<T, 3, 3> from_a, from_b;
-    look(a, pose_a, shared, pair.pixel_a, center_a, ray_a, from_a);
-    look(b, pose_b, shared, pair.pixel_b, center_b, ray_b, from_b);
-    const V<T> base = center_b - center_a;
-    const T f = Shared::focal(shared);
-    residual[0] = weight * distance<T>(a, V<T>(base.cross(ray_b)), ray_a, from_a, f);
-    residual[1] = weight * distance<T>(b, V<T>(base.cross(ray_a)), ray_b, from_b, f);
+  bool Evaluate(double const* const* unknowns, double* residuals,
+                double** jacobians) const override {
+    const double* shared = unknowns[2];
+    TangentDerivatives by;
+    const glm::dvec2 residual = tangent_residual(
+        all_.cameras[std::size_t(pair_.view_a)], all_.cameras[std::size_t(pair_.view_b)],
+        {shared[0], shared[1], shared[2]}, pair_, jacobians ? &by : nullptr);
+    residuals[0] = weight_ * residual.x;
+    residuals[1] = weight_ * residual.y;
+    if (!jacobians) return true;
+    put(by.by_pose_a, weight_, jacobians[0]);
+    put(by.by_pose_b, weight_, jacobians[1]);
+    put(by.by_shared, weight_, jacobians[2]);
     return true;
   }
+
+ private:
+  const Unknowns& all_;
+  FrontierPair pair_;
+  double weight_;
 };
 
 /// Holds a camera near where it was given, by springs in pixels.
@@ -161,56 +115,22 @@ struct PriorResidual {
   }
 };
 
-using Poses = std::vector<std::array<double, 6>>;
-
-/// Where the cameras start, as motions from the given poses. The motions take the present
-/// intrinsics.
-Poses start_poses(std::span<const Camera> start, std::vector<Motion>& motions) {
-  Poses poses(motions.size());
-  for (std::size_t i = 0; i < motions.size(); ++i) {
-    Motion& m = motions[i];
-    m.camera.intrinsics = start[i].intrinsics;
-    const glm::dmat3 r =
-        start[i].cam_from_world.rotation * glm::transpose(m.camera.cam_from_world.rotation);
-    double columns[9];
-    for (int k = 0; k < 9; ++k) columns[k] = r[k / 3][k % 3];
-    ceres::RotationMatrixToAngleAxis(columns, poses[i].data());
-    const glm::dvec3 shift = start[i].cam_from_world.translation -
-                             (r * (m.camera.cam_from_world.translation - m.middle) + m.middle);
-    for (int k = 0; k < 3; ++k) {
-      poses[i][k] /= m.turn;
-      poses[i][3 + k] = shift[k] / m.move;
-    }
-  }
-  return poses;
-}
-
-/// What an adjustment moves: its cameras and points, and what all cameras share.
-struct Unknowns {
-  std::vector<Motion> motions;
-  Poses poses;
-  std::vector<glm::dvec3> points;
-  std::array<double, 3>& shared;
-};
-
 void add_residuals(const BundleInput& input, Unknowns& u, ceres::Problem& problem) {
   constexpr double kTail = 3;
+  // One each for all residuals, which the problem owns.
+  auto* const loss = new ceres::CauchyLoss(kTail);
+  auto* const prior =
+      new ceres::AutoDiffCostFunction<PriorResidual, 6, 6>(new PriorResidual{input.prior_sigma});
   for (std::size_t t = 0; t < u.points.size(); ++t)
     for (const Observation& o : input.tracks[t].observations)
-      problem.AddResidualBlock(
-          new ceres::AutoDiffCostFunction<TrackResidual, 2, 6, 3, 3>(
-              new TrackResidual{u.motions[o.view], o.pixel, 1 / input.track_sigma}),
-          new ceres::CauchyLoss(kTail), u.poses[o.view].data(), &u.points[t].x, u.shared.data());
+      problem.AddResidualBlock(new TrackCost(u, o.view, o.pixel, 1 / input.track_sigma), loss,
+                               u.poses[std::size_t(o.view)].data(), &u.points[t].x,
+                               u.shared.data());
   for (const FrontierPair& pair : input.tangents)
-    problem.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<TangentResidual, 2, 6, 6, 3>(new TangentResidual{
-            u.motions[pair.view_a], u.motions[pair.view_b], pair, 1 / input.tangent_sigma}),
-        new ceres::CauchyLoss(kTail), u.poses[pair.view_a].data(), u.poses[pair.view_b].data(),
-        u.shared.data());
-  for (auto& pose : u.poses)
-    problem.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<PriorResidual, 6, 6>(new PriorResidual{input.prior_sigma}),
-        nullptr, pose.data());
+    problem.AddResidualBlock(new TangentCost(u, pair, 1 / input.tangent_sigma), loss,
+                             u.poses[std::size_t(pair.view_a)].data(),
+                             u.poses[std::size_t(pair.view_b)].data(), u.shared.data());
+  for (auto& pose : u.poses) problem.AddResidualBlock(prior, nullptr, pose.data());
 }
 
 /// Holds what is not to move.
@@ -241,11 +161,18 @@ void order_unknowns(Unknowns& u, const ceres::Problem& problem, ceres::Solver::O
 
 std::vector<Camera> adjust_bundle(const BundleInput& input, std::span<const Camera> start,
                                   std::span<const Camera> prior, std::array<double, 3>& shared) {
-  shared = {0, 0, 0};
-  Unknowns u{{}, {}, input.points, shared};
-  for (const Camera& camera : prior) u.motions.emplace_back(camera, input.middle);
-  u.poses = start_poses(start, u.motions);
-  ceres::Problem problem;
+  Unknowns u;
+  u.points = input.points;
+  for (std::size_t i = 0; i < prior.size(); ++i) {
+    Motion motion(prior[i], input.middle);
+    motion.camera.intrinsics = start[i].intrinsics;
+    u.poses.push_back(motion.unknowns_to(start[i].cam_from_world));
+    u.motions.push_back(motion);
+  }
+  u.cameras.resize(prior.size());
+  ceres::Problem::Options evaluation;
+  evaluation.evaluation_callback = &u;
+  ceres::Problem problem(evaluation);
   add_residuals(input, u, problem);
   hold(input, u, problem);
   ceres::Solver::Options options;
@@ -263,15 +190,15 @@ std::vector<Camera> adjust_bundle(const BundleInput& input, std::span<const Came
     shared = {1, 0, 0};
     return result;
   }
-  const double focal = Shared::focal(shared.data());
+  const double focal = std::exp(u.shared[0] * kFocalUnit);
   for (std::size_t i = 0; i < result.size(); ++i) {
     if (std::find(input.held.begin(), input.held.end(), int(i)) == input.held.end())
-      result[i] = u.motions[i].moved(u.poses[i].data());
+      result[i].cam_from_world = MovedCamera(u.motions[i], u.poses[i].data()).pose;
     Intrinsics& k = result[i].intrinsics;
     k.fx *= focal, k.fy *= focal, k.skew *= focal;
-    k.cx += shared[1], k.cy += shared[2];
+    k.cx += u.shared[1], k.cy += u.shared[2];
   }
-  shared[0] = focal;
+  shared = {focal, u.shared[1], u.shared[2]};
   return result;
 }
 

@@ -71,18 +71,27 @@ class EpipolarLines {
 std::vector<int> best_matches(const Features& a, const Features& b, const Camera& camera_a,
                               const Camera& camera_b, const TrackOptions& options) {
   constexpr double kSamePlace = 3;  // pixels: features so near each other do not compete
+  const float epipolar = float(options.epipolar);
   const EpipolarLines lines(camera_a, camera_b);
+  const std::size_t count = b.pixels.size();
+  std::vector<float> x(count), y(count), off(count);
+  for (std::size_t j = 0; j < count; ++j) {
+    x[j] = float(b.pixels[j].x);
+    y[j] = float(b.pixels[j].y);
+  }
   std::vector<int> best(a.pixels.size(), -1);
+  struct Candidate {
+    float distance;  // of the descriptors
+    int feature;
+  };
+  std::vector<Candidate> found;
   for (std::size_t i = 0; i < a.pixels.size(); ++i) {
-    const glm::dvec3 line = lines(a.pixels[i]);
-    struct Candidate {
-      float distance;  // of the descriptors
-      int feature;
-    };
-    std::vector<Candidate> found;
-    for (std::size_t j = 0; j < b.pixels.size(); ++j) {
-      const glm::dvec2& q = b.pixels[j];
-      if (std::abs(line.x * q.x + line.y * q.y + line.z) > options.epipolar) continue;
+    const glm::vec3 line(lines(a.pixels[i]));
+    for (std::size_t j = 0; j < count; ++j)
+      off[j] = std::abs(line.x * x[j] + line.y * y[j] + line.z);
+    found.clear();
+    for (std::size_t j = 0; j < count; ++j) {
+      if (!(off[j] <= epipolar)) continue;
       const float squared = cv::hal::normL2Sqr_(
           a.descriptors.ptr<float>(int(i)), b.descriptors.ptr<float>(int(j)), a.descriptors.cols);
       found.push_back({std::sqrt(squared), int(j)});
@@ -245,7 +254,7 @@ std::vector<Track> find_tracks(std::span<const PreparedView> views, const TrackO
   std::vector<Features> features(views.size());
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
     if (!progress.cancelled())
-      features[i] = search ? detect_features(views[i], options.features)
+      features[i] = search ? detect_features(views[i], options.features, FeatureSearch::kQuick)
                            : Features{{}, {}, smoothed(grey_image(views[i].image))};
   });
   progress.check_cancelled();

@@ -10,6 +10,8 @@
 namespace photohull {
 namespace {
 
+constexpr int kEnough = 200;  // features that a quick search must find
+
 /// Where the mask has something, and a margin: the border disturbs features near it.
 cv::Rect around_foreground(const cv::Mat& mask) {
   constexpr int kMargin = 48;  // pixels
@@ -41,7 +43,7 @@ Features detect_smaller(const cv::Mat& image, const cv::Mat& mask, int times, in
 
 }  // namespace
 
-Features detect_features(const PreparedView& view, int count) {
+Features detect_features(const PreparedView& view, int count, FeatureSearch search) {
   constexpr int kLongest = 1600;  // pixels
   GreyImage grey = grey_image(view.image);
   cv::Mat image, mask;
@@ -55,8 +57,10 @@ Features detect_features(const PreparedView& view, int count) {
     mask = mask(part);
   }
   image = image(part);
-  const int times = (std::max(part.width, part.height) + kLongest - 1) / kLongest;
-  Features found = detect_smaller(image, mask, std::max(times, 1), count);
+  const int times = std::max(1, (std::max(part.width, part.height) + kLongest - 1) / kLongest);
+  Features found;
+  if (search == FeatureSearch::kQuick) found = detect_smaller(image, mask, 2 * times, count);
+  if (int(found.pixels.size()) < kEnough) found = detect_smaller(image, mask, times, count);
   for (glm::dvec2& pixel : found.pixels) pixel += glm::dvec2(part.x, part.y);
   found.grey = smoothed(std::move(grey));
   return found;

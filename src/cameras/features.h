@@ -15,9 +15,14 @@ struct Features {
   GreyImage grey;       ///< smoothed a little, for align_patch
 };
 
+enum class FeatureSearch {
+  kFull,
+  kQuick,  ///< in an image of half the size, where that has 200 or more
+};
+
 /// The `count` strongest features, on the object where the view has a mask. Of large objects,
 /// beyond 1600 pixels, in an image that is smaller: places are refined in the image itself
 /// (align_patch).
-Features detect_features(const PreparedView& view, int count);
+Features detect_features(const PreparedView& view, int count, FeatureSearch search);
 
 }  // namespace photohull

@@ -57,7 +57,8 @@ std::vector<PairMatches> match_without_cameras(std::span<const PreparedView> vie
                                                Progress& progress) {
   std::vector<Features> features(views.size());
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
-    if (!progress.cancelled()) features[i] = detect_features(views[i], kFeatures);
+    if (!progress.cancelled())
+      features[i] = detect_features(views[i], kFeatures, FeatureSearch::kFull);
   });
   progress.check_cancelled();
   std::vector<PairMatches> found(pairs.size());

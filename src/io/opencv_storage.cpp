@@ -3,6 +3,7 @@
 // distortion_coefficients, image_width, image_height, R, t, and image), or EasyMocap's pair
 // intri.yml (K_NAME, dist_NAME) and extri.yml (Rot_NAME or the vector R_NAME, T_NAME).
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <opencv2/core/core.hpp>
@@ -34,11 +35,14 @@ auto guarded(const fs::path& file, Call&& call) {
   }
 }
 
-/// OpenCV's YAML parser does not come to an end on some files of several documents.
+/// OpenCV's YAML parser does not come to an end on some files in which something follows what it
+/// takes for the document: other documents, and what stands further left than a map's first key or
+/// after a list in brackets. Files that OpenCV writes are one map, whose keys begin their lines.
 void check_single_document(const std::string& text, const fs::path& file) {
   constexpr std::size_t kFirstLines = 2;  // %YAML:1.0 and ---
   if (!text.starts_with('%')) return;
   std::size_t line = 0;
+  bool in_map = false;
   for (std::size_t at = 0; at < text.size(); ++line) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
     const std::string_view content = std::string_view(text).substr(at, end - at);
@@ -48,6 +52,14 @@ void check_single_document(const std::string& text, const fs::path& file) {
                         content.find('%') != std::string_view::npos)
       throw Error(concat(file.string(), " line ", line + 1,
                          ": must be one YAML document that opens with %YAML:1.0 and ---"));
+    const std::string_view bare = trimmed(content);
+    if (line > 0 && !in_map && !marks && !bare.empty() && bare[0] != '#') {
+      const unsigned char first = static_cast<unsigned char>(content[0]);
+      if (!std::isalpha(first) && first != '_')
+        throw Error(concat(file.string(), " line ", line + 1,
+                           ": must be a key that begins the line, as 'cameras:' does"));
+      in_map = true;
+    }
     at = end + 1;
   }
 }

@@ -4,6 +4,20 @@
 #include <cmath>
 
 namespace photohull {
+namespace {
+
+/// Does the image hold the patch, which is a parallelogram, and a pixel around?
+bool holds_patch(const GreyImage& image, const PatchPlace& place, double radius) {
+  for (const double y : {-radius, radius})
+    for (const double x : {-radius, radius}) {
+      const glm::dvec2 corner = place.center + place.shape * glm::dvec2(x, y);
+      if (!image.holds(corner.x - 1, corner.y - 1) || !image.holds(corner.x + 1, corner.y + 1))
+        return false;
+    }
+  return true;
+}
+
+}  // namespace
 
 std::optional<AlignedPatch> align_patch(const GreyImage& image, const glm::dvec2& source,
                                         const GreyImage& other, const PatchPlace& start, int radius,
@@ -14,23 +28,27 @@ std::optional<AlignedPatch> align_patch(const GreyImage& image, const glm::dvec2
   PatchPlace place = start;
   double gain = 1, offset = 0, agreement = 0;
   bool converged = false;
+  const double r = radius;
+  if (!image.holds(source.x - r, source.y - r) || !image.holds(source.x + r, source.y + r))
+    return std::nullopt;
+  std::vector<double> values;  // of the source's pixels, row by row
+  for (int y = -radius; y <= radius; ++y)
+    for (int x = -radius; x <= radius; ++x) values.push_back(image.at(source.x + x, source.y + y));
   for (int step = 0; step <= kSteps && !converged; ++step) {
     Eigen::Matrix<double, 8, 8> normal = Eigen::Matrix<double, 8, 8>::Zero();
     Vector right = Vector::Zero();
+    if (!holds_patch(other, place, r)) return std::nullopt;
+    const double* value = values.data();
     double n = 0, s = 0, t = 0, ss = 0, tt = 0, st = 0;
     for (int y = -radius; y <= radius; ++y)
       for (int x = -radius; x <= radius; ++x) {
-        const glm::dvec2 from = source + glm::dvec2(x, y);
         const glm::dvec2 to = place.center + place.shape * glm::dvec2(x, y);
-        if (!image.holds(from.x, from.y) || !other.holds(to.x - 1, to.y - 1) ||
-            !other.holds(to.x + 1, to.y + 1))
-          return std::nullopt;
-        const double a = image.at(from.x, from.y), b = other.at(to.x, to.y);
+        const double a = *value++, b = other.at(to.x, to.y);
         const double bx = 0.5 * (other.at(to.x + 1, to.y) - other.at(to.x - 1, to.y));
         const double by = 0.5 * (other.at(to.x, to.y + 1) - other.at(to.x, to.y - 1));
         Vector j;
         j << bx, by, bx * x, bx * y, by * x, by * y, -a, -1.0;
-        normal += j * j.transpose();
+        normal.selfadjointView<Eigen::Lower>().rankUpdate(j);
         right += j * (gain * a + offset - b);
         n += 1, s += a, t += b, ss += a * a, tt += b * b, st += a * b;
       }
@@ -38,7 +56,7 @@ std::optional<AlignedPatch> align_patch(const GreyImage& image, const glm::dvec2
     agreement = variance > 0 ? (n * st - s * t) / std::sqrt(variance) : 0;
     // The weaker of the gradient's two directions must stand out of 8-bit rounding.
     const double trace = normal(0, 0) + normal(1, 1);
-    const double determinant = normal(0, 0) * normal(1, 1) - normal(0, 1) * normal(0, 1);
+    const double determinant = normal(0, 0) * normal(1, 1) - normal(1, 0) * normal(1, 0);
     const double weaker = 0.5 * (trace - std::sqrt(std::max(0.0, trace * trace - 4 * determinant)));
     if (!(weaker > n * least_gradient * least_gradient)) return std::nullopt;
     const Eigen::LDLT<Eigen::Matrix<double, 8, 8>> solver(normal);

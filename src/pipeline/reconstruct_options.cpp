@@ -8,6 +8,7 @@
 #include "carving/search_disc.h"
 #include "core/error.h"
 #include "core/option_word.h"
+#include "gpu/device_options.h"
 #include "io/mesh/mesh_writers.h"
 #include "pipeline/image_scale.h"
 #include "pipeline/memory.h"
@@ -202,12 +203,9 @@ void describe_run(Described& to, ReconstructOptions& o) {
   to.text("tune", &o.tune,
           "NAME=VALUE: a parameter of the method changed, for experiments (repeatable)");
   to.affects(Stage::kHull);
-  to.text("device", &o.device, "auto, software, or an index from 'photohull devices'").always =
-      true;
+  gpu::describe_device(to, o.device).always = true;
   to.affects(Stage::kNothing);
-  Option& threads = to.number("threads", &o.threads, at_least(0), "", "threads that compute");
-  threads.zero = "one a core";
-  threads.always = true;
+  gpu::describe_threads(to, o.threads).always = true;
   to.flag("fresh", &o.fresh,
           "start anew: else an interrupted refinement of the same job goes on after the last level "
           "that it finished");

@@ -187,7 +187,8 @@ TEST_F(CalibrateCommand, OptionsThatDoNotFitAreRefused) {
   };
   const std::string plain = path("plain");
   refused(2, {"calibrate", plain, "--out", out, "--step", "5"}, "are for --turntable");
-  refused(2, {"calibrate", plain, "--out", out, "--turntable", "--angles", "1 x"}, "'x'");
+  refused(2, {"calibrate", plain, "--out", out, "--turntable", "--angles", "1 x"},
+          "--angles 1 x: expected degrees");
   refused(2, {"calibrate", plain, "--out", out, "--turntable", "--angles", "1 2"},
           "2 angles are stated for 1");
   refused(2, {"calibrate", plain, "--out", out, "--rig", "{camera}"}, "expected a pattern");

@@ -59,7 +59,8 @@ TEST_F(Reconstruct, ReportHasTheDocumentedFields) {
     "thin_parts": {"line_pixels": 1, "looked_at": 1, "unexplained": 1, "placed": 1, "restored_pixels": 1, "stem_vertices": 1},
     "photo": {"sweeps": 1, "voxels_judged": 1, "voxels_carved": 1, "voxels_undecided": 1},
     "resumed_levels": 0, "refine": [], "refine_fits": [], "mesh": {"vertices": 1, "triangles": 1, "uniform_triangles": 1,
-    "sharpened_vertices": 1, "unseen_share": 0.1}, "photometric": {"used": true}, "sharpness": [], "inputs": [], "surroundings": []})");
+    "sharpened_vertices": 1, "unseen_share": 0.1}, "photometric": {"used": true}, "sharpness": [], "inputs": [], "surroundings": [],
+    "device_work": {"uploads": 1, "bytes_up": 1, "downloads": 1, "bytes_down": 1}})");
   const json fields = schema.flatten();
   for (const auto& [key, value] : fields.items()) {
     const json::json_pointer pointer(key);
@@ -70,6 +71,10 @@ TEST_F(Reconstruct, ReportHasTheDocumentedFields) {
   }
   // Nothing stands in the report that is not documented.
   for (const auto& [key, value] : r.items()) EXPECT_TRUE(schema.contains(key)) << key;
+  ASSERT_FALSE(r["device_work"]["kernels"].empty());
+  for (const json& kernel : r["device_work"]["kernels"])
+    for (const char* key : {"name", "launches", "groups", "seconds", "cpu_seconds"})
+      EXPECT_TRUE(kernel.contains(key)) << key;
   EXPECT_EQ(r["scene"]["format"], "middlebury");
   EXPECT_EQ(r["scene"]["views"], kViews);
   EXPECT_EQ(r["box"]["source"], "bbox.txt");

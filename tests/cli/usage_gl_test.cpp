@@ -1,5 +1,6 @@
 // The command line itself: help, info, devices, and everything that is wrong usage.
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "cli/front/command_table.h"
@@ -48,6 +49,17 @@ TEST_F(Usage, SaysWhichProgramIsMissingBesideIt) {
                            ": cannot be started: No such file or directory; it belongs beside "
                            "photohull\n");
   }
+}
+
+TEST_F(Usage, ProgramsKeepFreedMemoryUnlessTheUserSaysHow) {
+  const std::string alone = path("photohull"), main = path("photohull-main");
+  std::filesystem::copy_file(PHOTOHULL_PROGRAM, alone);
+  std::ofstream(main) << "#!/bin/sh\nprintf %s \"$GLIBC_TUNABLES\"\n";
+  std::filesystem::permissions(main, std::filesystem::perms::owner_all);
+  EXPECT_THAT(run_program({alone, "info", "scene"}).out, HasSubstr("glibc.malloc.hugetlb=1"));
+  RunOptions with;
+  with.environment = {"GLIBC_TUNABLES=glibc.malloc.arena_max=2"};
+  EXPECT_EQ(run_program({alone, "info", "scene"}, with).out, "glibc.malloc.arena_max=2");
 }
 
 TEST_F(Usage, InfoTellsWhatWasUnderstood) {

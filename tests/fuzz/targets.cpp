@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "archive.h"
-#include "cli/number_list.h"
+#include "calib/turntable_angles.h"
 #include "cli/scene_arguments.h"
 #include "core/error.h"
 #include "io/image_file.h"
@@ -139,7 +139,12 @@ std::vector<std::string> lines_of(std::string_view bytes) {
 void read_scene_arguments(std::string_view bytes) {
   std::vector<std::string> words = lines_of(bytes);
   for (const std::string& word : words)
-    expect_success_or_error([&] { cli::parse_numbers("--angles", word); });
+    expect_success_or_error([&] {
+      TurntableAngles angles;
+      Described described;
+      describe(described, angles);
+      read_option(*described.find("angles"), word);
+    });
   expect_success_or_error([&] {
     CLI::App command;
     cli::SceneArguments arguments;

@@ -345,5 +345,15 @@ TEST_F(ReadFormats, OpenCvListAndEasyMocap) {
   expect_camera(scene.views[0], 4, 3);
 }
 
+// OpenCV's parser does not come to an end on some of these.
+TEST_F(ReadFormats, OpenCvFilesAreOneMapWhoseKeysBeginTheirLines) {
+  for (const char* content : {"{a: 1}\n-5 \n- 3\n", " a: 1\nxyz-5\n", " - 1\nabc- 5\n"}) {
+    put("cameras.yml", concat("%YAML:1.0\n---\n# cameras\n\n", content));
+    EXPECT_THAT(error(), AllOf(HasSubstr("cameras.yml line 5"), HasSubstr("must be a key")));
+  }
+  put("cameras.yml", "%YAML:1.0\n---\na: 1\n---\nb: 1\n");
+  EXPECT_THAT(error(), AllOf(HasSubstr("line 4"), HasSubstr("one YAML document")));
+}
+
 }  // namespace
 }  // namespace photohull::io

@@ -191,10 +191,10 @@ TEST(CutBand, GoesByColoursWhereTheEvidenceIsTheSameOnBothSides) {
 
 /// Two upright bars, 2 pixels wide, in corners of a box so large that a sample of it misses both.
 void expect_bars_to_stay(int apart) {
-  constexpr int kSide = 600, kFirst = 60, kBar = 2, kHeight = 30;
+  constexpr int kSide = 600, kFirst = 60, kBar = 2, kLong = 30;
   const auto inside = [&](int x, int y) {
     const auto on_bar = [&](int from) {
-      return x >= from && x < from + kBar && y >= from && y < from + kHeight;
+      return x >= from && x < from + kBar && y >= from && y < from + kLong;
     };
     return on_bar(kFirst) || on_bar(kFirst + apart);
   };

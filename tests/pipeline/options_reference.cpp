@@ -5,11 +5,13 @@
 #include <vector>
 
 #include "calib/calibrate_board.h"
+#include "calib/turntable_angles.h"
 #include "cameras/refine_cameras.h"
 #include "cli/front/flag_words.h"
 #include "core/error.h"
 #include "eval/evaluate.h"
 #include "eval/photo_agreement.h"
+#include "gpu/device_options.h"
 #include "lab/chart/chart_job.h"
 #include "lab/chart/stress_job.h"
 #include "lab/sampling/sampling_study.h"
@@ -72,6 +74,9 @@ void write_commands(std::ostream& out) {
   write_command<RefineCamerasOptions>("`photohull refine-cameras`", {}, out);
   write_command<BoardSpec>("`photohull calibrate`: the board", {}, out);
   write_command<CalibrateOptions>("`photohull calibrate`: the camera", {}, out);
+  write_command<TurntableAngles>("`photohull calibrate` and `convert`: turntables", {}, out);
+  write_command<gpu::DeviceOptions>(
+      "`photohull synthesize`, `bench sampling` and `bench visibility`: the device", {}, out);
   write_command<chart::ChartOptions>("`photohull chart`", {}, out);
   write_command<chart::StressOptions>("`photohull stress`", {}, out);
   write_command<projtex::StudyOptions>("`photohull bench sampling`", {}, out);
