@@ -70,7 +70,7 @@ void add_view(CLI::App& app) {
   c->footer(
       "Opens report.html, the page with the model and its report, in the browser of the desktop;\n"
       "without a display it prints where the page is.\n\n"
-      "Example:\n"
+      "Examples:\n"
       "  photohull view out/temple");
   c->callback([folder] { run(*folder); });
 }

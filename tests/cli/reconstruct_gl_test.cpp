@@ -29,7 +29,8 @@ class ReconstructBlock : public Reconstruct {
 
 TEST_F(Reconstruct, WritesFiveFilesWithAClosedMeshOfTheSphere) {
   const Finished run = succeed(reconstruct());
-  EXPECT_THAT(listing(out()), ElementsAre("mesh.ply", "preview.png", "report.html", "report.json", "volume.vdb"));
+  EXPECT_THAT(listing(out()),
+              ElementsAre("mesh.ply", "preview.png", "report.html", "report.json", "volume.vdb"));
   for (const char* name : {"mesh.ply", "preview.png", "report.html", "report.json", "volume.vdb"})
     EXPECT_THAT(run.out, HasSubstr(path(std::string("out/") + name)));
   const TriMesh sphere = mesh();

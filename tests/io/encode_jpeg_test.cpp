@@ -18,7 +18,7 @@ std::vector<std::uint8_t> slope(int width, int height) {
   std::vector<std::uint8_t> rgb;
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
-      for (const int value : {x * 255 / width, y * 255 / height, 128})
+      for (const int value : {std::min(255, 2 * x), std::min(255, y), 128})
         rgb.push_back(std::uint8_t(value));
   return rgb;
 }

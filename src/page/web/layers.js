@@ -77,9 +77,9 @@ const LAYERS = [
     colours: model => {
       const most = highestUsual(model.disagreement);
       return coloursOfCodes(model.disagreement, code =>
-        code === NOT_KNOWN ? UNKNOWN_COLOUR : rampColour(INFERNO, code / most));
+        code === NOT_KNOWN ? UNSEEN_COLOUR : rampColour(INFERNO, code / most));
     },
     legend: (model, step) => rampLegend("How much the views' colours differ, of full scale", INFERNO, "0 %",
-      percent(step * highestUsual(model.disagreement)) + " or more", [[UNKNOWN_COLOUR, "no camera sees it, or not known"]]),
+      percent(step * highestUsual(model.disagreement)) + " or more", [[UNSEEN_COLOUR, "no camera sees it, or not known"]]),
   },
 ];
