@@ -2,6 +2,7 @@
 
 #include "pipeline/methods/method.h"
 #include "pipeline/reconstruct_options.h"
+#include "pipeline/texture_stage.h"
 
 namespace photohull::pipeline {
 
@@ -14,9 +15,9 @@ double total_weight(const ReconstructOptions& options) {
   return Weights::kScene + Weights::kViews + Weights::cameras(options) +
          (options.photometric != Photometric::kOff ? Weights::kPhotometric : 0) + Weights::kDevice +
          Weights::kSilhouettes + Weights::kHull + Weights::kImages + method_of(options).weight +
-         (options.mesh_error.value > 0 ? Weights::kSimplify : 0) + Weights::kClean +
-         Weights::kMesh + Weights::kColour + Weights::kVerdict + Weights::kPreview +
-         Weights::kFiles;
+         (options.mesh_error.value > 0 ? Weights::kSimplify : 0) +
+         (makes_texture(options) ? Weights::kTexture : 0) + Weights::kClean + Weights::kMesh +
+         Weights::kColour + Weights::kVerdict + Weights::kPreview + Weights::kFiles;
 }
 
 }  // namespace photohull::pipeline
