@@ -5,7 +5,7 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(PHOTOHULL_LIBRARY_MODULES core raycast gpu io io_mesh photo masks views cameras projtex visibility carving volume
-  mesh eval assess render refine page pipeline)
+  mesh texture eval assess render refine page pipeline)
 set(modules)
 set(objects)
 foreach(module ${PHOTOHULL_LIBRARY_MODULES})

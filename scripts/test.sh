@@ -4,9 +4,9 @@
 # Sets photohull up (see scripts/setup.sh) and runs all its tests.
 #
 #   --all    also check what tests cannot: formatting, scripts, citations, links in the docs,
-#            installation and the Debian package; and build once more with clang and the address and
-#            undefined-behaviour sanitizers, to run the unit tests so instead of without them, the
-#            fuzzers and clang-tidy
+#            glTF files (npm installs their validator), installation and the Debian package; and
+#            build once more with clang and the address and undefined-behaviour sanitizers, to run
+#            the unit tests so instead of without them, the fuzzers and clang-tidy
 #   --help   print this text
 
 # shellcheck source=scripts/common.sh
@@ -135,6 +135,7 @@ else
   scripts/setup.sh
 fi
 [ $with_all = no ] || install_missing clang clang-format clang-tidy shellcheck dpkg-dev file python3 chromium
+[ $with_all = no ] || command -v npm >/dev/null || install_missing npm
 started=$SECONDS
 
 if [ $with_all = yes ]; then
@@ -147,6 +148,7 @@ if [ $with_all = yes ]; then
   check "shellcheck" shell_scripts
   check "citations" citations
   check "links in the docs" scripts/check_links.py
+  check "glTF files" scripts/check_glb.sh
   check "cmake --install" installation
   check "cpack -G DEB" debian_package
   check_aloud "build with sanitizers" scripts/setup.sh --preset asan --target unit_tests

@@ -203,8 +203,8 @@ FileMask read_mask(const fs::path& path) {
   }
 }
 
-void write_png(AtomicFile& file, int width, int height, int channels,
-               std::span<const std::uint8_t> bytes) {
+std::vector<std::uint8_t> encode_png(int width, int height, int channels,
+                                     std::span<const std::uint8_t> bytes) {
   PHOTOHULL_CHECK(width > 0 && height > 0 && channels >= 1 && channels <= 4);
   PHOTOHULL_CHECK_OP(bytes.size(), ==, std::size_t(width) * height * channels);
   keep_to_one_thread();
@@ -216,13 +216,18 @@ void write_png(AtomicFile& file, int width, int height, int channels,
   const auto output = OIIO::ImageOutput::create("png");
   if (!output) throw Error("PNG files cannot be written: OpenImageIO lacks its PNG plug-in");
   output->threads(1);
-  // Compressed in memory: OpenImageIO may take a full disk for a success.
   std::vector<unsigned char> compressed;
   OIIO::Filesystem::IOVecOutput memory(compressed);
   if (!output->set_ioproxy(&memory) || !output->open("memory.png", spec) ||
       !output->write_image(OIIO::TypeDesc::UINT8, bytes.data()) || !output->close())
-    throw Error(concat(file.target().string(), ": cannot be compressed (",
-                       one_line(output->geterror()), ")"));
+    throw Error(concat("an image cannot be compressed (", one_line(output->geterror()), ")"));
+  return compressed;
+}
+
+void write_png(AtomicFile& file, int width, int height, int channels,
+               std::span<const std::uint8_t> bytes) {
+  // Compressed in memory: OpenImageIO may take a full disk for a success.
+  const std::vector<std::uint8_t> compressed = encode_png(width, height, channels, bytes);
   file.write(compressed.data(), compressed.size());
 }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <span>
+#include <vector>
 
 #include "core/atomic_file.h"
 #include "core/file_mask.h"
@@ -66,5 +67,8 @@ void write_png(const std::filesystem::path& path, int width, int height, int cha
 /// The same, for the caller to commit.
 void write_png(AtomicFile& file, int width, int height, int channels,
                std::span<const std::uint8_t> bytes);
+/// The bytes of that file.
+std::vector<std::uint8_t> encode_png(int width, int height, int channels,
+                                     std::span<const std::uint8_t> bytes);
 
 }  // namespace photohull::io

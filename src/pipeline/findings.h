@@ -169,6 +169,19 @@ struct MeshFindings {
   std::optional<MeshErrorFindings> error;
 };
 
+/// The texture of files that hold one (texture/texture_mesh.h).
+struct TextureFindings {
+  std::int64_t triangles = 0;  ///< of the mesh in these files
+  std::int64_t pages = 0;
+  int width = 0, height = 0;  ///< of every page, texels
+  double scale = 1;           ///< texels for a pixel of the photographs as read, along each side
+  std::int64_t charts = 0;
+  std::int64_t views = 0;   ///< photographs that colours come from
+  std::int64_t texels = 0;  ///< that show the surface
+  double filled_share = 0;  ///< of these, with the vertices' colours: no photograph is clear there
+  double unseen_share = 0;  ///< of the area: triangles that no photograph shows clearly
+};
+
 /// A coarser grid around the box (pipeline/surroundings.h).
 struct ShellFindings {
   Box box;

@@ -26,6 +26,7 @@
 #include "pipeline/show_result.h"
 #include "pipeline/stage_weights.h"
 #include "pipeline/surroundings.h"
+#include "pipeline/texture_stage.h"
 #include "render/choose_views.h"
 #include "render/preview.h"
 
@@ -279,12 +280,19 @@ class Carver {
   void deliver(Reconstruction& out) {
     MeshFindings& found = mesh_findings_;
     found.uniform_triangles = std::int64_t(out.mesh.triangles.size());
+    const bool textured = makes_texture(run_.options);
+    const TriMesh uniform = textured ? out.mesh : TriMesh();
     if (run_.options.mesh_error.value > 0)
       out.mesh = run_.clock.run("simplify", Weights::kSimplify,
                                 [&] { return simplify(job(), out.mesh, found); });
     found.vertices = std::int64_t(out.mesh.positions.size());
     found.triangles = std::int64_t(out.mesh.triangles.size());
     run_.report.mesh = found;
+    out.up = upward_axis(subject_.views);
+    if (textured)
+      out.textured = run_.clock.run("texture", Weights::kTexture, [&] {
+        return make_textured(job(), uniform, out.mesh, run_.report.texture.emplace());
+      });
     run_.report.voxels_kept = std::int64_t(out.volume.inside_voxels());
     run_.report.bricks_stored = std::int64_t(out.volume.bricks.size());
     run_.report.hull = hull_.findings();

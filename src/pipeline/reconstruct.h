@@ -5,6 +5,7 @@
 
 #include "core/grid.h"
 #include "core/mesh.h"
+#include "core/mesh_texture.h"
 #include "core/progress.h"
 #include "io/mesh/write_mesh.h"
 #include "page/make_page.h"
@@ -31,6 +32,9 @@ struct Reconstruction {
   SparseVolume volume;          ///< truncated signed distances, voxels, negative inside
   VolumeAttributes attributes;  ///< colours and confidence near its surface
   TriMesh mesh;                 ///< with colours, normals and confidence
+  /// For files that hold a texture: where such a format is among the options' exports.
+  std::optional<TexturedMesh> textured;
+  glm::dvec3 up{0, 0, 1};  ///< the world axis that is upward in most photographs
   PreviewImage preview;
   std::optional<Evidence> evidence;  ///< on demand
   std::optional<page::Shown> shown;  ///< what report.html shows, unless it is off

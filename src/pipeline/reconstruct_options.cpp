@@ -1,5 +1,7 @@
 // What a job's options mean, and which make sense.
 #include <array>
+#include <bit>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
 
@@ -14,7 +16,9 @@
 #include "pipeline/memory.h"
 #include "pipeline/methods/method.h"
 #include "pipeline/reconstruct_options.h"
+#include "pipeline/texture_stage.h"
 #include "pipeline/tuning.h"
+#include "texture/texture_mesh.h"
 
 namespace photohull::pipeline {
 namespace {
@@ -55,6 +59,10 @@ void check_combinations(const ReconstructOptions& o) {
     throw UsageError(concat(option_word("surroundings", "on"), ": ",
                             option_word("method", method_of(o).name),
                             " has none; they are made by ", option_word("method", "refine")));
+  if (o.texture.edge && !makes_texture(o))
+    throw UsageError(concat(option_word("texture", o.texture.edge),
+                            ": no file that is written holds a texture; give ",
+                            option_word("export", "glb"), " or obj"));
   check_sweep_options(o);
 }
 
@@ -77,6 +85,27 @@ Words mesh_error_words(MeshError& error) {
             const std::optional<MeshError> read = read_mesh_error(text);
             if (read) error = *read;
             return read.has_value();
+          }};
+}
+
+Words texture_words(TextureChoice& texture) {
+  return {[&texture] {
+            if (texture.off) return std::string("off");
+            return texture.edge ? concat(texture.edge) : std::string("auto");
+          },
+          [&texture](const std::string& text) {
+            TextureChoice read;
+            read.off = text == "off";
+            if (!read.off && text != "auto") {
+              char* end = nullptr;
+              const long edge = std::strtol(text.c_str(), &end, 10);
+              if (!std::isdigit(text[0]) || *end != 0 || edge < kLeastTextureEdge ||
+                  edge > kMostTextureEdge || !std::has_single_bit(unsigned(edge)))
+                return false;
+              read.edge = int(edge);
+            }
+            texture = read;
+            return true;
           }};
 }
 
@@ -222,6 +251,11 @@ void describe_run(Described& to, ReconstructOptions& o) {
     formats += concat(formats.empty() ? "" : ", ", writer.name, " (", writer.what, ")");
   to.text("export", &o.exports,
           "a format that the mesh is written in, too (repeatable): " + formats);
+  to.text("texture", texture_words(o.texture),
+          "texture of exported files that hold one: as fine as the photographs (auto), one image "
+          "with edges of this many texels at most, or off: colours at vertices")
+      .expects =
+      concat("auto, off, or a power of two from ", kLeastTextureEdge, " to ", kMostTextureEdge);
 }
 
 /// Those that take effect, in words.

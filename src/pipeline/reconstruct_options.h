@@ -52,6 +52,12 @@ struct MeshError {
   bool world_units = false;  ///< else voxels
 };
 
+/// The texture of files that hold one.
+struct TextureChoice {
+  bool off = false;
+  int edge = 0;  ///< texels, a power of two; 0: as fine as the photographs are
+};
+
 /// What each is, with its unit and legal values, describe() tells.
 struct ReconstructOptions {
   BoxOptions box;
@@ -80,6 +86,7 @@ struct ReconstructOptions {
   ReportPage report_page = ReportPage::kOn;
   /// Formats that the mesh is written in beside PLY (io/mesh/mesh_writers.h).
   std::vector<std::string> exports;
+  TextureChoice texture;
   std::optional<double> image_scale;       ///< nothing: as the voxels need it (image_scale.h)
   std::optional<std::int64_t> max_memory;  ///< nothing: default_max_memory()
   std::string device = "auto";

@@ -133,6 +133,16 @@ void add_mesh(const Report& r, ordered_json& j) {
                                  {"p95", error->p95},
                                  {"p999", error->p999},
                                  {"max", error->max}};
+  if (const auto& t = r.texture)
+    j["texture"] = {{"triangles", t->triangles},
+                    {"pages", t->pages},
+                    {"size", {t->width, t->height}},
+                    {"scale", t->scale},
+                    {"charts", t->charts},
+                    {"views", t->views},
+                    {"texels", t->texels},
+                    {"filled_share", t->filled_share},
+                    {"unseen_share", t->unseen_share}};
   j["surroundings"] = ordered_json::array();
   for (const ShellFindings& shell : r.surroundings)
     j["surroundings"].push_back(

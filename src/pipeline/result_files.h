@@ -27,7 +27,7 @@ class ResultFiles {
   ResultFiles(const ResultFiles&) = delete;
   ResultFiles& operator=(const ResultFiles&) = delete;
 
-  /// A new file to write to; `name` is one of the names.
+  /// A new file to write to; `name` is one of the names, or a file that goes with one of them.
   AtomicFile& open(const std::string& name);
   /// Puts the files in place. Throws Error when that fails, and says so when the folder then has
   /// files of two runs.

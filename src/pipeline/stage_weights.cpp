@@ -2,6 +2,7 @@
 
 #include "pipeline/methods/method.h"
 #include "pipeline/reconstruct_options.h"
+#include "pipeline/texture_stage.h"
 
 namespace photohull::pipeline {
 
@@ -15,6 +16,7 @@ double total_weight(const ReconstructOptions& options) {
          (options.photometric != Photometric::kOff ? Weights::kPhotometric : 0) + Weights::kDevice +
          Weights::kSilhouettes + Weights::kHull + Weights::kImages + method_of(options).weight +
          (options.mesh_error.value > 0 ? Weights::kSimplify : 0) + Weights::kClean +
+         (makes_texture(options) ? Weights::kTexture : 0) +
          (options.report_page == ReportPage::kOn ? Weights::kPage : 0) + Weights::kMesh +
          Weights::kColour + Weights::kVerdict + Weights::kPreview + Weights::kFiles;
 }

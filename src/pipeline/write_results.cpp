@@ -57,6 +57,22 @@ void write_volume(const Reconstruction& result, ResultFiles& files, Progress& pr
             {{"photohull_options", result.report.option_line}});
 }
 
+/// A texture goes with the mesh that it is of.
+void write_meshes(const Reconstruction& result, const std::vector<std::string>& formats,
+                  ResultFiles& files, Report& report) {
+  const auto open = [&](const std::string& name) -> AtomicFile& {
+    report.files.push_back(name);
+    return files.open(name);
+  };
+  for (const auto& [name, writer] : mesh_files(formats)) {
+    const bool textured = writer->holds_textures && result.textured;
+    writer->write(open(name),
+                  {textured ? result.textured->mesh : result.mesh,
+                   textured ? &result.textured->texture : nullptr, result.up},
+                  open);
+  }
+}
+
 void write_evidence(const Evidence& evidence, ResultFiles& files, Report& report) {
   write_ply(files.open("evidence.ply"), evidence.mesh, evidence.scalars);
   report.files.push_back("evidence.ply");
@@ -86,10 +102,7 @@ Report write_all(const Reconstruction& result, const std::vector<std::string>& f
     write_volume(result, files, progress);
     progress.check_cancelled();
     report.files = {"volume.vdb"};
-    for (const auto& [name, writer] : mesh_files(formats)) {
-      writer->write(files.open(name), result.mesh);
-      report.files.push_back(name);
-    }
+    write_meshes(result, formats, files, report);
     write_picture(files.open("preview.png"), result.preview);
     report.files.push_back("preview.png");
     if (result.evidence) write_evidence(*result.evidence, files, report);

@@ -36,7 +36,8 @@ void change(const Option& option) {
                 option.choices.front() == now ? option.choices.back() : option.choices.front());
   } else {
     // The first that is legal, of what options with a notation of their own take.
-    for (const char* text : {"levels=3", "0 0 0 1 1 1", "keep", "1/2", "2G", "0.5u", "2", "1"})
+    for (const char* text :
+         {"levels=3", "0 0 0 1 1 1", "keep", "1/2", "2G", "0.5u", "2", "1", "512"})
       try {
         read_option(option, text);
         if (text_of(option) != now) return;

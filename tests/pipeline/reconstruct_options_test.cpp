@@ -44,6 +44,29 @@ TEST_F(OptionText, AutoOrANumberOfViews) {
               "views_may_miss=" + bad + ": expected auto, or a number of views from 0 to 16");
 }
 
+TEST_F(OptionText, TexturesAreAutoOffOrAPowerOfTwo) {
+  read("texture", "off");
+  EXPECT_TRUE(options_.texture.off);
+  read("texture", "2048");
+  EXPECT_FALSE(options_.texture.off);
+  EXPECT_EQ(options_.texture.edge, 2048);
+  EXPECT_EQ(text_of(*described_.find("texture")), "2048");
+  read("texture", "auto");
+  EXPECT_EQ(options_.texture.edge, 0);
+  for (const std::string bad : {"", "64", "1000", "8192", "-256", " 256", "256 ", "on", "2K"})
+    EXPECT_EQ(refusal("texture", bad),
+              "texture=" + bad + ": expected auto, off, or a power of two from 128 to 4096");
+}
+
+TEST(ReconstructOptions, ATextureNeedsAFileThatHoldsIt) {
+  ReconstructOptions options;
+  options.texture.edge = 512;
+  options.exports = {"stl"};
+  EXPECT_THROW(options.validate(), UsageError);
+  options.exports = {"stl", "glb"};
+  options.validate();
+}
+
 TEST_F(OptionText, ScalesAreFractionsOrNumbers) {
   read("image_scale", "1/4");
   EXPECT_EQ(options_.image_scale, 0.25);

@@ -33,7 +33,8 @@ std::unique_ptr<aiMesh> to_assimp(const TriMesh& mesh) {
 
 }  // namespace
 
-void write_stl(AtomicFile& file, const TriMesh& mesh) {
+void write_stl(AtomicFile& file, const MeshContents& contents, const OpenBeside&) {
+  const TriMesh& mesh = contents.mesh;
   aiScene scene;
   scene.mNumMaterials = 1;
   scene.mMaterials = new aiMaterial* [1] { new aiMaterial };

@@ -41,9 +41,11 @@ std::set<std::array<std::array<float, 3>, 3>> triangles_of(const TriMesh& mesh) 
 TEST(MeshWriters, WriteTheSameTrianglesAnywhere) {
   const ScratchFolder folder;
   for (const MeshWriter& writer : mesh_writers()) {
+    if (std::string(writer.name) == "usdz") continue;  // has no reader: textured_writers_test.cpp
     const std::filesystem::path path = folder / (std::string("mesh.") + writer.name);
     AtomicFile file(path);
-    writer.write(file, tetrahedron());
+    const TriMesh mesh = tetrahedron();
+    writer.write(file, {mesh, nullptr, {0, 1, 0}}, {});
     file.commit();
     EXPECT_EQ(triangles_of(read_mesh(path)), triangles_of(tetrahedron())) << writer.name;
   }
