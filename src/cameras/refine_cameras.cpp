@@ -90,7 +90,7 @@ class CameraRefiner {
     // A turn looks almost like an offset of the principal point: while poses are held, the offset
     // is what all views have in common.
     if (intrinsics != SharedIntrinsics::kNone && try_round(cameras, intrinsics, true, result))
-      prior_sigma_ = 2 * spread(judge(cameras, nullptr));  // poses explain what is left
+      prior_sigma_ = spread(judge(cameras, nullptr));  // poses explain what is left
     const bool last = intrinsics != SharedIntrinsics::kAll;
     bool with_intrinsics = false;
     for (int round = 0; round < kRounds; ++round) {

@@ -219,7 +219,7 @@ TEST_F(Reconstruct, StronglyBlurredViewsAreLeftOut) {
 
 TEST_F(Reconstruct, MakesTheOutputFolderAndReplacesEarlierResults) {
   succeed({"reconstruct", scene(), "--out", path("a/b/c"), "--quality", "draft"});
-  EXPECT_EQ(listing(path("a/b/c")).size(), 4u);
+  EXPECT_EQ(listing(path("a/b/c")).size(), 5u);
 }
 
 }  // namespace

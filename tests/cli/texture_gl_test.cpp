@@ -32,7 +32,7 @@ TEST_F(Texture, FilesThatHoldOneHaveOne) {
       reconstruct({"--method", "hull", "--export", "glb", "--export", "obj", "--export", "usdz"}));
   EXPECT_THAT(listing(out()),
               ElementsAre("mesh.glb", "mesh.mtl", "mesh.obj", "mesh.ply", "mesh.usdz", "mesh_0.png",
-                          "preview.png", "report.json", "volume.vdb"));
+                          "preview.png", "report.html", "report.json", "volume.vdb"));
   EXPECT_EQ(read_bytes(path("out/mesh.ply")), plain);
   EXPECT_THAT(stages(), testing::Contains("texture"));
   const json found = report()["texture"];
@@ -43,7 +43,7 @@ TEST_F(Texture, FilesThatHoldOneHaveOne) {
   EXPECT_EQ(found["size"].size(), 2u);
   EXPECT_LT(found["unseen_share"], 0.1);
   EXPECT_LT(found["filled_share"], 0.5);
-  EXPECT_EQ(report()["files"].size(), 9u);
+  EXPECT_EQ(report()["files"].size(), 10u);
   const TriMesh glb = read_mesh(path("out/mesh.glb"));
   EXPECT_EQ(glb.triangles.size(), found["triangles"]);
   EXPECT_LT(glb.triangles.size(), mesh().triangles.size());
