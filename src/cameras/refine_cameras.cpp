@@ -30,7 +30,9 @@ constexpr double kAlike = 1.5;         // times what independent errors of poses
 constexpr double kHeldOut = 0.2;       // share of the tracks and tangents that only judge
 constexpr double kWorthwhile = 0.999;  // of the cost: what a round must leave for another one
 constexpr int kRounds = 8;             // at most; each one finds outliers and tangents anew
-constexpr double kNoWorse = 1.2;       // times the residual without what views share
+constexpr double kMostlyShared = 0.5;  // of the residuals: what they fall below by what is shared
+constexpr double kGross = 5;  // pixels: such residuals do not tell poses' errors from shared ones
+constexpr double kNoWorse = 1.2;  // times the residual without what views share
 
 using Cameras = std::vector<Camera>;
 
@@ -85,12 +87,17 @@ class CameraRefiner {
  private:
   CameraRefinement refine(SharedIntrinsics intrinsics) {
     Cameras cameras = start_;
-    prior_sigma_ = std::max(kUsualError, 2 * spread(judge(given_, nullptr)));
+    const double given = spread(judge(given_, nullptr));
+    prior_sigma_ = std::max(kUsualError, 2 * given);
     CameraRefinement result;
     // A turn looks almost like an offset of the principal point: while poses are held, the offset
     // is what all views have in common.
-    if (intrinsics != SharedIntrinsics::kNone && try_round(cameras, intrinsics, true, result))
-      prior_sigma_ = spread(judge(cameras, nullptr));  // poses explain what is left
+    if (intrinsics != SharedIntrinsics::kNone && try_round(cameras, intrinsics, true, result)) {
+      // Poses explain what is left; little is, where they were right.
+      const double left = spread(judge(cameras, nullptr));
+      const bool right = given < kGross && left < kMostlyShared * given;
+      prior_sigma_ = right ? left : 2 * left;
+    }
     const bool last = intrinsics != SharedIntrinsics::kAll;
     bool with_intrinsics = false;
     for (int round = 0; round < kRounds; ++round) {
