@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "core/html_template.h"
 #include "page/embedded_files.h"
 #include "page/pack.h"
 
@@ -11,14 +12,6 @@ namespace photohull::page {
 namespace {
 
 using nlohmann::ordered_json;
-
-/// JSON that may stand inside a <script> element: nothing in it ends the element.
-std::string script_json(const ordered_json& json) {
-  std::string text;
-  for (const char c : json.dump(-1, ' ', false, ordered_json::error_handler_t::replace))
-    text += c == '<' ? std::string("\\u003c") : std::string(1, c);
-  return text;
-}
 
 ordered_json view_json(const ShownView& view) {
   const Intrinsics& k = view.camera.intrinsics;
@@ -49,7 +42,7 @@ std::string data_json(const std::string& report, const std::string& command, con
                        {"first_view", shown.first_view},
                        {"views", ordered_json::array()}};
   for (const ShownView& view : shown.views) data["views"].push_back(view_json(view));
-  return script_json(data);
+  return inside_script(data.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
 }
 
 std::string packed_text(std::string_view text) {
@@ -59,22 +52,14 @@ std::string packed_text(std::string_view text) {
 }  // namespace
 
 std::string make_page(const std::string& report, const std::string& command, const Shown& shown) {
-  const std::string_view page = page_template();
-  std::string html;
-  std::size_t from = 0;
-  for (;;) {
-    const std::size_t start = page.find("@@", from);
-    const std::size_t end = start == page.npos ? start : page.find("@@", start + 2);
-    html.append(page.substr(from, end == page.npos ? page.npos : start - from));
-    if (end == page.npos) return html;
-    const std::string_view name = page.substr(start + 2, end - start - 2);
-    if (name == "STYLE") html += page_style();
-    if (name == "DATA") html += data_json(report, command, shown);
-    if (name == "MODEL") html += shown.model.packed;
-    if (name == "THREE") html += packed_text(three_js());
-    if (name == "SCRIPT") html += page_script();
-    from = end + 2;
-  }
+  return fill_template(page_template(), [&](std::string_view name) -> std::string {
+    if (name == "STYLE") return std::string(page_style());
+    if (name == "DATA") return data_json(report, command, shown);
+    if (name == "MODEL") return shown.model.packed;
+    if (name == "THREE") return packed_text(three_js());
+    if (name == "SCRIPT") return std::string(page_script());
+    return "";
+  });
 }
 
 }  // namespace photohull::page

@@ -3,18 +3,11 @@
 #include <algorithm>
 #include <set>
 
+#include "core/html_template.h"
 #include "lab/chart/embedded_files.h"
 
 namespace photohull::chart {
 namespace {
-
-/// JSON that may stand inside a <script> element.
-std::string script_json(const Json& json) {
-  std::string text;
-  for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace))
-    text += c == '<' ? std::string("\\u003c") : std::string(1, c);
-  return text;
-}
 
 Json charts_json(const std::vector<Chart>& charts) {
   Json array = Json::array();
@@ -91,24 +84,18 @@ std::string table(const std::vector<Outcome>& outcomes, double threshold_percent
 std::string make_page(const PageParts& parts) {
   std::string note_items;
   for (const std::string& note : parts.notes) note_items += "<li>" + escaped(note) + "</li>\n";
-  const std::string_view page = page_template();
-  std::string html;
-  std::size_t from = 0;
-  for (;;) {
-    const std::size_t start = page.find("@@", from);
-    const std::size_t end = start == page.npos ? start : page.find("@@", start + 2);
-    html.append(page.substr(from, end == page.npos ? page.npos : start - from));
-    if (end == page.npos) return html;
-    const std::string_view name = page.substr(start + 2, end - start - 2);
-    if (name == "TITLE") html += escaped(parts.title);
-    if (name == "NOTES") html += note_items;
-    if (name == "ECHARTS") html += echarts_js();
-    if (name == "CHARTS") html += script_json(charts_json(parts.charts));
-    if (name == "CHOICE") html += escaped(parts.choice);
-    if (name == "CAPTION") html += parts.caption;
-    if (name == "TABLE") html += parts.table;
-    from = end + 2;
-  }
+  return fill_template(page_template(), [&](std::string_view name) -> std::string {
+    if (name == "TITLE") return escaped(parts.title);
+    if (name == "NOTES") return note_items;
+    if (name == "ECHARTS") return std::string(echarts_js());
+    if (name == "CHARTS")
+      return inside_script(
+          charts_json(parts.charts).dump(-1, ' ', false, Json::error_handler_t::replace));
+    if (name == "CHOICE") return escaped(parts.choice);
+    if (name == "CAPTION") return parts.caption;
+    if (name == "TABLE") return parts.table;
+    return "";
+  });
 }
 
 std::string make_page(const std::string& title, const std::vector<std::string>& notes,
