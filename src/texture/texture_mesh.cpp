@@ -24,7 +24,6 @@ namespace texture {
 namespace {
 
 constexpr double kSeamPrice = 0.005;  // of the mesh's diagonal
-constexpr int kMostTries = 8;         // to find the scale at which all fits onto one page
 constexpr double kLeastScale = 1.0 / 64;
 
 using Neighbours = std::vector<std::array<std::uint32_t, 3>>;

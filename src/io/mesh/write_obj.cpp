@@ -60,7 +60,7 @@ void add_faces(const MeshContents& contents, const MeshPart& part, std::size_t f
                Lines& lines) {
   const bool places = !part.places.empty(), normals = !contents.mesh.normals.empty();
   for (const auto& triangle : part.triangles) {
-    lines.add("f");
+    lines.add("%s", "f");
     for (const std::uint32_t corner : triangle) {
       const std::size_t vertex = part.vertices[corner] + std::size_t(1), place = first + corner;
       if (places && normals)
