@@ -23,8 +23,8 @@ constexpr float kLeastWeight = 0.8f;
 
 /// How much of a colour is the photograph's.
 float share_of(int clearance) {
-  if (clearance < kLeastUsed) return 0;
-  return float(clearance - kLeastUsed + 1) / float(kFullClearance - kLeastUsed + 1);
+  if (clearance < kLeastClearance) return 0;
+  return float(clearance - kLeastClearance + 1) / float(kFullClearance - kLeastClearance + 1);
 }
 
 cv::Size size_of(const Chart& chart) { return {chart.size.x, chart.size.y}; }
@@ -111,9 +111,9 @@ std::vector<glm::vec4> Canvas::resample(const CanvasView& view) const {
       if (!view.source.projector.project(position(i, f), p)) continue;
       const glm::dvec2 pixel = glm::round(glm::dvec2(p));
       if (!(std::abs(pixel.x) < 1e6 && std::abs(pixel.y) < 1e6)) continue;
-      const float share = share_of(view.source.maps.clearance_of(int(pixel.x), int(pixel.y), p.z));
-      if (share == 0) continue;
-      out[i] = glm::vec4(view.source.pixels.root_between(glm::dvec2(p)), weight * share);
+      // The cubic reaches two pixels farther than the pixels themselves do.
+      if (view.source.maps.clearance_of(int(pixel.x), int(pixel.y), p.z) < kFullClearance) continue;
+      out[i] = glm::vec4(view.source.pixels.root_between(glm::dvec2(p)), weight);
     }
   return out;
 }

@@ -14,11 +14,9 @@ namespace photohull::texture {
 /// outline of the mesh or of the mask, a part that stands before another, a pixel that was not
 /// photographed. 1 beside it; counted up to kFullClearance.
 inline constexpr int kFullClearance = 4;
-/// Photographs are judged by pixels from here on: a pixel that an outline runs through shows both
-/// sides, and cameras and outlines are off by a pixel.
+/// Colours are taken from here on: a pixel that an outline runs through shows both sides, and
+/// cameras and outlines are off by a pixel.
 inline constexpr int kLeastClearance = 3;
-/// Colours are taken from here on, by a third here and in full at kFullClearance.
-inline constexpr int kLeastUsed = 2;
 
 /// Depths of the mesh in a photograph, and the clearance of each of its pixels.
 class ViewMaps {
