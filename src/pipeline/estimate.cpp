@@ -1,5 +1,7 @@
 #include "pipeline/estimate.h"
 
+#include <algorithm>
+
 #include "pipeline/methods/method.h"
 
 namespace photohull::pipeline {
@@ -9,6 +11,10 @@ namespace {
 // stands in the methods' entries. Bytes:
 constexpr double kBaseBytes = 305e6;  // libraries, the driver's compiler, batches of rays
 constexpr double kPixelBytes = 8;     // colour and coverage; around the box outlines and mip chain
+// While a texture is made:
+constexpr double kTexturePixelBytes = 4, kMapPixelBytes = 5, kTextureFaceBytes = 300;
+constexpr double kTexelsOfPixel = 1.6;  // for each pixel on the box's faces, gaps included
+constexpr double kChartTexelBytes = 148, kPageTexelBytes = 14;
 
 // CPU seconds:
 constexpr double kBaseSeconds = 3.2;
@@ -19,6 +25,17 @@ double pixels(const std::vector<Intrinsics>& pictures) {
   double sum = 0;
   for (const Intrinsics& k : pictures) sum += double(k.width) * k.height;
   return sum;
+}
+
+/// While a texture is made, of `faces` voxels: what is left of the job, maps of the photographs,
+/// charts and a page (texture/texture_mesh.h).
+double bytes_with_texture(const CostQuestion& q, double read_pixels, double faces) {
+  const double third = double(q.texture_bytes) / 3;
+  const double across = q.pixel > 0 ? q.grid->voxel_size / q.pixel : 1;
+  const double texels = kTexelsOfPixel * faces * across * across;
+  return kBaseBytes + kTexturePixelBytes * read_pixels + kTextureFaceBytes * faces +
+         std::min(third, kMapPixelBytes * read_pixels) +
+         std::min(third, kChartTexelBytes * texels) + std::min(third, kPageTexelBytes * texels);
 }
 
 }  // namespace
@@ -38,6 +55,7 @@ Cost estimate_cost(const CostQuestion& q) {
     const glm::dvec3 n(q.grid->voxels());
     const double faces = 2 * (n.x * n.y + n.y * n.z + n.z * n.x);
     bytes += (open ? method.unmasked_face_bytes : kFaceBytes) * faces;
+    if (q.texture_bytes > 0) bytes = std::max(bytes, bytes_with_texture(q, read_pixels, faces));
     cost.cpu_seconds += (open ? method.unmasked_face_seconds : method.face_seconds) * faces;
   }
   cost.bytes = std::int64_t(bytes);

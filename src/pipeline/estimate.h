@@ -20,6 +20,8 @@ struct CostQuestion {
   std::optional<GridSpec> grid;   ///< nothing: not known yet, photographs alone count
   Method method = Method::kRefine;
   Silhouettes masks = Silhouettes::kGiven;
+  std::int64_t texture_bytes = 0;  ///< that making a texture may take (texture_stage.h); 0: no such
+  double pixel = 0;  ///< of the photographs as read, world units at the box's centre; for a texture
 };
 
 inline constexpr double kFaceBytes = 377;  ///< a face of the box, in voxels: bricks, mesh and files

@@ -180,6 +180,7 @@ struct TextureFindings {
   std::int64_t texels = 0;  ///< that show the surface
   double filled_share = 0;  ///< of these, with the vertices' colours: no photograph is clear there
   double unseen_share = 0;  ///< of the area: triangles that no photograph shows clearly
+  std::int64_t bytes = 0;   ///< that the stage took beside meshes, photographs and finished pages
 };
 
 /// A coarser grid around the box (pipeline/surroundings.h).

@@ -8,6 +8,8 @@
 #include "core/image_scale.h"
 #include "core/option_word.h"
 #include "pipeline/image_scale.h"
+#include "pipeline/read_scene.h"
+#include "pipeline/texture_stage.h"
 
 namespace photohull::pipeline {
 namespace {
@@ -36,6 +38,10 @@ void count_cost(const Request& request, const Scene& scene, const Box& box, bool
   if (with_grid)
     plan.grid =
         *(question.grid = lattice_of(request.options, box, question.cameras, plan.silhouettes));
+  if (makes_texture(request.options)) {
+    question.texture_bytes = texture_bytes(memory_limit(request.options));
+    question.pixel = carving::pixel_footprint(box, question.cameras);
+  }
   plan.cost = estimate_cost(question);
 }
 

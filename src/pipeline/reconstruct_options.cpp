@@ -11,14 +11,12 @@
 #include "core/error.h"
 #include "core/option_word.h"
 #include "gpu/device_options.h"
-#include "io/mesh/mesh_writers.h"
+#include "pipeline/export_options.h"
 #include "pipeline/image_scale.h"
 #include "pipeline/memory.h"
 #include "pipeline/methods/method.h"
 #include "pipeline/reconstruct_options.h"
-#include "pipeline/texture_stage.h"
 #include "pipeline/tuning.h"
-#include "texture/texture_mesh.h"
 
 namespace photohull::pipeline {
 namespace {
@@ -59,10 +57,6 @@ void check_combinations(const ReconstructOptions& o) {
     throw UsageError(concat(option_word("surroundings", "on"), ": ",
                             option_word("method", method_of(o).name),
                             " has none; they are made by ", option_word("method", "refine")));
-  if (o.texture.edge && !makes_texture(o))
-    throw UsageError(concat(option_word("texture", o.texture.edge),
-                            ": no file that is written holds a texture; give ",
-                            option_word("export", "glb"), " or obj"));
   check_sweep_options(o);
 }
 
@@ -85,27 +79,6 @@ Words mesh_error_words(MeshError& error) {
             const std::optional<MeshError> read = read_mesh_error(text);
             if (read) error = *read;
             return read.has_value();
-          }};
-}
-
-Words texture_words(TextureChoice& texture) {
-  return {[&texture] {
-            if (texture.off) return std::string("off");
-            return texture.edge ? concat(texture.edge) : std::string("auto");
-          },
-          [&texture](const std::string& text) {
-            TextureChoice read;
-            read.off = text == "off";
-            if (!read.off && text != "auto") {
-              char* end = nullptr;
-              const long edge = std::strtol(text.c_str(), &end, 10);
-              if (!std::isdigit(text[0]) || *end != 0 || edge < kLeastTextureEdge ||
-                  edge > kMostTextureEdge || !std::has_single_bit(unsigned(edge)))
-                return false;
-              read.edge = int(edge);
-            }
-            texture = read;
-            return true;
           }};
 }
 
@@ -246,16 +219,7 @@ void describe_run(Described& to, ReconstructOptions& o) {
   to.choice("report_page", &o.report_page, std::array{ReportPage::kOn, ReportPage::kOff},
             "write report.html, too: the model to turn, its cameras, the verdict and the figures, "
             "as one page for a browser");
-  std::string formats;
-  for (const MeshWriter& writer : mesh_writers())
-    formats += concat(formats.empty() ? "" : ", ", writer.name, " (", writer.what, ")");
-  to.text("export", &o.exports,
-          "a format that the mesh is written in, too (repeatable): " + formats);
-  to.text("texture", texture_words(o.texture),
-          "texture of exported files that hold one: as fine as the photographs (auto), one image "
-          "with edges of this many texels at most, or off: colours at vertices")
-      .expects =
-      concat("auto, off, or a power of two from ", kLeastTextureEdge, " to ", kMostTextureEdge);
+  describe_exports(to, o);
 }
 
 /// Those that take effect, in words.
@@ -340,7 +304,7 @@ void ReconstructOptions::validate() const {
   if (!(std::isfinite(mesh_error.value) && mesh_error.value >= 0))
     throw UsageError(
         concat(option_word("mesh_error", mesh_error.value), ": must be finite, 0 or more"));
-  for (const std::string& format : exports) find_mesh_writer(option_word("export"), format);
+  check_exports(*this);
   check_combinations(*this);
   tuned(*this);
 }

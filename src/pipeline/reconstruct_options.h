@@ -11,6 +11,7 @@
 #include "carving/statistic.h"
 #include "core/describe.h"
 #include "io/load_scene.h"
+#include "io/mesh/mesh_file_options.h"
 #include "pipeline/complete_box.h"
 #include "pipeline/photometric.h"
 #include "pipeline/refine_cameras.h"
@@ -87,6 +88,7 @@ struct ReconstructOptions {
   /// Formats that the mesh is written in beside PLY (io/mesh/mesh_writers.h).
   std::vector<std::string> exports;
   TextureChoice texture;
+  MeshFileOptions mesh_files;
   std::optional<double> image_scale;       ///< nothing: as the voxels need it (image_scale.h)
   std::optional<std::int64_t> max_memory;  ///< nothing: default_max_memory()
   std::string device = "auto";

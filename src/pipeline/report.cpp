@@ -142,7 +142,8 @@ void add_mesh(const Report& r, ordered_json& j) {
                     {"views", t->views},
                     {"texels", t->texels},
                     {"filled_share", t->filled_share},
-                    {"unseen_share", t->unseen_share}};
+                    {"unseen_share", t->unseen_share},
+                    {"memory_bytes", t->bytes}};
   j["surroundings"] = ordered_json::array();
   for (const ShellFindings& shell : r.surroundings)
     j["surroundings"].push_back(

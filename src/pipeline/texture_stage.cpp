@@ -5,12 +5,15 @@
 
 #include "io/mesh/mesh_writers.h"
 #include "mesh/simplify_mesh.h"
+#include "pipeline/read_scene.h"
 #include "texture/texture_mesh.h"
 
 namespace photohull::pipeline {
 namespace {
 
 constexpr double kTexturedError = 0.25;  // voxels
+constexpr std::int64_t kLeastBytes = std::int64_t(48) << 20;
+constexpr int kShareOfMemory = 3;
 constexpr double kLeastAgreement = 0.2;  // length of the mean of the photographs' upward directions
 
 TextureFindings found(const TriMesh& mesh, const TextureReport& report) {
@@ -25,6 +28,7 @@ TextureFindings found(const TriMesh& mesh, const TextureReport& report) {
   out.texels = report.texels;
   out.filled_share = report.texels ? double(report.filled) / double(report.texels) : 0;
   out.unseen_share = report.unseen_share;
+  out.bytes = report.bytes;
   return out;
 }
 
@@ -38,6 +42,10 @@ bool makes_texture(const ReconstructOptions& options) {
   });
 }
 
+std::int64_t texture_bytes(std::int64_t limit) {
+  return std::clamp(limit / kShareOfMemory, kLeastBytes, kMostTextureBytes);
+}
+
 TexturedMesh make_textured(const SurfaceJob& job, const TriMesh& uniform, const TriMesh& delivered,
                            TextureFindings& findings) {
   TexturedMesh out;
@@ -45,8 +53,10 @@ TexturedMesh make_textured(const SurfaceJob& job, const TriMesh& uniform, const 
                  ? delivered
                  : simplify_mesh(delivered, kTexturedError * job.subject.grid.voxel_size);
   job.progress.check_cancelled();
-  TextureResult made = texture_mesh(out.mesh, uniform, job.subject.views,
-                                    {.edge = job.options.texture.edge}, job.progress);
+  const TextureOptions options{.edge = job.options.texture.edge,
+                               .noise = job.subject.noise_sigma,
+                               .bytes = texture_bytes(memory_limit(job.options))};
+  TextureResult made = texture_mesh(out.mesh, uniform, job.subject.views, options, job.progress);
   findings = found(out.mesh, made.report);
   out.texture = std::move(made.texture);
   return out;

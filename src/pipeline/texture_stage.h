@@ -10,6 +10,10 @@ namespace photohull::pipeline {
 /// Is a format among those asked for that holds a texture, and is one wanted?
 bool makes_texture(const ReconstructOptions& options);
 
+/// What the stage may take beside meshes, photographs and finished pages, of a job that may take
+/// `limit`.
+std::int64_t texture_bytes(std::int64_t limit);
+
 /// The mesh for such files, with its texture. `uniform` has the colours of all voxels, `delivered`
 /// is mesh.ply's: the mesh itself where fewer triangles were asked for. Else triangles are merged
 /// here within a quarter of a voxel, for colours need no vertices any more. The photographs must

@@ -20,6 +20,12 @@
 namespace photohull::pipeline {
 namespace {
 
+/// Formats beside PLY, and how they are written.
+struct ExportChoice {
+  std::vector<std::string> formats;
+  MeshFileOptions options;
+};
+
 /// The mesh's files: PLY, and the formats asked for.
 std::vector<std::pair<std::string, const MeshWriter*>> mesh_files(
     const std::vector<std::string>& formats) {
@@ -58,17 +64,17 @@ void write_volume(const Reconstruction& result, ResultFiles& files, Progress& pr
 }
 
 /// A texture goes with the mesh that it is of.
-void write_meshes(const Reconstruction& result, const std::vector<std::string>& formats,
-                  ResultFiles& files, Report& report) {
+void write_meshes(const Reconstruction& result, const ExportChoice& exports, ResultFiles& files,
+                  Report& report) {
   const auto open = [&](const std::string& name) -> AtomicFile& {
     report.files.push_back(name);
     return files.open(name);
   };
-  for (const auto& [name, writer] : mesh_files(formats)) {
+  for (const auto& [name, writer] : mesh_files(exports.formats)) {
     const bool textured = writer->holds_textures && result.textured;
     writer->write(open(name),
                   {textured ? result.textured->mesh : result.mesh,
-                   textured ? &result.textured->texture : nullptr, result.up},
+                   textured ? &result.textured->texture : nullptr, result.up, exports.options},
                   open);
   }
 }
@@ -92,8 +98,8 @@ std::string command_line(const Report& report, const std::filesystem::path& fold
                 option_word("out", shell_word(folder.string())), report.given_words);
 }
 
-Report write_all(const Reconstruction& result, const std::vector<std::string>& formats,
-                 ResultFiles& files, Progress& given) {
+Report write_all(const Reconstruction& result, const ExportChoice& exports, ResultFiles& files,
+                 Progress& given) {
   const auto start = std::chrono::steady_clock::now();
   Report report = result.report;
   RecordingProgress progress(given);
@@ -102,7 +108,7 @@ Report write_all(const Reconstruction& result, const std::vector<std::string>& f
     write_volume(result, files, progress);
     progress.check_cancelled();
     report.files = {"volume.vdb"};
-    write_meshes(result, formats, files, report);
+    write_meshes(result, exports, files, report);
     write_picture(files.open("preview.png"), result.preview);
     report.files.push_back("preview.png");
     if (result.evidence) write_evidence(*result.evidence, files, report);
@@ -134,7 +140,7 @@ Report write(const Reconstruction& result, const std::filesystem::path& folder, 
   for (const std::string& format : formats) find_mesh_writer("formats", format);
   ResultFiles files(folder,
                     file_names(formats, result.evidence.has_value(), result.shown.has_value()));
-  return write_all(result, formats, files, progress);
+  return write_all(result, {formats, {}}, files, progress);
 }
 
 Report reconstruct_to_folder(const ReconstructOptions& options, const Photographs& photographs,
@@ -145,8 +151,8 @@ Report reconstruct_to_folder(const ReconstructOptions& options, const Photograph
   // What can fail at once does so before the photographs are decoded.
   ResultFiles files(folder, file_names(options.exports, options.evidence,
                                        options.report_page == ReportPage::kOn));
-  const Report report =
-      write_all(reconstructor.run(photographs, progress), options.exports, files, progress);
+  const Report report = write_all(reconstructor.run(photographs, progress),
+                                  {options.exports, options.mesh_files}, files, progress);
   remove_checkpoint(folder);
   return report;
 }

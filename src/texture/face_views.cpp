@@ -1,20 +1,15 @@
 #include "texture/face_views.h"
 
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "texture/surface.h"
-#include "texture/view_maps.h"
 
 namespace photohull::texture {
 namespace {
 
 constexpr double kLeastCosine = 0.2;       // between normal and viewing direction
 constexpr double kColourDeviation = 0.12;  // in roots of linear light
-constexpr int kMapsAtOnce = 4;
 
 /// What one photograph shows of a triangle.
 struct Shown {
@@ -29,13 +24,13 @@ constexpr float kAway = -1;
 /// clear to see.
 class ViewJudge {
  public:
-  ViewJudge(const TriMesh& mesh, const PreparedView& view, double scale)
+  ViewJudge(const TriMesh& mesh, const ViewSource& source, double sharpness)
       : mesh_(mesh),
-        pixels_(view, scale),
-        maps_(mesh, pixels_),
-        projector_(pixels_.camera(), mesh.origin),
+        pixels_(source.pixels),
+        maps_(source.maps),
+        projector_(source.projector),
         eye_(pixels_.camera().center() - mesh.origin),
-        sharp_(std::pow(view.sharpness, 4)) {}
+        sharp_(std::pow(sharpness, 4)) {}
 
   float quality(std::size_t face) const {
     const glm::dvec3 area = double_area(mesh_, face);
@@ -89,33 +84,22 @@ class ViewJudge {
   }
 
   const TriMesh& mesh_;
-  ViewPixels pixels_;
-  ViewMaps maps_;
-  Projector projector_;
+  const ViewPixels& pixels_;
+  const ViewMaps& maps_;
+  const Projector& projector_;
   glm::dvec3 eye_;  // relative to the mesh's origin
   double sharp_;
 };
 
 }  // namespace
 
-void for_views(std::size_t count, const std::function<void(std::size_t)>& f) {
-  tbb::task_arena arena(std::min(tbb::this_task_arena::max_concurrency(), kMapsAtOnce));
-  arena.execute([&] {
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, count, 1),
-        [&](const tbb::blocked_range<std::size_t>& range) {
-          for (std::size_t i = range.begin(); i < range.end(); ++i) f(i);
-        },
-        tbb::simple_partitioner());
-  });
-}
-
-FaceViews find_face_views(const TriMesh& mesh, std::span<const PreparedView> views, double scale,
-                          Progress& progress) {
+FaceViews find_face_views(const TriMesh& mesh, std::span<const PreparedView> views,
+                          ViewSources& sources, Progress& progress) {
   std::vector<std::vector<float>> quality(views.size());
   for_views(views.size(), [&](std::size_t v) {
     progress.check_cancelled();
-    const ViewJudge judge(mesh, views[v], scale);
+    const std::shared_ptr<const ViewSource> source = sources.get(v);
+    const ViewJudge judge(mesh, *source, views[v].sharpness);
     for (std::size_t face = 0; face < mesh.triangles.size(); ++face)
       quality[v].push_back(judge.quality(face));
   });
@@ -131,6 +115,25 @@ FaceViews find_face_views(const TriMesh& mesh, std::span<const PreparedView> vie
   }
   out.first.push_back(out.views.size());
   return out;
+}
+
+std::vector<float> weights_at_vertices(const TriMesh& mesh, const FaceViews& views,
+                                       std::uint32_t view) {
+  std::vector<float> sum(mesh.positions.size(), 0.0f), count(sum);
+  for (std::size_t face = 0; face < mesh.triangles.size(); ++face) {
+    const auto all = views.of(face);
+    const auto found =
+        std::lower_bound(all.begin(), all.end(), view,
+                         [](const FaceView& v, std::uint32_t i) { return v.view < i; });
+    const float quality = found != all.end() && found->view == view ? found->quality : 0;
+    for (const std::uint32_t vertex : mesh.triangles[face]) {
+      sum[vertex] += quality;
+      count[vertex] += 1;
+    }
+  }
+  for (std::size_t i = 0; i < sum.size(); ++i)
+    if (count[i] > 0) sum[i] /= count[i];
+  return sum;
 }
 
 }  // namespace photohull::texture

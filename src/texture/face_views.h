@@ -2,13 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
 #include "core/mesh.h"
-#include "core/prepared_view.h"
 #include "core/progress.h"
+#include "texture/view_sources.h"
 
 namespace photohull::texture {
 
@@ -35,10 +34,13 @@ struct FaceViews {
 /// fourth power, less where outlines are near or where the colour is not the mesh's own there: a
 /// highlight, or something that the mesh does not have. In parallel; the same for any number of
 /// threads. Throws Cancelled.
-FaceViews find_face_views(const TriMesh& mesh, std::span<const PreparedView> views, double scale,
-                          Progress& progress);
+FaceViews find_face_views(const TriMesh& mesh, std::span<const PreparedView> views,
+                          ViewSources& sources, Progress& progress);
 
-/// Calls `f(i)` for each view, in parallel, but few at a time: each holds maps of its photograph.
-void for_views(std::size_t count, const std::function<void(std::size_t)>& f);
+/// How much one photograph counts at each vertex, [0, 1]: the mean of its qualities in the
+/// triangles around, so that it changes steadily over the surface and is 0 where it shows nothing
+/// clearly.
+std::vector<float> weights_at_vertices(const TriMesh& mesh, const FaceViews& views,
+                                       std::uint32_t view);
 
 }  // namespace photohull::texture

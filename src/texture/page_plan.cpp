@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "core/error.h"
 #include "texture/surface.h"
@@ -37,9 +36,9 @@ class ChartBand {
       : mesh_(mesh),
         planes_(planes),
         chart_(chart),
-        nearest_(std::size_t(chart.size.x) * chart.size.y, {0, 0, 1e9f, 0}) {}
+        nearest_(std::size_t(chart.size.x) * chart.size.y, {0, 1e9f}) {}
 
-  void add(const Seam& seam, std::uint32_t index, int side) {
+  void add(const Seam& seam, int side) {
     const std::uint32_t face = seam.faces[side];
     const FaceInImage seen = on_chart(mesh_, planes_, chart_, face);
     std::array<glm::dvec2, 2> ends{};
@@ -70,31 +69,28 @@ class ChartBand {
         Near& near = nearest_[std::size_t(y) * chart_.size.x + x];
         if (distance >= std::min(kBand, double(near.distance))) continue;
         const bool beyond = t > 0 && t < 1 && inside * cross(p) < 0;
-        near = {index, other, float(distance), float(t), beyond};
+        near = {other, float(distance), beyond};
       }
   }
 
-  /// Appends those of texels that show something.
-  void collect(const PagePlan& plan, std::uint32_t chart_index,
-               std::vector<std::vector<BandTexel>>& bands) const {
+  /// Those of texels that show something.
+  std::vector<BandTexel> collect(const PagePlan& plan) const {
+    std::vector<BandTexel> band;
     for (int y = 0; y < chart_.size.y; ++y)
       for (int x = 0; x < chart_.size.x; ++x) {
         const Near& near = nearest_[std::size_t(y) * chart_.size.x + x];
         if (near.distance >= kBand || plan.face(chart_.place + glm::ivec2(x, y)) == kNoFace)
           continue;
         const double signed_distance = near.beyond ? -double(near.distance) : near.distance;
-        bands[near.other].push_back({chart_index,
-                                     {x, y},
-                                     near.seam,
-                                     near.along,
-                                     float(0.5 * (1 - signed_distance / kBand))});
+        band.push_back({{x, y}, near.other, float(0.5 * (1 - signed_distance / kBand))});
       }
+    return band;
   }
 
  private:
   struct Near {
-    std::uint32_t seam, other;  // other: the plane of the seam's other side
-    float distance, along;
+    std::uint32_t other;  // the plane of the seam's other side
+    float distance;
     bool beyond = false;
   };
 
@@ -116,30 +112,23 @@ FaceInImage on_chart(const TriMesh& mesh, const Planes& planes, const Chart& cha
 
 PagePlan::PagePlan(const TriMesh& mesh, const Planes& planes, std::span<const Chart> charts,
                    std::span<const Seam> seams, std::uint32_t page, const glm::ivec2& size)
-    : size_(size),
-      faces_(std::size_t(size.x) * size.y, kNoFace),
-      of_plane_(planes.projectors.size()),
-      bands_(planes.projectors.size()) {
-  std::vector<std::uint32_t> here;
+    : size_(size), faces_(std::size_t(size.x) * size.y, kNoFace), bands_(charts.size()) {
   for (std::uint32_t c = 0; c < charts.size(); ++c)
-    if (charts[c].page == page) {
-      here.push_back(c);
-      of_plane_[charts[c].plane].push_back(c);
-    }
-  tbb::parallel_for(std::size_t(0), here.size(),
-                    [&](std::size_t i) { draw_chart(mesh, planes, charts[here[i]]); });
+    if (charts[c].page == page) charts_.push_back(c);
   const std::vector<FaceSeam> by_face = seams_by_face(seams);
-  for (const std::uint32_t c : here) {
-    ChartBand band(mesh, planes, charts[c]);
+  tbb::parallel_for(std::size_t(0), charts_.size(), [&](std::size_t i) {
+    const Chart& chart = charts[charts_[i]];
+    draw_chart(mesh, planes, chart);
+    ChartBand band(mesh, planes, chart);
     bool any = false;
-    for (const std::uint32_t face : charts[c].faces)
+    for (const std::uint32_t face : chart.faces)
       for (auto s = std::lower_bound(by_face.begin(), by_face.end(), FaceSeam{face, 0, 0});
            s != by_face.end() && s->face == face; ++s) {
-        band.add(seams[s->seam], s->seam, s->side);
+        band.add(seams[s->seam], s->side);
         any = true;
       }
-    if (any) band.collect(*this, c, bands_);
-  }
+    if (any) bands_[charts_[i]] = band.collect(*this);
+  });
 }
 
 void PagePlan::draw_chart(const TriMesh& mesh, const Planes& planes, const Chart& chart) {

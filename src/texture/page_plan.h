@@ -14,11 +14,9 @@ namespace photohull::texture {
 
 /// A texel of a chart that lies near a seam.
 struct BandTexel {
-  std::uint32_t chart = 0;
-  glm::ivec2 texel{0};     ///< in the chart
-  std::uint32_t seam = 0;  ///< the nearest
-  float along = 0;         ///< where it is nearest, from the seam's first end (0) to its second (1)
-  float share = 0;         ///< of the other side's colour: one half on the seam
+  glm::ivec2 texel{0};      ///< in the chart
+  std::uint32_t plane = 0;  ///< of the nearest seam's other side
+  float share = 0;          ///< of the other side's colour: one half on the seam
 };
 
 /// Faces of a page's texels, and what they share with the other sides of seams.
@@ -28,10 +26,9 @@ class PagePlan {
            std::span<const Seam> seams, std::uint32_t page, const glm::ivec2& size);
 
   const glm::ivec2& size() const { return size_; }
-  /// Indices of the charts on the page, by their planes.
-  const std::vector<std::vector<std::uint32_t>>& charts_of_plane() const { return of_plane_; }
-  /// By the plane of the other side.
-  const std::vector<std::vector<BandTexel>>& band_of_plane() const { return bands_; }
+  /// Indices of the charts on the page.
+  const std::vector<std::uint32_t>& charts() const { return charts_; }
+  std::span<const BandTexel> band_of_chart(std::uint32_t chart) const { return bands_[chart]; }
   /// kNoFace where no chart is.
   std::uint32_t face(const glm::ivec2& at) const { return faces_[index(at)]; }
   std::size_t index(const glm::ivec2& at) const {
@@ -43,8 +40,8 @@ class PagePlan {
 
   glm::ivec2 size_;
   std::vector<std::uint32_t> faces_;
-  std::vector<std::vector<std::uint32_t>> of_plane_;
-  std::vector<std::vector<BandTexel>> bands_;
+  std::vector<std::uint32_t> charts_;
+  std::vector<std::vector<BandTexel>> bands_;  // of each chart; empty for those of other pages
 };
 
 /// The triangle where it lies on its chart: (0, 0) is the centre of the chart's first texel.

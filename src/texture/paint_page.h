@@ -5,10 +5,11 @@
 #include <span>
 
 #include "core/mesh_texture.h"
-#include "core/prepared_view.h"
 #include "core/progress.h"
+#include "texture/face_views.h"
 #include "texture/fill_colour.h"
 #include "texture/page_plan.h"
+#include "texture/view_sources.h"
 
 namespace photohull::texture {
 
@@ -16,23 +17,28 @@ struct PaintedPage {
   TexturePage page;
   std::int64_t texels = 0;  ///< that show the surface
   std::int64_t filled = 0;  ///< of these, with the fill's colours, for no photograph is clear there
+  std::int64_t most_at_once = 0;  ///< texels of the charts that were painted at a time
 };
 
 /// What a page is painted with; all outlives it.
 struct Paint {
   const TriMesh& mesh;
-  std::span<const PreparedView> views;
-  double scale;  ///< of the photographs
+  ViewSources& sources;
   const Planes& planes;
+  const FaceViews& seen;
   std::span<const Chart> charts;
-  std::span<const Seam> seams;
-  const Levels& levels;
   const FillColour& fill;
+  double noise;  ///< standard deviation of the photographs' pixels, roots of linear light
+  std::int64_t canvas_texels;  ///< of charts that are painted at a time; one chart in any case
 };
 
-/// Each texel is a pixel of its chart's photograph, where that is clear, and else the fill's
-/// colour; on both sides of a seam the two photographs are blended. Texels that show nothing repeat
-/// what is nearby. In parallel; the same for any number of threads. Throws Cancelled.
+/// Bytes that a page takes for each texel while it is painted: faces, colours, the page itself.
+inline constexpr std::int64_t kPageBytes = 14;
+
+/// Each texel has the coarse part of the mean of all photographs that show it clearly, and the fine
+/// part of its chart's photograph and of those that agree with it to a part of a pixel
+/// (texture/canvas.h); where none is clear, the fill's colour. Texels that show nothing repeat what
+/// is nearby. In parallel; the same for any number of threads. Throws Cancelled.
 PaintedPage paint_page(const Paint& paint, const PagePlan& plan, Progress& progress);
 
 }  // namespace photohull::texture

@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "core/error.h"
 #include "core/option_word.h"
+#include "texture/canvas.h"
 #include "texture/charts.h"
 #include "texture/face_views.h"
 #include "texture/label_faces.h"
@@ -25,6 +27,7 @@ namespace {
 
 constexpr double kSeamPrice = 0.005;  // of the mesh's diagonal
 constexpr double kLeastScale = 1.0 / 64;
+constexpr int kLeastPageEdge = 1024;  // where memory is scarce
 
 using Neighbours = std::vector<std::array<std::uint32_t, 3>>;
 
@@ -57,7 +60,8 @@ int axis_of(const glm::dvec3& area) {
 struct Atlas {
   double scale = 1;
   Planes planes;
-  std::vector<std::uint8_t> clear;  // of each triangle: does a photograph show it?
+  std::unique_ptr<ViewSources> sources;
+  FaceViews seen;
   std::vector<Chart> charts;
   glm::ivec2 page{0};
   std::uint32_t pages = 0;  // 0: a chart is larger than a page
@@ -86,17 +90,32 @@ std::vector<glm::ivec2> sizes_of(std::span<const Chart> charts) {
   return sizes;
 }
 
+/// What the work may take: a third for maps of photographs, a third for charts, a third for a page.
+struct Shares {
+  std::int64_t maps, canvas_texels;
+  int page_edge;
+};
+
+Shares shares_of(const TextureOptions& options) {
+  const std::int64_t third = options.bytes / 3;
+  int edge = options.edge ? options.edge : options.page_edge;
+  if (!options.edge)
+    while (edge > kLeastPageEdge && kPageBytes * edge * edge > third) edge /= 2;
+  return {third, third / kCanvasBytes, edge};
+}
+
 /// Charts on pages, at a scale.
 Atlas lay_out(const TriMesh& mesh, const Neighbours& neighbours,
               std::span<const PreparedView> views, double scale, double fill_texel,
               const TextureOptions& options, Progress& progress) {
-  const int edge = options.edge ? options.edge : options.page_edge;
+  const Shares shares = shares_of(options);
+  const int edge = shares.page_edge;
   Atlas atlas;
   atlas.scale = scale;
-  FaceViews seen = find_face_views(mesh, views, scale, progress);
-  const std::vector<std::int32_t> labels =
-      label_faces(mesh, neighbours, seen, views.size(), kSeamPrice * diagonal_of(mesh), progress);
-  atlas.clear = std::move(seen.clear);
+  atlas.sources = std::make_unique<ViewSources>(mesh, views, scale, shares.maps);
+  atlas.seen = find_face_views(mesh, views, *atlas.sources, progress);
+  const std::vector<std::int32_t> labels = label_faces(mesh, neighbours, atlas.seen, views.size(),
+                                                       kSeamPrice * diagonal_of(mesh), progress);
   atlas.planes = make_planes(mesh, views, scale, labels, fill_texel);
   atlas.charts = make_charts(mesh, neighbours, atlas.planes, edge, progress);
   int largest = 0;
@@ -141,7 +160,7 @@ void report_on(const TriMesh& mesh, const Atlas& atlas, std::span<const Seam> se
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
     const double size = glm::length(double_area(mesh, f));
     area += size;
-    if (atlas.clear[f])
+    if (atlas.seen.clear[f])
       used[atlas.planes.of_face[f]] = 1;
     else
       unseen += size;
@@ -186,18 +205,22 @@ TextureResult texture_mesh(const TriMesh& mesh, const TriMesh& coloured,
   progress.update(0.5);
   const FillColour fill(coloured);
   const std::vector<Seam> seams = find_seams(mesh, neighbours, atlas.planes.of_face);
-  const Levels levels = level_seams(mesh, views, scale, atlas.planes, seams, fill, progress);
   TextureResult out;
   report_on(mesh, atlas, seams, out.report);
+  std::int64_t most_at_once = 0;
   for (std::uint32_t page = 0; page < atlas.pages; ++page) {
     progress.update(0.6 + 0.4 * page / atlas.pages);
     const PagePlan plan(mesh, atlas.planes, atlas.charts, seams, page, atlas.page);
-    PaintedPage painted = paint_page(
-        {mesh, views, scale, atlas.planes, atlas.charts, seams, levels, fill}, plan, progress);
+    PaintedPage painted = paint_page({mesh, *atlas.sources, atlas.planes, atlas.seen, atlas.charts,
+                                      fill, options.noise, shares_of(options).canvas_texels},
+                                     plan, progress);
+    most_at_once = std::max(most_at_once, painted.most_at_once);
     out.report.texels += painted.texels;
     out.report.filled += painted.filled;
     out.texture.pages.push_back(std::move(painted.page));
   }
+  out.report.bytes = atlas.sources->bytes() + most_at_once * kCanvasBytes +
+                     kPageBytes * std::int64_t(atlas.page.x) * atlas.page.y;
   set_corners(mesh, atlas, out.texture);
   return out;
 }

@@ -14,11 +14,19 @@ namespace photohull {
 inline constexpr int kLeastTextureEdge = 128;
 inline constexpr int kMostTextureEdge = 4096;
 
+/// Beyond which the work takes no more (a page of 4096 squared, its charts, and maps).
+inline constexpr std::int64_t kMostTextureBytes = std::int64_t(768) << 20;
+
 struct TextureOptions {
   /// Longest edge of the texture, texels, a power of two: it is then one page, with coarser texels
   /// where the photographs hold more. 0: texels as fine as the photographs' pixels.
   int edge = 0;
   int page_edge = kMostTextureEdge;  ///< of pages at most where `edge` is 0; a power of two
+  double noise = 0;  ///< standard deviation of the photographs' pixels, roots of linear light
+  /// That the work may take beside meshes, photographs and finished pages: fewer maps of
+  /// photographs are kept, fewer charts are painted at a time, and pages are smaller (1024 texels
+  /// along each side in any case).
+  std::int64_t bytes = kMostTextureBytes;
 };
 
 struct TextureReport {
@@ -31,6 +39,7 @@ struct TextureReport {
   std::int64_t filled = 0;  ///< of these, that no photograph shows clear of outlines
   double unseen_share = 0;  ///< of the mesh's area, for which all texels are filled
   double seam_length = 0;   ///< between photographs, world units
+  std::int64_t bytes = 0;   ///< that the work took at most (TextureOptions::bytes)
 };
 
 struct TextureResult {

@@ -9,14 +9,14 @@ namespace photohull {
 
 std::span<const MeshWriter> mesh_writers() {
   static constexpr MeshWriter kWriters[] = {
-      {"ply", "colours, normals and confidence", false,
+      {"ply", "colours, normals and confidence", false, false, false,
        [](AtomicFile& file, const MeshContents& contents, const OpenBeside&) {
          write_ply(file, contents.mesh);
        }},
-      {"stl", "triangles alone, for printers", false, write_stl},
-      {"glb", "glTF with a texture, for the web and viewers", true, write_glb},
-      {"obj", "with a texture, for modelling programs", true, write_obj},
-      {"usdz", "with a texture, for phones and tablets", true, write_usdz},
+      {"stl", "triangles alone, for printers", false, true, false, write_stl},
+      {"glb", "glTF with a texture, for the web and viewers", true, true, true, write_glb},
+      {"obj", "with a texture, for modelling programs", true, false, false, write_obj},
+      {"usdz", "with a texture, for phones and tablets", true, true, false, write_usdz},
   };
   return kWriters;
 }

@@ -77,8 +77,8 @@ glm::vec3 unit_normal(const TriMesh& mesh, std::size_t vertex) {
   return length > 0.5f && length < 2 ? normal / length : glm::vec3(0, 0, 1);
 }
 
-std::string page_name(const AtomicFile& file, std::size_t page) {
-  return concat(file.target().stem().string(), "_", page, ".png");
+std::string page_name(const AtomicFile& file, std::size_t page, TextureFormat format) {
+  return concat(file.target().stem().string(), "_", page, ".", extension_of(format));
 }
 
 }  // namespace photohull

@@ -29,6 +29,6 @@ glm::dmat3 y_up_from_world(const glm::dvec3& up);
 glm::vec3 unit_normal(const TriMesh& mesh, std::size_t vertex);
 
 /// "mesh_0.png", for a mesh in mesh.obj.
-std::string page_name(const AtomicFile& file, std::size_t page);
+std::string page_name(const AtomicFile& file, std::size_t page, TextureFormat format);
 
 }  // namespace photohull

@@ -5,7 +5,6 @@
 
 #include "core/error.h"
 #include "core/image.h"
-#include "io/image_file.h"
 #include "io/mesh/mesh_writers.h"
 #include "io/mesh/split_mesh.h"
 
@@ -76,12 +75,14 @@ void add_faces(const MeshContents& contents, const MeshPart& part, std::size_t f
   }
 }
 
-void write_materials(const AtomicFile& file, const MeshTexture& texture, const OpenBeside& beside) {
+void write_materials(const AtomicFile& file, const MeshContents& contents,
+                     const OpenBeside& beside) {
   std::string text;
-  for (std::size_t p = 0; p < texture.pages.size(); ++p) {
-    const TexturePage& page = texture.pages[p];
-    const std::string name = page_name(file, p);
-    io::write_png(beside(name), page.width, page.height, 3, page.rgb);
+  const TextureFormat format = contents.options.texture_format;
+  for (std::size_t p = 0; p < contents.texture->pages.size(); ++p) {
+    const std::string name = page_name(file, p, format);
+    const PageImage image = encode_page(contents.texture->pages[p], format);
+    beside(name).write(image.bytes.data(), image.bytes.size());
     text +=
         concat("newmtl page_", p, "\nKa 0 0 0\nKd 1 1 1\nKs 0 0 0\nillum 1\nmap_Kd ", name, "\n");
   }
@@ -106,7 +107,7 @@ void write_obj(AtomicFile& file, const MeshContents& contents, const OpenBeside&
     first += parts[p].places.size();
   }
   lines.flush();
-  if (contents.texture) write_materials(file, *contents.texture, beside);
+  if (contents.texture) write_materials(file, contents, beside);
 }
 
 }  // namespace photohull

@@ -12,13 +12,13 @@ namespace photohull {
 namespace {
 
 /// Its destructor frees what it points to.
-std::unique_ptr<aiMesh> to_assimp(const TriMesh& mesh) {
+std::unique_ptr<aiMesh> to_assimp(const TriMesh& mesh, double scale) {
   auto out = std::make_unique<aiMesh>();
   out->mPrimitiveTypes = aiPrimitiveType_TRIANGLE;
   out->mNumVertices = unsigned(mesh.positions.size());
   out->mVertices = new aiVector3D[mesh.positions.size()];
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-    const glm::vec3 p(mesh.world(i));
+    const glm::vec3 p(scale * mesh.world(i));
     out->mVertices[i] = aiVector3D(p.x, p.y, p.z);
   }
   out->mNumFaces = unsigned(mesh.triangles.size());
@@ -34,12 +34,12 @@ std::unique_ptr<aiMesh> to_assimp(const TriMesh& mesh) {
 }  // namespace
 
 void write_stl(AtomicFile& file, const MeshContents& contents, const OpenBeside&) {
-  const TriMesh& mesh = contents.mesh;
+  const double millimetres = contents.options.unit ? 1000 * contents.options.metres() : 1;
   aiScene scene;
   scene.mNumMaterials = 1;
   scene.mMaterials = new aiMaterial* [1] { new aiMaterial };
   scene.mNumMeshes = 1;
-  scene.mMeshes = new aiMesh* [1] { to_assimp(mesh).release() };
+  scene.mMeshes = new aiMesh* [1] { to_assimp(contents.mesh, millimetres).release() };
   scene.mRootNode = new aiNode;
   scene.mRootNode->mNumMeshes = 1;
   scene.mRootNode->mMeshes = new unsigned[1]{0};

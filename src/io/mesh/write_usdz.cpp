@@ -5,7 +5,6 @@
 #include <string>
 
 #include "core/error.h"
-#include "io/image_file.h"
 #include "io/mesh/mesh_writers.h"
 #include "io/mesh/split_mesh.h"
 #include "io/mesh/stored_zip.h"
@@ -31,8 +30,8 @@ class UsdLayer {
     const std::vector<MeshPart> parts = split_by_pages(contents_);
     const glm::dvec3 origin = turn_ * mesh_.origin;
     text_ = concat("#usda 1.0\n(\n    defaultPrim = \"model\"\n    doc = \"photohull ",
-                   PHOTOHULL_VERSION,
-                   "\"\n    metersPerUnit = 1\n    upAxis = \"Y\"\n)\n\n"
+                   PHOTOHULL_VERSION, "\"\n    metersPerUnit = ", contents_.options.metres(),
+                   "\n    upAxis = \"Y\"\n)\n\n"
                    "def Xform \"model\" (\n    kind = \"component\"\n)\n{\n");
     append(text_, "    double3 xformOp:translate = (%.17g, %.17g, %.17g)\n", origin.x, origin.y,
            origin.z);
@@ -140,7 +139,9 @@ class UsdLayer {
   }
 
  public:
-  static std::string page_path(std::size_t page) { return concat("textures/page_", page, ".png"); }
+  std::string page_path(std::size_t page) const {
+    return concat("textures/page_", page, ".", extension_of(contents_.options.texture_format));
+  }
 
  private:
   const MeshContents& contents_;
@@ -153,12 +154,12 @@ class UsdLayer {
 
 void write_usdz(AtomicFile& file, const MeshContents& contents, const OpenBeside&) {
   StoredZip zip(file);
-  const std::string layer = UsdLayer(contents).text();
+  UsdLayer usd(contents);
+  const std::string layer = usd.text();
   zip.add("model.usda", {reinterpret_cast<const std::uint8_t*>(layer.data()), layer.size()});
-  for (std::size_t p = 0; contents.texture && p < contents.texture->pages.size(); ++p) {
-    const TexturePage& page = contents.texture->pages[p];
-    zip.add(UsdLayer::page_path(p), io::encode_png(page.width, page.height, 3, page.rgb));
-  }
+  for (std::size_t p = 0; contents.texture && p < contents.texture->pages.size(); ++p)
+    zip.add(usd.page_path(p),
+            encode_page(contents.texture->pages[p], contents.options.texture_format).bytes);
   zip.finish();
 }
 
