@@ -133,10 +133,10 @@ void add_pose(CLI::App& app) {
       ->required();
   c->add_option("--board", a->board, "JSON file that photohull board wrote beside the sheet")
       ->required();
-  c->add_option("--out", a->out, "folder for the scene: transforms.json, pose.json and masks/")->required();
+  c->add_option("--out", a->out, "folder for the scene: transforms.json, pose.json and masks/")
+      ->required();
   add_flags_of(*c, a->pose);
-  c->add_flag("--no-masks", a->no_masks,
-              "make no masks of what differs from the sheet's picture");
+  c->add_flag("--no-masks", a->no_masks, "make no masks of what differs from the sheet's picture");
   c->add_flag("--json", a->json, "print pose.json instead of a summary");
   c->footer(
       "The world is the sheet's: z = 0 is the paper, z points up, lengths are millimetres unless "

@@ -17,16 +17,17 @@ ordered_json vector_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
 ordered_json camera_json(const PosedCamera& c) {
   const Intrinsics& k = c.intrinsics;
-  return {{"name", c.name},
-          {"photographs", c.photographs},
-          {"width", k.width},
-          {"height", k.height},
-          {"focal_length", {k.fx, k.fy}},
-          {"principal_point", {k.cx, k.cy}},
-          {"distortion", c.distortion.coefficients},
-          {"stated_focal_length", c.stated_focal > 0 ? ordered_json(c.stated_focal) : ordered_json()},
-          {"focal_sigma", finite_or_null(c.focal_sigma)},
-          {"principal_point_sigma", finite_or_null(c.principal_sigma)}};
+  return {
+      {"name", c.name},
+      {"photographs", c.photographs},
+      {"width", k.width},
+      {"height", k.height},
+      {"focal_length", {k.fx, k.fy}},
+      {"principal_point", {k.cx, k.cy}},
+      {"distortion", c.distortion.coefficients},
+      {"stated_focal_length", c.stated_focal > 0 ? ordered_json(c.stated_focal) : ordered_json()},
+      {"focal_sigma", finite_or_null(c.focal_sigma)},
+      {"principal_point_sigma", finite_or_null(c.principal_sigma)}};
 }
 
 ordered_json photo_json(const std::string& name, const PosedPhoto& p) {
@@ -56,8 +57,8 @@ std::string pose_json(const std::vector<std::string>& names, const PoseResult& r
   j["world_units_per_mm"] = result.scale;
   j["box"] = {vector_json(result.box.min), vector_json(result.box.max)};
   const SheetBend& b = result.bend;
-  j["bend"] = {{"found", b.found},   {"xx", b.xx},         {"xy", b.xy},
-               {"yy", b.yy},         {"height", b.height}, {"height_sigma", b.height_sigma}};
+  j["bend"] = {{"found", b.found}, {"xx", b.xx},         {"xy", b.xy},
+               {"yy", b.yy},       {"height", b.height}, {"height_sigma", b.height_sigma}};
   j["warnings"] = result.warnings;
   j["cameras"] = ordered_json::array();
   for (const PosedCamera& camera : result.cameras) j["cameras"].push_back(camera_json(camera));
@@ -83,7 +84,8 @@ void print_pose(const std::vector<std::string>& names, const PoseResult& result)
   if (result.bend.found)
     std::printf("the sheet is bent: it rises or falls by %.3g +- %.2g units at its rim\n",
                 result.bend.height, result.bend.height_sigma);
-  for (const std::string& text : result.warnings) std::fprintf(stderr, "warning: %s\n", text.c_str());
+  for (const std::string& text : result.warnings)
+    std::fprintf(stderr, "warning: %s\n", text.c_str());
 }
 
 }  // namespace photohull::cli

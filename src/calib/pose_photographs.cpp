@@ -110,9 +110,7 @@ class Poser {
   }
 
   /// Deviation of a coordinate: of Rayleigh's distribution by its median.
-  double noise_of(const SheetPhoto& photo) const {
-    return median(problem_.errors(photo)) / 1.1774;
-  }
+  double noise_of(const SheetPhoto& photo) const { return median(problem_.errors(photo)) / 1.1774; }
 
   bool drop_outliers() {
     bool dropped = false;
@@ -261,9 +259,9 @@ class Poser {
   void warn() {
     for (const PosedCamera& c : result_.cameras)
       if (c.photographs > 0 && !(c.focal_sigma < kUncertainFocal * c.intrinsics.fx))
-        result_.warnings.push_back(
-            concat(c.name, ": the focal length is uncertain, ", c.intrinsics.fx, " +- ",
-                   c.focal_sigma, " px; photograph the sheet from more heights"));
+        result_.warnings.push_back(concat(c.name, ": the focal length is uncertain, ",
+                                          c.intrinsics.fx, " +- ", c.focal_sigma,
+                                          " px; photograph the sheet from more heights"));
     int twice = 0, foreign = 0;
     for (const PosePhoto& photo : given_)
       twice += photo.view.twice > 0, foreign += photo.view.foreign > 0;
@@ -298,8 +296,8 @@ void describe(Described& to, PoseOptions& o) {
   to.number("height", &o.height, from_to(0, kLargest), "mm", "height of the box above the sheet")
       .zero = "the longer side of the free space";
   to.number("margin", &o.margin, from_to(0, kLargest), "mm", "from the sheet up to the box");
-  to.number("unit", &o.unit, above(0, kLargest), "mm", "unit of the scene's world")
-      .expects = "a length above 0: 1 for millimetres, 1000 for metres";
+  to.number("unit", &o.unit, above(0, kLargest), "mm", "unit of the scene's world").expects =
+      "a length above 0: 1 for millimetres, 1000 for metres";
   to.flag("flat", &o.flat, "take the sheet for flat, and do not find out whether it is bent");
 }
 

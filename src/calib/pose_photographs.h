@@ -19,11 +19,11 @@ struct PosePhoto {
 
 struct PoseOptions {
   LensModel lens = LensModel::kBrown;
-  double bar = 0;      ///< of the printed bar as measured, mm; 0: as the sheet says
-  double height = 0;   ///< of the box above the sheet, mm; 0: the longer side of the free space
-  double margin = 1;   ///< from the sheet up to the box, mm
-  double unit = 1;     ///< of the world, mm
-  bool flat = false;   ///< do not find out whether the sheet is bent
+  double bar = 0;     ///< of the printed bar as measured, mm; 0: as the sheet says
+  double height = 0;  ///< of the box above the sheet, mm; 0: the longer side of the free space
+  double margin = 1;  ///< from the sheet up to the box, mm
+  double unit = 1;    ///< of the world, mm
+  bool flat = false;  ///< do not find out whether the sheet is bent
 };
 
 void describe(Described& to, PoseOptions& options);
@@ -54,8 +54,8 @@ struct PosedPhoto {
 struct SheetBend {
   bool found = false;  ///< beyond doubt; else all is 0 and the sheet is taken for a plane
   double xx = 0, xy = 0, yy = 0;  ///< per world unit
-  double height = 0;       ///< of the page's edges and corners, world units, the largest
-  double height_sigma = 0; ///< its standard deviation
+  double height = 0;              ///< of the page's edges and corners, world units, the largest
+  double height_sigma = 0;        ///< its standard deviation
 };
 
 /// World: the sheet's frame (sheet.h), z = 0 the paper and z up, in the unit asked for.
@@ -64,7 +64,7 @@ struct PoseResult {
   std::vector<PosedPhoto> photos;  ///< as many as were given
   double rms = 0;                  ///< pixels, of all points that count
   double scale = 1;                ///< world units to a millimetre of the sheet as it is described
-  double object_error = 0;         ///< pixels, as Calibration has it, of an object that fills the box
+  double object_error = 0;  ///< pixels, as Calibration has it, of an object that fills the box
   SheetBend bend;
   Box box;  ///< above the free space
   std::vector<std::string> warnings;

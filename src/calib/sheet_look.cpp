@@ -83,9 +83,8 @@ SheetLook look_at_sheet(const PoseResult& result, std::size_t photo, const Sheet
       bool beside = false;
       for (int k = 0; k < kSamples * kSamples; ++k) {
         const double u = (k % kSamples + 0.5) / kSamples, v = (k / kSamples + 0.5) / kSamples;
-        const float light =
-            sight.light(picture, glm::mix(glm::mix(above[x], above[x + 1], u),
-                                          glm::mix(below[x], below[x + 1], u), v));
+        const float light = sight.light(picture, glm::mix(glm::mix(above[x], above[x + 1], u),
+                                                          glm::mix(below[x], below[x + 1], u), v));
         beside = beside || light < 0;
         sum += light / (kSamples * kSamples);
       }

@@ -38,7 +38,8 @@ struct PaperPrior {
   bool operator()(const T* bend, T* residual) const {
     using std::sqrt;
     const T squares = bend[0] * bend[0] + 0.5 * bend[1] * bend[1] + bend[2] * bend[2];
-    residual[0] = (bend[0] * bend[2] - 0.25 * bend[1] * bend[1]) / sqrt(squares + loose * loose) / loose;
+    residual[0] =
+        (bend[0] * bend[2] - 0.25 * bend[1] * bend[1]) / sqrt(squares + loose * loose) / loose;
     return true;
   }
 };
@@ -58,8 +59,7 @@ struct LensPrior {
     residual[1] = log(lens[0] / focal) / focal_share;
     residual[2] = (lens[2] - (size.x - 1) / 2) / (kMiddle * size.x);
     residual[3] = (lens[3] - (size.y - 1) / 2) / (kMiddle * size.x);
-    for (int i = 4; i < 12; ++i)
-      residual[i] = lens[i] / (i == 6 || i == 7 ? kTangential : kRadial);
+    for (int i = 4; i < 12; ++i) residual[i] = lens[i] / (i == 6 || i == 7 ? kTangential : kRadial);
     return true;
   }
 };

@@ -48,9 +48,8 @@ void SheetProblem::add_all(ceres::Problem& problem, bool bent) {
     if (!problem.HasParameterBlock(camera.lens.data())) continue;
     const double focal = camera.stated_focal > 0 ? camera.stated_focal : camera.lens[0];
     problem.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<LensPrior, 12, 12>(
-            new LensPrior{focal, camera.stated_focal > 0 ? kStatedFocal : kAnyFocal,
-                          glm::dvec2(camera.size)}),
+        new ceres::AutoDiffCostFunction<LensPrior, 12, 12>(new LensPrior{
+            focal, camera.stated_focal > 0 ? kStatedFocal : kAnyFocal, glm::dvec2(camera.size)}),
         nullptr, camera.lens.data());
     hold_lens(problem, model, false, camera.lens);
   }

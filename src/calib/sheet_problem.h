@@ -20,7 +20,7 @@ struct SheetCamera {
 
 /// A photograph on its way to a pose.
 struct SheetPhoto {
-  BoardView view;                ///< points that count, millimetres
+  BoardView view;                  ///< points that count, millimetres
   std::vector<std::size_t> group;  ///< of each point: its tag, or a saddle by itself
   std::size_t camera = 0;
   Rigid pose{};
@@ -55,8 +55,8 @@ struct SheetProblem {
   void add_all(ceres::Problem& problem, bool bent);
 };
 
-/// Cameras by name, with lenses from what files state or from homographies [Zhang00], and a pose for
-/// each photograph that is used [Collins14]; one that gets none is not used any more.
+/// Cameras by name, with lenses from what files state or from homographies [Zhang00], and a pose
+/// for each photograph that is used [Collins14]; one that gets none is not used any more.
 void start_sheet_problem(const std::vector<PosePhoto>& photos, SheetProblem& problem);
 
 /// Takes tags out of a view that no plane has where the others are, by RANSAC; returns how many.

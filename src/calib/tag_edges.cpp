@@ -9,8 +9,8 @@
 namespace photohull {
 namespace {
 
-constexpr double kStep = 0.25;          // pixels, along a profile
-constexpr double kMargin = 0.08;        // of an edge at either end, where the neighbours' blur is
+constexpr double kStep = 0.25;    // pixels, along a profile
+constexpr double kMargin = 0.08;  // of an edge at either end, where the neighbours' blur is
 constexpr double kLeastReach = 1.25, kMostReach = 6;  // pixels to either side
 constexpr double kReachInCells = 0.75;
 constexpr double kLeastContrast = 0.02;  // of linear light
@@ -75,17 +75,18 @@ std::size_t for_each_place(const cv::Mat& image, const glm::dvec2& a, const glm:
 EdgePoints find_rises(const cv::Mat& image, const glm::dvec2& a, const glm::dvec2& b,
                       double reach) {
   EdgePoints found;
-  found.asked = for_each_place(image, a, b, reach, [&](const glm::dvec2& at, const glm::dvec2& out) {
-    const std::vector<double> light = profile(image, at, out, reach);
-    constexpr std::size_t kSpan = std::size_t(1 / kStep);  // a pixel
-    double most = kLeastContrast / 2, offset = 0;
-    for (std::size_t k = 0; k + kSpan < light.size(); ++k)
-      if (light[k + kSpan] - light[k] > most) {
-        most = light[k + kSpan] - light[k];
-        offset = kStep * (double(k) + 0.5 * kSpan - 0.5 * double(light.size() - 1));
-      }
-    if (most > kLeastContrast / 2) found.places.push_back(at + offset * out);
-  });
+  found.asked =
+      for_each_place(image, a, b, reach, [&](const glm::dvec2& at, const glm::dvec2& out) {
+        const std::vector<double> light = profile(image, at, out, reach);
+        constexpr std::size_t kSpan = std::size_t(1 / kStep);  // a pixel
+        double most = kLeastContrast / 2, offset = 0;
+        for (std::size_t k = 0; k + kSpan < light.size(); ++k)
+          if (light[k + kSpan] - light[k] > most) {
+            most = light[k + kSpan] - light[k];
+            offset = kStep * (double(k) + 0.5 * kSpan - 0.5 * double(light.size() - 1));
+          }
+        if (most > kLeastContrast / 2) found.places.push_back(at + offset * out);
+      });
   return found;
 }
 
@@ -93,34 +94,36 @@ EdgePoints find_rises(const cv::Mat& image, const glm::dvec2& a, const glm::dvec
 EdgePoints find_points(const cv::Mat& image, const glm::dvec2& a, const glm::dvec2& b,
                        double reach) {
   EdgePoints found;
-  found.asked = for_each_place(image, a, b, reach, [&](const glm::dvec2& at, const glm::dvec2& out) {
-    const std::vector<double> light = profile(image, at, out, reach);
-    const std::size_t ends = std::max<std::size_t>(1, light.size() / 8);
-    double dark = 0, bright = 0, area = 0;
-    for (std::size_t k = 0; k < ends; ++k)
-      dark += light[k] / double(ends), bright += light[light.size() - 1 - k] / double(ends);
-    const double contrast = bright - dark;
-    if (!(contrast > kLeastContrast)) return;
-    // The area under the profile is that of a step, however blurred to both sides alike.
-    std::size_t rising = 0;
-    for (const double value : light) {
-      const double share = (value - dark) / contrast;
-      area += share;
-      rising += share > 0.2 && share < 0.8;
-    }
-    const double offset = kStep * (double(light.size()) / 2 - area);
-    if (std::abs(offset) > reach) return;
-    found.places.push_back(at + offset * out);
-    found.contrasts.push_back(contrast);
-    found.widths.push_back(kStep * double(rising));
-  });
+  found.asked =
+      for_each_place(image, a, b, reach, [&](const glm::dvec2& at, const glm::dvec2& out) {
+        const std::vector<double> light = profile(image, at, out, reach);
+        const std::size_t ends = std::max<std::size_t>(1, light.size() / 8);
+        double dark = 0, bright = 0, area = 0;
+        for (std::size_t k = 0; k < ends; ++k)
+          dark += light[k] / double(ends), bright += light[light.size() - 1 - k] / double(ends);
+        const double contrast = bright - dark;
+        if (!(contrast > kLeastContrast)) return;
+        // The area under the profile is that of a step, however blurred to both sides alike.
+        std::size_t rising = 0;
+        for (const double value : light) {
+          const double share = (value - dark) / contrast;
+          area += share;
+          rising += share > 0.2 && share < 0.8;
+        }
+        const double offset = kStep * (double(light.size()) / 2 - area);
+        if (std::abs(offset) > reach) return;
+        found.places.push_back(at + offset * out);
+        found.contrasts.push_back(contrast);
+        found.widths.push_back(kStep * double(rising));
+      });
   return found;
 }
 
 Line fit(const std::vector<glm::dvec2>& points, const std::vector<double>& weights) {
   double sum = 0;
   glm::dvec2 middle(0);
-  for (std::size_t i = 0; i < points.size(); ++i) sum += weights[i], middle += weights[i] * points[i];
+  for (std::size_t i = 0; i < points.size(); ++i)
+    sum += weights[i], middle += weights[i] * points[i];
   middle /= sum;
   double xx = 0, xy = 0, yy = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -174,8 +177,8 @@ struct Outline {
   std::vector<double> widths, contrasts;  ///< of each edge
 };
 
-/// Lines through its edges, and where they meet. Coarsely first, for detectors are off by a pixel or
-/// two.
+/// Lines through its edges, and where they meet. Coarsely first, for detectors are off by a pixel
+/// or two.
 bool fit_outline(const cv::Mat& linear, int cells, bool coarse, Outline& tag) {
   const std::array<double, 4> size = cell_sizes(tag.corners, cells);
   std::array<Line, 4> lines;
@@ -185,8 +188,8 @@ bool fit_outline(const cv::Mat& linear, int cells, bool coarse, Outline& tag) {
     const glm::dvec2 &a = tag.corners[i], &b = tag.corners[(i + 1) % 4];
     const double reach = coarse ? std::max(kSearchPixels, kSearchInCells * size[i])
                                 : std::clamp(kReachInCells * size[i], kLeastReach, kMostReach);
-    const EdgePoints edge = coarse ? find_rises(linear, a, b, reach)
-                                   : find_points(linear, a, b, reach);
+    const EdgePoints edge =
+        coarse ? find_rises(linear, a, b, reach) : find_points(linear, a, b, reach);
     const auto line = fit_robustly(edge, coarse ? kCoarseSpread : kMostSpread);
     if (!line) return false;
     lines[i] = *line;

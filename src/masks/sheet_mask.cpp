@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kPaper = 0.97f, kInk = 0.03f;  // from where on, up to where a pixel is one of both
 constexpr std::size_t kFewest = 200;           // pixels to measure paper by
-constexpr double kPlain = 0.05;   // deviation of a background that tells, roots of linear light
+constexpr double kPlain = 0.05;  // deviation of a background that tells, roots of linear light
 constexpr double kMostConfidence = 0.99;  // masks that were given have 1
 constexpr int kTerms = 6;
 

@@ -12,11 +12,11 @@
 namespace photohull {
 namespace {
 
-constexpr double kMargin = 8;       // mm, which printers leave free
-constexpr double kFooter = 16;      // mm, for the bar and the words
-constexpr double kLeastFree = 20;   // mm along the free space's shorter side
-constexpr double kQuiet = 0.125;    // of a tag's side: the white that its border needs around it
-constexpr double kLongestBar = 150; // mm
+constexpr double kMargin = 8;        // mm, which printers leave free
+constexpr double kFooter = 16;       // mm, for the bar and the words
+constexpr double kLeastFree = 20;    // mm along the free space's shorter side
+constexpr double kQuiet = 0.125;     // of a tag's side: the white that its border needs around it
+constexpr double kLongestBar = 150;  // mm
 constexpr double kTagInSquare = 0.75;
 constexpr const char* kFamily = "apriltag-36h11";
 
@@ -25,10 +25,8 @@ struct Named {
   int number;
 };
 constexpr Named kDictionaries[] = {
-    {kFamily, cv::aruco::DICT_APRILTAG_36h11},
-    {"apriltag-25h9", cv::aruco::DICT_APRILTAG_25h9},
-    {"aruco-4x4-250", cv::aruco::DICT_4X4_250},
-    {"aruco-5x5-250", cv::aruco::DICT_5X5_250},
+    {kFamily, cv::aruco::DICT_APRILTAG_36h11},  {"apriltag-25h9", cv::aruco::DICT_APRILTAG_25h9},
+    {"aruco-4x4-250", cv::aruco::DICT_4X4_250}, {"aruco-5x5-250", cv::aruco::DICT_5X5_250},
     {"aruco-6x6-250", cv::aruco::DICT_6X6_250},
 };
 
@@ -154,14 +152,14 @@ Sheet make_sheet(const SheetOptions& o) {
   else
     add_ring(o, low, high, s);
   if (!(std::min(s.free_max.x - s.free_min.x, s.free_max.y - s.free_min.y) >= kLeastFree))
-    throw UsageError(concat(option_word("tag"), ": sides of ", side_of(o), " mm leave no free space of ",
-                            kLeastFree, " mm on ", to_string(o.paper),
-                            " paper; use smaller ones or a larger paper"));
+    throw UsageError(concat(option_word("tag"), ": sides of ", side_of(o),
+                            " mm leave no free space of ", kLeastFree, " mm on ",
+                            to_string(o.paper), " paper; use smaller ones or a larger paper"));
   const int ids = cv::aruco::getPredefinedDictionary(tag_dictionary(kFamily))->bytesList.rows;
   if (s.tags.back().id >= ids)
     throw UsageError(concat(option_word("first_id"), ": the sheet's ", s.tags.size(),
-                            " tags would end at number ", s.tags.back().id, ", and the last one is ",
-                            ids - 1, "; begin lower"));
+                            " tags would end at number ", s.tags.back().id,
+                            ", and the last one is ", ids - 1, "; begin lower"));
   s.bar_from = {kMargin, kMargin + 3};
   s.bar_to = s.bar_from + glm::dvec2(kLongestBar, 0);
   move_origin(s);

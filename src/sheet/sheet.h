@@ -21,15 +21,15 @@ struct SheetTag {
 /// Lengths are millimetres as printed at 100 %. The sheet's frame has its origin in the middle of
 /// the free space, x to the right and y upwards on the page, z out of the paper towards the reader.
 struct Sheet {
-  std::string kind;             ///< "apriltag-ring" or "charuco"
-  std::string dictionary;       ///< of the tags, a name of tag_dictionaries()
-  glm::dvec2 page{0.0};         ///< width and height
-  glm::dvec2 lower_left{0.0};   ///< the page's corner in the sheet's frame
-  std::vector<SheetTag> tags;   ///< each id once
+  std::string kind;                                ///< "apriltag-ring" or "charuco"
+  std::string dictionary;                          ///< of the tags, a name of tag_dictionaries()
+  glm::dvec2 page{0.0};                            ///< width and height
+  glm::dvec2 lower_left{0.0};                      ///< the page's corner in the sheet's frame
+  std::vector<SheetTag> tags;                      ///< each id once
   std::vector<std::array<glm::dvec2, 2>> squares;  ///< black ones: lower left and upper right
-  std::vector<glm::dvec2> saddles;  ///< where two black squares meet in a corner
-  glm::dvec2 free_min{0.0}, free_max{0.0};  ///< where the object may stand
-  glm::dvec2 bar_from{0.0}, bar_to{0.0};    ///< ends of the bar that is to be measured
+  std::vector<glm::dvec2> saddles;                 ///< where two black squares meet in a corner
+  glm::dvec2 free_min{0.0}, free_max{0.0};         ///< where the object may stand
+  glm::dvec2 bar_from{0.0}, bar_to{0.0};           ///< ends of the bar that is to be measured
 
   double bar_length() const { return glm::length(bar_to - bar_from); }
 };

@@ -91,11 +91,12 @@ void read_tags(const Reader& r, Sheet& s) {
     const std::string field = concat("tags[", i, "]");
     const auto& id = r.get(tags[i], "id", field + ".id");
     if (!id.is_number_integer() || id.get<std::int64_t>() < 0 || id.get<std::int64_t>() >= ids)
-      r.fail(field + ".id", concat("expected a number from 0 to ", ids - 1, ", found ", Reader::shown(id)));
+      r.fail(field + ".id",
+             concat("expected a number from 0 to ", ids - 1, ", found ", Reader::shown(id)));
     if (!seen.insert(id.get<int>()).second)
       r.fail(field + ".id", concat("another tag has the number ", id.get<int>(), " already"));
-    SheetTag tag{id.get<int>(), r.points<4>(r.get(tags[i], "corners", field + ".corners"),
-                                            field + ".corners")};
+    SheetTag tag{id.get<int>(),
+                 r.points<4>(r.get(tags[i], "corners", field + ".corners"), field + ".corners")};
     if (!(cross(tag.corners[1] - tag.corners[0], tag.corners[2] - tag.corners[0]) < 0))
       r.fail(field + ".corners",
              "expected top left, top right, bottom right and bottom left with y upwards");

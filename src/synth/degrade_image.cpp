@@ -89,7 +89,8 @@ void blur_edges(std::vector<glm::vec3>& image, int width, int height, double sig
   if (sigma <= 0) return;
   constexpr int kLevels = 4;  // between which colours are mixed
   std::vector<std::vector<glm::vec3>> levels(kLevels + 1, image);
-  for (int i = 1; i <= kLevels; ++i) blur(levels[std::size_t(i)], width, height, sigma * i / kLevels);
+  for (int i = 1; i <= kLevels; ++i)
+    blur(levels[std::size_t(i)], width, height, sigma * i / kLevels);
   const double x0 = (width - 1) / 2.0, y0 = (height - 1) / 2.0, corner = x0 * x0 + y0 * y0;
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {

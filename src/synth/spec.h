@@ -70,11 +70,11 @@ struct BackgroundSpec {
 
 /// A printed sheet that the object stands on (sheet/sheet.h).
 struct SheetSpec {
-  std::string board;       ///< path of the JSON that describes it, relative to the spec's folder
-  double fill = 0.6;       ///< share of the free space's width or height that the object's box takes
-  double print = 1;        ///< how large it is printed: 0.97 is 3 % too small
-  glm::dvec3 bend{0.0};    ///< mm that it rises half its diagonal from the middle, by x^2, x y, y^2
-  double hidden = 0;       ///< share of the tags that something lies on, others in every view
+  std::string board;     ///< path of the JSON that describes it, relative to the spec's folder
+  double fill = 0.6;     ///< share of the free space's width or height that the object's box takes
+  double print = 1;      ///< how large it is printed: 0.97 is 3 % too small
+  glm::dvec3 bend{0.0};  ///< mm that it rises half its diagonal from the middle, by x^2, x y, y^2
+  double hidden = 0;     ///< share of the tags that something lies on, others in every view
 };
 
 struct ImageSpec {

@@ -187,13 +187,13 @@ std::string result_text(const SynthesizedScene& scene, const std::vector<std::st
   nlohmann::json gains = nlohmann::json::array();
   for (const glm::dvec3& gain : scene.gains) gains.push_back(list(gain));
   nlohmann::json result = {{"writer", "photohull synthesize"},
-                                 {"views", names},
-                                 {"triangles", scene.triangles},
-                                 {"diagonal", scene.diagonal},
-                                 {"tight_box", {list(surface.box.min), list(surface.box.max)}},
-                                 {"gains", gains},
-                                 {"seen_share", scene.seen},
-                                 {"largest_fill", scene.largest_fill}};
+                           {"views", names},
+                           {"triangles", scene.triangles},
+                           {"diagonal", scene.diagonal},
+                           {"tight_box", {list(surface.box.min), list(surface.box.max)}},
+                           {"gains", gains},
+                           {"seen_share", scene.seen},
+                           {"largest_fill", scene.largest_fill}};
   if (sheet) result["sheet"] = {{"origin", list(sheet->origin())}, {"unit", sheet->unit()}};
   return result.dump();
 }
@@ -241,9 +241,8 @@ SynthesizedScene synthesize(const Spec& spec, const std::filesystem::path& folde
   SharedProgress shared(progress);
   progress.stage("photographs", render_weight(spec));
   SynthesizedScene result;
-  result.largest_fill =
-      write_views(spec, surface, cameras, indices, names, files, shared, context.get(),
-                  sheet ? &*sheet : nullptr);
+  result.largest_fill = write_views(spec, surface, cameras, indices, names, files, shared,
+                                    context.get(), sheet ? &*sheet : nullptr);
 
   progress.stage("truth", truth_weight(spec));
   std::vector<TruthSample> samples = sample_surface(surface, spec.truth_samples, spec.seed);

@@ -53,8 +53,8 @@ struct ExactOptions {
 };
 
 /// A photograph's corners, computed. Poses are in millimetres as printed.
-PosePhoto exact_photo(const Truth& truth, const Pose& pose, const Sheet& sheet, const std::string& name,
-                      const ExactOptions& o) {
+PosePhoto exact_photo(const Truth& truth, const Pose& pose, const Sheet& sheet,
+                      const std::string& name, const ExactOptions& o) {
   std::mt19937 random(o.seed);
   std::normal_distribution<double> normal(0, o.noise > 0 ? o.noise : 1);
   std::uniform_real_distribution<double> uniform(0, 1);
@@ -69,7 +69,8 @@ PosePhoto exact_photo(const Truth& truth, const Pose& pose, const Sheet& sheet, 
       bend_sheet(&o.bend.x, kReachA4, &place.x);
       const glm::dvec3 p = pose.rotation * (o.print * place) + pose.translation;
       const glm::dvec2 q = distort(truth.lens, glm::dvec2(p) / p.z);
-      const glm::dvec2 off = o.noise > 0 ? glm::dvec2(normal(random), normal(random)) : glm::dvec2(0);
+      const glm::dvec2 off =
+          o.noise > 0 ? glm::dvec2(normal(random), normal(random)) : glm::dvec2(0);
       photo.view.board.points.emplace_back(corner, 0);
       photo.view.board.pixels.push_back(
           glm::dvec2(truth.k.fx * q.x + truth.k.cx, truth.k.fy * q.y + truth.k.cy) + off);
@@ -100,9 +101,8 @@ PoseErrors errors_of(const PoseResult& result, int count, double distance, doubl
     const Pose truth = look_at_sheet_from(i, count, distance);
     const Pose& found = result.photos[std::size_t(i)].cam_from_world;
     const glm::dmat3 turn = found.rotation * glm::transpose(truth.rotation);
-    const glm::dvec3 place =
-        -(glm::transpose(found.rotation) * found.translation) / units_per_mm +
-        glm::transpose(truth.rotation) * truth.translation;
+    const glm::dvec3 place = -(glm::transpose(found.rotation) * found.translation) / units_per_mm +
+                             glm::transpose(truth.rotation) * truth.translation;
     e.place = std::max(e.place, glm::length(place) / distance);
     const double cosine = (turn[0][0] + turn[1][1] + turn[2][2] - 1) / 2;
     e.turn = std::max(e.turn, std::acos(std::min(1.0, cosine)) / kRadian);
@@ -113,7 +113,8 @@ PoseErrors errors_of(const PoseResult& result, int count, double distance, doubl
 TEST(PosePhotographs, ExactCornersGiveExactCameras) {
   const Sheet sheet = make_sheet({});
   const Truth truth = truth_of(1600, 1200, 1500);
-  const PoseResult r = pose_photographs(exact_photos(truth, sheet, 8, {0, glm::dvec3(0.0)}), sheet, {});
+  const PoseResult r =
+      pose_photographs(exact_photos(truth, sheet, 8, {0, glm::dvec3(0.0)}), sheet, {});
   ASSERT_EQ(r.cameras.size(), 1u);
   EXPECT_NEAR(r.cameras[0].intrinsics.fx, 1500, 0.01);
   EXPECT_NEAR(r.cameras[0].distortion.coefficients[0], -0.08, 1e-4);
@@ -171,7 +172,8 @@ TEST(PosePhotographs, BentSheetPrintedTooSmallIsFoundAndTold) {
   const PoseResult flat = pose_photographs(photos, sheet, options);
   EXPECT_GT(flat.rms, 3 * r.rms);
   PoseOptions unmeasured;
-  EXPECT_NEAR(errors_of(pose_photographs(photos, sheet, unmeasured), 12, 520, 1).place, 0.031, 0.005);
+  EXPECT_NEAR(errors_of(pose_photographs(photos, sheet, unmeasured), 12, 520, 1).place, 0.031,
+              0.005);
 }
 
 TEST(PosePhotographs, WrongTagsAndMovedSheetsAreLeftOut) {
@@ -268,7 +270,8 @@ void check_rendered(const SheetOptions& kind, double rms_bound) {
   const PoseResult r = pose_photographs(photos, sheet, {});
   const PoseErrors e = errors_of(r, kViews, 480, 1);
   ::testing::Test::RecordProperty(sheet.kind + "_rms", concat(r.rms));
-  ::testing::Test::RecordProperty(sheet.kind + "_focal", concat(r.cameras[0].intrinsics.fx / 760 - 1));
+  ::testing::Test::RecordProperty(sheet.kind + "_focal",
+                                  concat(r.cameras[0].intrinsics.fx / 760 - 1));
   ::testing::Test::RecordProperty(sheet.kind + "_place", concat(e.place));
   ::testing::Test::RecordProperty(sheet.kind + "_turn", concat(e.turn));
   EXPECT_LT(r.rms, rms_bound);

@@ -8,9 +8,9 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "sheet/bend_sheet.h"
 #include "sheet/draw_sheet.h"
 #include "sheet/meet_sheet.h"
-#include "sheet/bend_sheet.h"
 #include "support/scratch_folder.h"
 
 namespace photohull {
@@ -125,8 +125,7 @@ TEST(Sheet, PictureShowsTheTags) {
               ASSERT_NEAR(picture.at(place), cells[y][x] ? 1 : 0, 0.02);
             }
     }
-    for (const auto& square : s.squares)
-      EXPECT_LT(picture.at(0.5 * (square[0] + square[1])), 0.02);
+    for (const auto& square : s.squares) EXPECT_LT(picture.at(0.5 * (square[0] + square[1])), 0.02);
     EXPECT_FLOAT_EQ(picture.at({0, 0}), 1);
     EXPECT_LT(picture.at(s.lower_left - 1.0), 0);
     EXPECT_LT(picture.at(0.5 * (s.bar_from + s.bar_to)), 0.6);
