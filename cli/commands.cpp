@@ -11,6 +11,8 @@ void add_all(CLI::App& app) {
   add_info(app);
   add_masks(app);
   add_convert(app);
+  add_board(app);
+  add_pose(app);
   add_calibrate(app);
   add_refine_cameras(app);
   add_synthesize(app);

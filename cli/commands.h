@@ -26,6 +26,8 @@ void add_evaluate(CLI::App& app, DrawReliability draw);
 void add_convert(CLI::App& app);
 void add_refine_cameras(CLI::App& app);
 void add_calibrate(CLI::App& app);
+void add_board(CLI::App& app);
+void add_pose(CLI::App& app);
 void add_masks(CLI::App& app);
 void add_info(CLI::App& app);
 void add_synthesize(CLI::App& app);

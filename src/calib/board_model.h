@@ -91,6 +91,10 @@ struct BoardStart {
 BoardStart start_calibration(const std::vector<BoardView>& views,
                              const std::vector<std::size_t>& used, LensModel model);
 
+/// Directions (x, y, 1) that pixels show.
+std::vector<glm::dvec2> undistorted(const std::vector<glm::dvec2>& pixels, LensModel model,
+                                    const Lens& lens);
+
 /// Poses of the board in the views `used` under a lens that is known, each by itself [Collins14].
 std::vector<Rigid> start_poses(const std::vector<BoardView>& views,
                                const std::vector<std::size_t>& used, LensModel model,

@@ -8,12 +8,8 @@
 #include "core/error.h"
 
 namespace photohull {
-namespace {
 
-constexpr double kMostRows = 1000, kLargestSquare = 1e9;
-
-/// Linear light, in which blurred edges lie where sharp ones would.
-cv::Mat linear_grey(const ColourImage& image, double blur = 0.8) {
+cv::Mat linear_grey(const ColourImage& image, double blur) {
   cv::Mat grey(image.height, image.width, CV_32F);
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
@@ -35,6 +31,10 @@ cv::Mat grey_bytes(const ColourImage& image) {
     }
   return grey;
 }
+
+namespace {
+
+constexpr double kMostRows = 1000, kLargestSquare = 1e9;
 
 /// To the saddle points, by gradients in windows of a share of the corners' least spacing.
 void refine_corners(const cv::Mat& grey, double share, std::vector<cv::Point2f>& corners) {

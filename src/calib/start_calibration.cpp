@@ -41,20 +41,29 @@ int flags_of(LensModel lens) {
 
 /// Directions (x, y, 1) of a view's pixels.
 std::vector<cv::Point2d> directions(const BoardView& view, LensModel model, const Lens& lens) {
-  std::vector<cv::Point2d> pixels, found;
-  for (const glm::dvec2& p : view.pixels) pixels.emplace_back(p.x, p.y);
-  const cv::Matx33d k(lens[0], 0, lens[2], 0, lens[1], lens[3], 0, 0, 1);
-  std::vector<double> d(lens.begin() + 4, lens.end());
-  if (model == LensModel::kFisheye) {
-    d.resize(4);
-    cv::fisheye::undistortPoints(pixels, found, k, d);
-  } else {
-    cv::undistortPoints(pixels, found, k, d);
-  }
+  std::vector<cv::Point2d> found;
+  for (const glm::dvec2& d : undistorted(view.pixels, model, lens)) found.emplace_back(d.x, d.y);
   return found;
 }
 
 }  // namespace
+
+std::vector<glm::dvec2> undistorted(const std::vector<glm::dvec2>& pixels, LensModel model,
+                                    const Lens& lens) {
+  std::vector<cv::Point2d> in, found;
+  for (const glm::dvec2& p : pixels) in.emplace_back(p.x, p.y);
+  const cv::Matx33d k(lens[0], 0, lens[2], 0, lens[1], lens[3], 0, 0, 1);
+  std::vector<double> d(lens.begin() + 4, lens.end());
+  if (model == LensModel::kFisheye) {
+    d.resize(4);
+    cv::fisheye::undistortPoints(in, found, k, d);
+  } else {
+    cv::undistortPoints(in, found, k, d);
+  }
+  std::vector<glm::dvec2> out;
+  for (const cv::Point2d& p : found) out.emplace_back(p.x, p.y);
+  return out;
+}
 
 std::vector<Rigid> start_poses(const std::vector<BoardView>& views,
                                const std::vector<std::size_t>& used, LensModel model,

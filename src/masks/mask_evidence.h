@@ -32,6 +32,14 @@ void soften_contour(const cv::Mat& distance, cv::Mat& object);
 /// deviations of the noise. Both images have the same size.
 MaskEvidence compare_with_plate(const ColourImage& image, const ColourImage& plate);
 
+/// Square roots of linear light (CV_32FC3), in which noise is about even.
+cv::Mat light_roots(const ColourImage& image);
+
+/// The same comparison by what is expected of each pixel (both as light_roots has it). Noise is
+/// measured where `certain` (CV_8U) is not 0: there nothing stands before the background.
+MaskEvidence compare_with_expected(const cv::Mat& taken, const cv::Mat& expected,
+                                   const cv::Mat& certain);
+
 /// Moves the contour to where OpenCV's GrabCut [Rother04] puts it between what surely is the
 /// object and surely is not. Pixels of strong evidence stay the object's. The mask stays as it is
 /// where it has nothing certain on either side.

@@ -12,22 +12,8 @@
 #include "masks/mask_evidence.h"
 
 namespace photohull {
-namespace {
 
-constexpr double kFrameShare = 0.02;  // of the shorter side: width of the frame
-constexpr double kMedianToSigma = 1.483;
-constexpr double kLevels = 4;            // of distance in a deviation
-constexpr int kWeak = 12, kStrong = 28;  // 3 and 7 deviations
-constexpr float kDarkestShadow = 0.55f;  // square root of the light that is left: 30 %
-constexpr double kRoughness = 1.8;       // deviations: a shadow's depth varies less around a pixel
-constexpr float kLeastSigma = 0.003f;    // square roots of linear light; 8-bit rounding
-constexpr float kDarkSigma = 0.012f;     // the same where it is black: codes are farther apart
-constexpr float kDark = 0.08f;           // square root of linear light
-constexpr float kShift = 0.25f;          // pixels by which plate and photograph may be off
-constexpr float kLeastPlate = 0.05f;     // square root of linear light; darker takes no shadow
-
-/// Square roots of linear light, in which noise is about even.
-cv::Mat roots(const ColourImage& image) {
+cv::Mat light_roots(const ColourImage& image) {
   cv::Mat out(image.height, image.width, CV_32FC3);
   std::array<float, 256> table{};
   for (std::size_t i = 0; i < 256; ++i)
@@ -47,6 +33,20 @@ cv::Mat roots(const ColourImage& image) {
     }
   return out;
 }
+
+namespace {
+
+constexpr double kFrameShare = 0.02;  // of the shorter side: width of the frame
+constexpr double kMedianToSigma = 1.483;
+constexpr double kLevels = 4;            // of distance in a deviation
+constexpr int kWeak = 12, kStrong = 28;  // 3 and 7 deviations
+constexpr float kDarkestShadow = 0.55f;  // square root of the light that is left: 30 %
+constexpr double kRoughness = 1.8;       // deviations: a shadow's depth varies less around a pixel
+constexpr float kLeastSigma = 0.003f;    // square roots of linear light; 8-bit rounding
+constexpr float kDarkSigma = 0.012f;     // the same where it is black: codes are farther apart
+constexpr float kDark = 0.08f;           // square root of linear light
+constexpr float kShift = 0.25f;          // pixels by which plate and photograph may be off
+constexpr float kLeastPlate = 0.05f;     // square root of linear light; darker takes no shadow
 
 template <typename Visit>
 void for_each_at_frame(const cv::Size& size, const Visit& visit) {
@@ -75,7 +75,7 @@ void match_exposure(const cv::Mat& image, cv::Mat& plate) {
 }
 
 /// Deviation of the difference at each pixel: noise, and what an offset does to the plate's edges.
-cv::Mat expected_deviation(const cv::Mat& image, const cv::Mat& plate) {
+cv::Mat expected_deviation(const cv::Mat& image, const cv::Mat& plate, const cv::Mat& certain) {
   cv::Mat dx, dy;
   cv::Sobel(plate, dx, CV_32F, 1, 0, 3, 0.125);
   cv::Sobel(plate, dy, CV_32F, 0, 1, 3, 0.125);
@@ -84,11 +84,14 @@ cv::Mat expected_deviation(const cv::Mat& image, const cv::Mat& plate) {
     return std::sqrt((a.dot(a) + b.dot(b)) / 3);
   };
   std::vector<double> differences;
-  for_each_at_frame(image.size(), [&](int x, int y) {
+  const auto measure = [&](int x, int y) {
     const cv::Vec3f d = image.at<cv::Vec3f>(y, x) - plate.at<cv::Vec3f>(y, x);
     if (kShift * slope(x, y) > kLeastSigma) return;
     for (int c = 0; c < 3; ++c) differences.push_back(std::abs(d[c]));
-  });
+  };
+  for (int y = 0; y < image.rows; ++y)
+    for (int x = 0; x < image.cols; ++x)
+      if (certain.at<std::uint8_t>(y, x)) measure(x, y);
   const auto noise = std::max(kLeastSigma, float(kMedianToSigma * median(differences)));
   cv::Mat sigma(image.size(), CV_32F);
   for (int y = 0; y < sigma.rows; ++y)
@@ -117,10 +120,18 @@ cv::Mat shadow_depth(const cv::Mat& image, const cv::Mat& plate) {
 MaskEvidence compare_with_plate(const ColourImage& image, const ColourImage& plate_image) {
   PHOTOHULL_CHECK_OP(image.width, ==, plate_image.width);
   PHOTOHULL_CHECK_OP(image.height, ==, plate_image.height);
-  const cv::Mat taken = roots(image);
-  cv::Mat plate = roots(plate_image);
+  const cv::Mat taken = light_roots(image);
+  cv::Mat plate = light_roots(plate_image);
   match_exposure(taken, plate);
-  const cv::Mat sigma = expected_deviation(taken, plate), depth = shadow_depth(taken, plate);
+  cv::Mat frame(taken.size(), CV_8U, cv::Scalar(0));
+  for_each_at_frame(taken.size(), [&](int x, int y) { frame.at<std::uint8_t>(y, x) = 255; });
+  return compare_with_expected(taken, plate, frame);
+}
+
+MaskEvidence compare_with_expected(const cv::Mat& taken, const cv::Mat& plate,
+                                   const cv::Mat& certain) {
+  const cv::Mat sigma = expected_deviation(taken, plate, certain),
+                depth = shadow_depth(taken, plate);
   cv::Mat mean, squares;
   cv::blur(depth, mean, {5, 5});
   cv::blur(depth.mul(depth), squares, {5, 5});
@@ -128,7 +139,7 @@ MaskEvidence compare_with_plate(const ColourImage& image, const ColourImage& pla
   MaskEvidence out;
   out.weak = kWeak, out.strong = kStrong;
   out.distance.create(taken.size(), CV_8U);
-  double object = 0, certain = 0;
+  double object = 0, sure = 0;
   for (int y = 0; y < taken.rows; ++y)
     for (int x = 0; x < taken.cols; ++x) {
       const cv::Vec3f &p = plate.at<cv::Vec3f>(y, x), &i = taken.at<cv::Vec3f>(y, x);
@@ -146,9 +157,9 @@ MaskEvidence compare_with_plate(const ColourImage& image, const ColourImage& pla
       }
       out.distance.at<std::uint8_t>(y, x) = std::uint8_t(std::min(255.0, std::round(distance)));
       object += distance >= kWeak;
-      certain += distance >= kStrong;
+      sure += distance >= kStrong;
     }
-  out.doubt = object > 0 ? 1 - certain / object : 0;
+  out.doubt = object > 0 ? 1 - sure / object : 0;
   return out;
 }
 

@@ -85,6 +85,22 @@ void blur(std::vector<glm::vec3>& image, int width, int height, double sigma) {
   pass(rows, image, false);
 }
 
+void blur_edges(std::vector<glm::vec3>& image, int width, int height, double sigma) {
+  if (sigma <= 0) return;
+  constexpr int kLevels = 4;  // between which colours are mixed
+  std::vector<std::vector<glm::vec3>> levels(kLevels + 1, image);
+  for (int i = 1; i <= kLevels; ++i)
+    blur(levels[std::size_t(i)], width, height, sigma * i / kLevels);
+  const double x0 = (width - 1) / 2.0, y0 = (height - 1) / 2.0, corner = x0 * x0 + y0 * y0;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const double at = kLevels * ((x - x0) * (x - x0) + (y - y0) * (y - y0)) / corner;
+      const int low = std::clamp(int(at), 0, kLevels - 1);
+      const std::size_t i = std::size_t(y) * width + x;
+      image[i] = mix(levels[std::size_t(low)][i], levels[std::size_t(low + 1)][i], float(at - low));
+    }
+}
+
 bool is_motion_blurred(const DegradationSpec& spec, std::size_t view) {
   if (!(spec.motion_blur > 0)) return false;
   const double share = spec.motion_blur_views;
@@ -155,6 +171,7 @@ std::vector<glm::vec3> develop(const Picture& picture, const DegradationSpec& sp
   std::vector<glm::vec3> image = picture.colour;
   if (spec.vignetting > 0) vignette(image, picture.width, picture.height, spec.vignetting);
   blur(image, picture.width, picture.height, spec.blur);
+  blur_edges(image, picture.width, picture.height, spec.edge_blur);
   if (is_motion_blurred(spec, view))
     motion_blur(image, picture.width, picture.height, spec.motion_blur,
                 std::numbers::pi * Random(seed, kMotion, view).uniform());

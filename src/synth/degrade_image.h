@@ -27,6 +27,10 @@ glm::vec3 view_gain(const DegradationSpec& spec, std::uint64_t seed, std::size_t
 /// Convolves with a Gaussian of deviation `sigma` pixels; beyond the border its pixels repeat.
 void blur(std::vector<glm::vec3>& image, int width, int height, double sigma);
 
+/// Blurs the more the farther from the middle: with a deviation of `sigma` pixels in the corners,
+/// which grows with the distance squared.
+void blur_edges(std::vector<glm::vec3>& image, int width, int height, double sigma);
+
 /// Whether the camera moved while it took the view: the share motion_blur_views of all, evenly over
 /// their order.
 bool is_motion_blurred(const DegradationSpec& spec, std::size_t view);

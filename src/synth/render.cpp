@@ -52,7 +52,9 @@ class RowRenderer {
       : surface_(surface),
         shading_(shading),
         lens_(lens),
-        frame_(find_frame(surface, lens)),
+        frame_(shading.fine_background()
+                   ? Frame{0, 0, lens.camera.intrinsics.width, lens.camera.intrinsics.height}
+                   : find_frame(surface, lens)),
         to_world_(transpose(lens.camera.cam_from_world.rotation)),
         eye_(lens.camera.center()),
         view_(view),
@@ -84,6 +86,7 @@ class RowRenderer {
       else
         render_blocks(y, picture);
     }
+    if (shading_.fine_background()) return;
     for (int x = 0; x < picture.width; ++x) {
       const std::size_t i = std::size_t(y) * picture.width + x;
       // The background has no edges finer than a pixel: one look is enough.
@@ -156,7 +159,10 @@ class RowRenderer {
       int covered = 0;
       const std::size_t start = each * std::size_t(x - first);
       for (std::size_t i = start; i < start + each; ++i)
-        if (traced.hits[i]) sum += light[i], ++covered;
+        if (traced.hits[i])
+          sum += light[i], ++covered;
+        else if (shading_.fine_background())
+          sum += shading_.background(traced.rays[i], view_);
       const std::size_t pixel = std::size_t(y) * picture.width + x;
       picture.colour[pixel] = sum / float(each);
       picture.coverage[pixel] = float(covered) / float(each);

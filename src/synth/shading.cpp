@@ -30,8 +30,8 @@ float smooth_step(float low, float high, float x) {
 
 }  // namespace
 
-Shading::Shading(const Spec& spec, const Surface& surface, double pixel)
-    : spec_(spec), surface_(surface), seed_(std::uint32_t(mix_bits(spec.seed))) {
+Shading::Shading(const Spec& spec, const Surface& surface, double pixel, const PrintedSheet* sheet)
+    : spec_(spec), surface_(surface), sheet_(sheet), seed_(std::uint32_t(mix_bits(spec.seed))) {
   for (const DirectionalLight& d : spec.light.directional)
     lights_.push_back({normalize(d.direction), glm::vec3(d.colour), true});
   for (const PointLight& p : spec.light.point)
@@ -173,7 +173,27 @@ void Shading::shade(std::span<const Ray> rays, std::span<const Hit> hits, const 
   }
 }
 
+/// Paper and ink scatter light to all sides alike; the object's shadow falls on them.
+glm::vec3 Shading::on_sheet(const PrintedSheet::Seen& seen) const {
+  const glm::vec3 albedo(seen.albedo);
+  glm::vec3 light = glm::vec3(spec_.light.ambient) * albedo * float(0.8 + 0.2 * seen.normal.z);
+  const glm::dvec3 from = seen.position + 1e-5 * surface_.diagonal * seen.normal;
+  for (const Light& source : lights_) {
+    const glm::dvec3 towards = source.directional ? source.place : source.place - from;
+    const double cosine = dot(seen.normal, normalize(towards));
+    if (cosine <= 0) continue;
+    const double reach = source.directional ? INFINITY : 1.0;
+    if (spec_.light.shadows && surface_.rays->occluded(from, towards, 0, reach)) continue;
+    const double distance = length(towards) / surface_.diagonal;
+    const double fall = source.directional ? 1 : 1 / std::max(1e-6, distance * distance);
+    light += float(cosine * fall) * source.colour * albedo;
+  }
+  return light;
+}
+
 glm::vec3 Shading::background(const Ray& ray, std::size_t view) const {
+  if (sheet_)
+    if (const auto seen = sheet_->see(ray, view)) return on_sheet(*seen);
   const BackgroundSpec& b = spec_.background;
   if (!clutter_) return glm::vec3(b.colour);
   // The sphere around the scene, from within.

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "synth/printed_sheet.h"
 #include "synth/surface.h"
 
 namespace photohull::synth {
@@ -20,7 +21,9 @@ using LightShares = std::vector<std::vector<float>>;
 class Shading {
  public:
   /// `pixel` is the world size of the mean camera's pixel at the middle of the box.
-  Shading(const Spec& spec, const Surface& surface, double pixel);
+  /// `sheet`, under the object, outlives this; null: none.
+  Shading(const Spec& spec, const Surface& surface, double pixel,
+          const PrintedSheet* sheet = nullptr);
 
   /// Directional ones first, in the spec's order.
   const std::vector<Light>& lights() const { return lights_; }
@@ -28,6 +31,8 @@ class Shading {
   /// `shares` is empty, rays to the lights are cast.
   void shade(std::span<const Ray> rays, std::span<const Hit> hits, const LightShares& shares,
              std::span<glm::vec3> out) const;
+  /// Has what is seen past the object finer detail than a pixel?
+  bool fine_background() const { return sheet_ != nullptr; }
   /// What is seen past the object along a ray of view `view`.
   glm::vec3 background(const Ray& ray, std::size_t view) const;
 
@@ -39,6 +44,7 @@ class Shading {
     std::size_t index;  ///< of the ray
   };
 
+  glm::vec3 on_sheet(const PrintedSheet::Seen& seen) const;
   glm::vec3 base(std::uint32_t patch) const;
   void add_checker(std::span<Point> points) const;
   void add_noise_texture(std::span<Point> points) const;
@@ -50,6 +56,7 @@ class Shading {
 
   const Spec& spec_;
   const Surface& surface_;
+  const PrintedSheet* sheet_;
   std::vector<Light> lights_;
   double checker_ = 0;  ///< edge of a field, world units
   bool clutter_ = false;

@@ -95,6 +95,8 @@ void check_together(const Spec& s, const std::string& source) {
     fail(concat("image.bits: expected 8 or 16, found ", s.image.bits));
   if (s.image.bits == 16 && s.degradations.jpeg > 0)
     fail("image.bits: JPEG has 8 bits; set degradations.jpeg to 0 or image.bits to 8");
+  if (!s.sheet.board.empty() && s.background.plates)
+    fail("background.plates: a sheet stays where the object goes; leave out sheet or plates");
   if (s.degradations.mask_style == kAliased && s.degradations.mask_grow != 0)
     fail(
         "degradations.mask_style: aliased masks cannot grow or shrink; set degradations.mask_grow "
@@ -138,8 +140,9 @@ Spec parse_spec(const std::string& text, const std::string& source, const fs::pa
   visit_spec(reader, spec);
   reader.finish();
   check_together(spec, source);
-  if (!spec.geometry.mesh.empty() && fs::path(spec.geometry.mesh).is_relative())
-    spec.geometry.mesh = fs::absolute(folder / spec.geometry.mesh).lexically_normal().string();
+  for (std::string* path : {&spec.geometry.mesh, &spec.sheet.board})
+    if (!path->empty() && fs::path(*path).is_relative())
+      *path = fs::absolute(folder / *path).lexically_normal().string();
   return spec;
 }
 

@@ -68,6 +68,15 @@ struct BackgroundSpec {
   bool plates = false;          ///< write photographs of the background without the object, too
 };
 
+/// A printed sheet that the object stands on (sheet/sheet.h).
+struct SheetSpec {
+  std::string board;     ///< path of the JSON that describes it, relative to the spec's folder
+  double fill = 0.6;     ///< share of the free space's width or height that the object's box takes
+  double print = 1;      ///< how large it is printed: 0.97 is 3 % too small
+  glm::dvec3 bend{0.0};  ///< mm that it rises half its diagonal from the middle, by x^2, x y, y^2
+  double hidden = 0;     ///< share of the tags that something lies on, others in every view
+};
+
 struct ImageSpec {
   int width = 640, height = 480;
   int samples = 4;    ///< n x n rays a pixel, stratified
@@ -116,6 +125,7 @@ struct DegradationSpec {
   double read_noise = 0;                  ///< deviation at black
   double code_noise = 0;                  ///< deviation of the sRGB codes, of 255
   double blur = 0;                        ///< Gaussian deviation in pixels
+  double edge_blur = 0;                   ///< more in the corners, growing with r^2, pixels
   double motion_blur = 0;                 ///< length in pixels, of some views
   double motion_blur_views = 0.25;        ///< share of the views, evenly over their order
   double exposure = 0;                    ///< deviation between views, stops
@@ -151,6 +161,7 @@ struct Spec {
   MaterialSpec material;
   LightSpec light;
   BackgroundSpec background;
+  SheetSpec sheet;
   ImageSpec image;
   CameraSpec cameras;
   DegradationSpec degradations;

@@ -83,6 +83,7 @@ void visit_degradations(Visitor& v, DegradationSpec& d) {
   v.number("read_noise", d.read_noise, 0, 1);
   v.number("code_noise", d.code_noise, 0, 255);
   v.number("blur", d.blur, 0, 50);
+  v.number("edge_blur", d.edge_blur, 0, 50);
   v.number("motion_blur", d.motion_blur, 0, 200);
   v.number("motion_blur_views", d.motion_blur_views, 0, 1);
   v.number("exposure", d.exposure, 0, 5);
@@ -133,6 +134,13 @@ void visit_spec(Visitor& v, Spec& s) {
     v.number("distance", s.background.distance, 1.1, 1000);
     v.flag("moving", s.background.moving);
     v.flag("plates", s.background.plates);
+  });
+  v.object("sheet", [&] {
+    v.text("board", s.sheet.board);
+    v.number("fill", s.sheet.fill, 0.01, 10);
+    v.number("print", s.sheet.print, 0.1, 10);
+    v.vector("bend", s.sheet.bend, -100, 100);
+    v.number("hidden", s.sheet.hidden, 0, 1);
   });
   v.object("image", [&] {
     v.integer("width", s.image.width, 8, kLargestImage);

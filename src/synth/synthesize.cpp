@@ -121,11 +121,21 @@ void check_wrong_masks(const Spec& spec, const std::vector<std::size_t>& kept, P
                            " gets no wrong mask, since it or every other view is missing"));
 }
 
+/// The sheet would hide the object.
+void check_above(const PrintedSheet& sheet, const std::vector<LensCamera>& cameras,
+                 const std::vector<std::string>& names) {
+  for (std::size_t i = 0; i < cameras.size(); ++i)
+    if (!(cameras[i].camera.center().z > sheet.origin().z))
+      throw Error(concat("cameras: view ", names[i],
+                         " is below the sheet; raise the elevations, or leave out sheet"));
+}
+
 /// Renders and writes all views; returns the largest share of a frame that is covered.
 double write_views(const Spec& spec, const Surface& surface, const std::vector<LensCamera>& cameras,
                    const std::vector<std::size_t>& indices, const std::vector<std::string>& names,
-                   const SceneFiles& files, SharedProgress& progress, gpu::Context* context) {
-  const Shading shading(spec, surface, mean_pixel(cameras, surface.box.center()));
+                   const SceneFiles& files, SharedProgress& progress, gpu::Context* context,
+                   const PrintedSheet* sheet) {
+  const Shading shading(spec, surface, mean_pixel(cameras, surface.box.center()), sheet);
   std::optional<LightMaps> maps;
   if (context) maps.emplace(*context, spec.light, surface, shading.lights());
   const std::uint64_t seed = degradation_seed(spec);
@@ -172,18 +182,19 @@ double write_views(const Spec& spec, const Surface& surface, const std::vector<L
 }
 
 std::string result_text(const SynthesizedScene& scene, const std::vector<std::string>& names,
-                        const Surface& surface) {
+                        const Surface& surface, const PrintedSheet* sheet) {
   const auto list = [](const glm::dvec3& p) { return nlohmann::json{p.x, p.y, p.z}; };
   nlohmann::json gains = nlohmann::json::array();
   for (const glm::dvec3& gain : scene.gains) gains.push_back(list(gain));
-  const nlohmann::json result = {{"writer", "photohull synthesize"},
-                                 {"views", names},
-                                 {"triangles", scene.triangles},
-                                 {"diagonal", scene.diagonal},
-                                 {"tight_box", {list(surface.box.min), list(surface.box.max)}},
-                                 {"gains", gains},
-                                 {"seen_share", scene.seen},
-                                 {"largest_fill", scene.largest_fill}};
+  nlohmann::json result = {{"writer", "photohull synthesize"},
+                           {"views", names},
+                           {"triangles", scene.triangles},
+                           {"diagonal", scene.diagonal},
+                           {"tight_box", {list(surface.box.min), list(surface.box.max)}},
+                           {"gains", gains},
+                           {"seen_share", scene.seen},
+                           {"largest_fill", scene.largest_fill}};
+  if (sheet) result["sheet"] = {{"origin", list(sheet->origin())}, {"unit", sheet->unit()}};
   return result.dump();
 }
 
@@ -222,12 +233,16 @@ SynthesizedScene synthesize(const Spec& spec, const std::filesystem::path& folde
   const std::vector<LensCamera> written = degrade_cameras(
       cameras, spec.degradations, degradation_seed(spec), control_points(surface.mesh));
 
+  std::optional<PrintedSheet> sheet;
+  if (!spec.sheet.board.empty()) sheet.emplace(spec, surface);
+  if (sheet) check_above(*sheet, cameras, names);
+
   const SceneFiles files(folder, names, spec.image);
   SharedProgress shared(progress);
   progress.stage("photographs", render_weight(spec));
   SynthesizedScene result;
-  result.largest_fill =
-      write_views(spec, surface, cameras, indices, names, files, shared, context.get());
+  result.largest_fill = write_views(spec, surface, cameras, indices, names, files, shared,
+                                    context.get(), sheet ? &*sheet : nullptr);
 
   progress.stage("truth", truth_weight(spec));
   std::vector<TruthSample> samples = sample_surface(surface, spec.truth_samples, spec.seed);
@@ -245,7 +260,7 @@ SynthesizedScene synthesize(const Spec& spec, const std::filesystem::path& folde
   const auto seen = std::count_if(samples.begin(), samples.end(),
                                   [](const TruthSample& s) { return s.views > 0; });
   result.seen = double(seen) / double(samples.size());
-  files.finish(spec_text(spec, result_text(result, names, surface)));
+  files.finish(spec_text(spec, result_text(result, names, surface, sheet ? &*sheet : nullptr)));
   return result;
 }
 

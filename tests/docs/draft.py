@@ -15,6 +15,8 @@ DRAFT = {
     "bench sampling": {"--squares": "16"} | BENCH_FILES,
     "bench visibility": {"--quick": None} | BENCH_FILES,
 }
+# Tags want more pixels.
+SHEET = {"--size": "640x480", "--views": "8"}
 # Values that fit the stand-in, for options that are there.
 FITTING = {"--voxel-size": "0.08", "--box": BOX, "--samples": "2000"}
 WRITES = ("reconstruct", "synthesize", "masks", "chart", "stress")  # want --out, also where sentences leave it out
@@ -63,7 +65,8 @@ def drafted(text: str) -> tuple[dict[str, str], list[str]]:
     for option, value in FITTING.items():
         if option in words:
             set_option(words, option, value)
-    for option, value in DRAFT.get(name, {}).items():
+    sheet = command == "synthesize" and "on_sheet" in text
+    for option, value in (SHEET if sheet else DRAFT.get(name, {})).items():
         if not (option == "--resolution" and "--voxel-size" in words):
             set_option(words, option, value)
     return environment, words

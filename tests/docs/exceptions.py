@@ -8,5 +8,6 @@ FRAGMENTS = {
 # Started without the input that they ask for; they have to say so, and not that they are used wrongly.
 WITHOUT_INPUT = {
     r"photohull calibrate \w+/": "there are no photographs of boards; tests/cli/calibrate_gl_test.cpp renders some",
+    r"photohull pose photos/": "there are no photographs; a rendered example follows it",
     r"photohull convert (rig|table|calib)\.json": "the same: these files come from calibrate",
 }

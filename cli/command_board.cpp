@@ -1,0 +1,57 @@
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "cli/front/command_table.h"
+#include "commands.h"
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "option_flags.h"
+#include "sheet/draw_sheet.h"
+
+namespace photohull::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::string out;
+  SheetOptions sheet;
+};
+
+void run(const Arguments& a) {
+  const fs::path out(a.out);
+  const std::string ending = out.extension().string();
+  if (ending != ".pdf" && ending != ".svg")
+    throw UsageError(concat("--out ", a.out, ": give a file that ends in .pdf or .svg"));
+  const Sheet sheet = make_sheet(a.sheet);
+  const std::string drawn = ending == ".pdf" ? sheet_pdf(sheet) : sheet_svg(sheet);
+  fs::path described = out;
+  described.replace_extension(".json");
+  write_atomically(described, sheet_text(sheet));
+  write_atomically(out, drawn);
+  const glm::dvec2 room = sheet.free_max - sheet.free_min;
+  std::printf("%zu tags of %g mm around a free space of %g x %g mm, on a page of %g x %g mm\n",
+              sheet.tags.size(), glm::length(sheet.tags[0].corners[1] - sheet.tags[0].corners[0]),
+              room.x, room.y, sheet.page.x, sheet.page.y);
+  std::printf("print it at 100 %% and measure the bar: it should be %g mm long\n",
+              sheet.bar_length());
+  std::printf("  %s\n  %s\n", out.string().c_str(), described.string().c_str());
+}
+
+}  // namespace
+
+void add_board(CLI::App& app) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* c = add_command(app, "board");
+  c->add_option("--out", a->out, "file to print, .pdf or .svg; its description is beside it, .json")
+      ->required();
+  add_flags_of(*c, a->sheet);
+  c->footer(
+      "Examples:\n"
+      "  photohull board --out board.pdf\n"
+      "  photohull board --out large.svg --paper a3 --kind charuco");
+  c->callback([a] { run(*a); });
+}
+
+}  // namespace photohull::cli

@@ -1,0 +1,91 @@
+#include "pose_json.h"
+
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+namespace photohull::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json finite_or_null(double value) {
+  return std::isfinite(value) ? ordered_json(value) : ordered_json();
+}
+
+ordered_json vector_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+
+ordered_json camera_json(const PosedCamera& c) {
+  const Intrinsics& k = c.intrinsics;
+  return {
+      {"name", c.name},
+      {"photographs", c.photographs},
+      {"width", k.width},
+      {"height", k.height},
+      {"focal_length", {k.fx, k.fy}},
+      {"principal_point", {k.cx, k.cy}},
+      {"distortion", c.distortion.coefficients},
+      {"stated_focal_length", c.stated_focal > 0 ? ordered_json(c.stated_focal) : ordered_json()},
+      {"focal_sigma", finite_or_null(c.focal_sigma)},
+      {"principal_point_sigma", finite_or_null(c.principal_sigma)}};
+}
+
+ordered_json photo_json(const std::string& name, const PosedPhoto& p) {
+  ordered_json j = {{"name", name}, {"posed", p.posed}, {"tags_found", p.tags_found}};
+  if (!p.posed) {
+    j["reason"] = p.reason;
+    return j;
+  }
+  const glm::dmat3& r = p.cam_from_world.rotation;
+  j["tags_used"] = p.tags_used;
+  j["camera"] = p.camera;
+  j["rms"] = finite_or_null(p.rms);
+  j["rotation_sigma_degrees"] = p.turn_sigma;
+  j["position_sigma"] = p.place_sigma;
+  j["R"] = {{r[0][0], r[1][0], r[2][0]}, {r[0][1], r[1][1], r[2][1]}, {r[0][2], r[1][2], r[2][2]}};
+  j["t"] = vector_json(p.cam_from_world.translation);
+  return j;
+}
+
+}  // namespace
+
+std::string pose_json(const std::vector<std::string>& names, const PoseResult& result) {
+  ordered_json j;
+  j["photohull_pose"] = 1;
+  j["rms"] = finite_or_null(result.rms);
+  j["object_error"] = finite_or_null(result.object_error);
+  j["world_units_per_mm"] = result.scale;
+  j["box"] = {vector_json(result.box.min), vector_json(result.box.max)};
+  const SheetBend& b = result.bend;
+  j["bend"] = {{"found", b.found}, {"xx", b.xx},         {"xy", b.xy},
+               {"yy", b.yy},       {"height", b.height}, {"height_sigma", b.height_sigma}};
+  j["warnings"] = result.warnings;
+  j["cameras"] = ordered_json::array();
+  for (const PosedCamera& camera : result.cameras) j["cameras"].push_back(camera_json(camera));
+  j["photographs"] = ordered_json::array();
+  for (std::size_t i = 0; i < names.size(); ++i)
+    j["photographs"].push_back(photo_json(names[i], result.photos[i]));
+  return j.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+void print_pose(const std::vector<std::string>& names, const PoseResult& result) {
+  int posed = 0;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const PosedPhoto& p = result.photos[i];
+    posed += p.posed;
+    if (!p.posed) std::printf("%-32s left out: %s\n", names[i].c_str(), p.reason.c_str());
+  }
+  std::printf("%d of %zu photographs have a pose\n", posed, names.size());
+  for (const PosedCamera& c : result.cameras)
+    std::printf("focal length     %.2f +- %.2f px, %d photographs (%s)\n", c.intrinsics.fx,
+                c.focal_sigma, c.photographs, c.name.c_str());
+  std::printf("reprojection     %.4f px rms\n", result.rms);
+  std::printf("at the object    +- %.4f px\n", result.object_error);
+  if (result.bend.found)
+    std::printf("the sheet is bent: it rises or falls by %.3g +- %.2g units at its rim\n",
+                result.bend.height, result.bend.height_sigma);
+  for (const std::string& text : result.warnings)
+    std::fprintf(stderr, "warning: %s\n", text.c_str());
+}
+
+}  // namespace photohull::cli

@@ -1,0 +1,76 @@
+#include "pose_masks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "calib/sheet_look.h"
+#include "core/error.h"
+#include "io/image_file.h"
+#include "masks/sheet_mask.h"
+#include "scene_arguments.h"
+
+namespace photohull::cli {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr double kTexelsPerMm = 8;
+
+/// Deviation of the Gaussian that makes a pixel's box as wide as the edges that were measured: they
+/// rise from a fifth to four fifths over 1.68 deviations.
+double blur_of(double edge_width) {
+  constexpr double kBox = 1 / 12.0;  // variance of a pixel's area
+  const double sigma = edge_width / 1.68;
+  return std::sqrt(std::max(0.0, sigma * sigma - kBox));
+}
+
+/// Called as the photographs, or with a number before it where two would be called alike.
+std::vector<std::string> mask_names(const std::vector<fs::path>& images) {
+  std::multiset<std::string> stems;
+  for (const fs::path& image : images) stems.insert(image.stem().string());
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    const std::string stem = images[i].stem().string();
+    names.push_back(stems.count(stem) == 1 ? stem + ".png" : concat(i, "_", stem, ".png"));
+  }
+  return names;
+}
+
+}  // namespace
+
+std::vector<fs::path> write_sheet_masks(const fs::path& folder, const std::vector<fs::path>& images,
+                                        const std::vector<double>& edge_widths, const Sheet& sheet,
+                                        PoseResult& result, Progress& progress) {
+  constexpr double kMuch = 0.2;
+  make_folder(folder, "--out");
+  const SheetPicture picture = sheet_picture(sheet, kTexelsPerMm);
+  const std::vector<std::string> names = mask_names(images);
+  std::vector<fs::path> files(images.size());
+  int missing = 0, undecided = 0;
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    progress.check_cancelled();
+    progress.update(double(i) / double(images.size()));
+    if (!result.photos[i].posed) continue;
+    const SheetLook look = look_at_sheet(result, i, sheet, picture, blur_of(edge_widths[i]));
+    const SheetMask found = mask_from_sheet(io::read_image(images[i]), look, false);
+    undecided += found.undecided > kMuch;
+    if (found.mask.empty()) {
+      ++missing;
+      continue;
+    }
+    files[i] = folder / names[i];
+    io::write_png(files[i], found.mask.width, found.mask.height, 1, found.mask.coverage);
+  }
+  if (missing > 0)
+    result.warnings.push_back(
+        concat(missing, " photographs get no mask: too little of the bare sheet is seen"));
+  if (undecided > 0)
+    result.warnings.push_back(concat(
+        undecided,
+        " photographs show much of what is behind the sheet, of many colours, where the object may "
+        "be: their masks are too large there; give a lower --height, or look from higher up"));
+  return files;
+}
+
+}  // namespace photohull::cli

@@ -1,0 +1,106 @@
+// Based on: Z. Zhang, "A flexible new technique for camera calibration", 2000 [Zhang00];
+// T. Collins, A. Bartoli, "Infinitesimal plane-based pose estimation", 2014 [Collins14].
+#include <algorithm>
+#include <opencv2/calib3d.hpp>
+
+#include "calib/sheet_problem.h"
+#include "core/error.h"
+
+namespace photohull {
+namespace {
+
+constexpr double kShareOfDiagonal = 0.012;  // that a lens may move a tag off a plane's picture
+constexpr double kUsualFocal = 0.9;         // of the longer side
+constexpr double kShortest = 0.25, kLongest = 25;  // of the longer side
+
+std::vector<cv::Point2f> places_of(const BoardView& view) {
+  std::vector<cv::Point2f> all;
+  for (const glm::dvec3& p : view.points) all.emplace_back(float(p.x), float(p.y));
+  return all;
+}
+
+std::vector<cv::Point2f> pixels_of(const BoardView& view) {
+  std::vector<cv::Point2f> all;
+  for (const glm::dvec2& p : view.pixels) all.emplace_back(float(p.x), float(p.y));
+  return all;
+}
+
+/// From the homographies of all its photographs, for square pixels about the middle.
+double focal_from_tags(const SheetProblem& problem, const SheetCamera& camera) {
+  std::vector<std::vector<cv::Point3f>> points;
+  std::vector<std::vector<cv::Point2f>> pixels;
+  for (const std::size_t i : camera.photos) {
+    points.emplace_back();
+    for (const glm::dvec3& p : problem.photos[i].view.points)
+      points.back().emplace_back(float(p.x), float(p.y), 0.0f);
+    pixels.push_back(pixels_of(problem.photos[i].view));
+  }
+  const double longer = std::max(camera.size.x, camera.size.y);
+  const cv::Mat k =
+      cv::initCameraMatrix2D(points, pixels, cv::Size(camera.size.x, camera.size.y), 1.0);
+  const double focal = k.at<double>(0, 0);
+  const bool possible = focal > kShortest * longer && focal < kLongest * longer;
+  return possible ? focal : kUsualFocal * longer;
+}
+
+void group_cameras(const std::vector<PosePhoto>& photos, SheetProblem& problem) {
+  for (std::size_t i = 0; i < photos.size(); ++i) {
+    if (!problem.photos[i].used) continue;
+    const glm::ivec2 size = photos[i].view.board.size();
+    auto at = std::find_if(
+        problem.cameras.begin(), problem.cameras.end(),
+        [&](const SheetCamera& c) { return c.name == photos[i].camera && c.size == size; });
+    if (at == problem.cameras.end()) {
+      problem.cameras.push_back({photos[i].camera, size, photos[i].focal, {}, {}});
+      at = std::prev(problem.cameras.end());
+    }
+    problem.photos[i].camera = std::size_t(at - problem.cameras.begin());
+    at->photos.push_back(i);
+  }
+}
+
+}  // namespace
+
+void start_sheet_problem(const std::vector<PosePhoto>& photos, SheetProblem& problem) {
+  group_cameras(photos, problem);
+  for (SheetCamera& camera : problem.cameras) {
+    const double focal =
+        camera.stated_focal > 0 ? camera.stated_focal : focal_from_tags(problem, camera);
+    camera.lens = {focal, focal, (camera.size.x - 1) / 2.0, (camera.size.y - 1) / 2.0};
+    for (const std::size_t i : camera.photos) {
+      SheetPhoto& photo = problem.photos[i];
+      try {
+        photo.pose = start_poses({photo.view}, {0}, problem.model, camera.lens)[0];
+        photo.used = std::isfinite(problem.rms(photo));
+      } catch (const Error&) {
+        photo.used = false;
+      }
+    }
+  }
+}
+
+int drop_wrong_tags(SheetPhoto& photo) {
+  BoardView& view = photo.view;
+  const double limit =
+      std::max(3.0, kShareOfDiagonal * std::hypot(double(view.width), double(view.height)));
+  const std::vector<cv::Point2f> places = places_of(view), pixels = pixels_of(view);
+  const cv::Mat h = cv::findHomography(places, pixels, cv::RANSAC, limit);
+  if (h.empty()) return 0;
+  std::vector<cv::Point2f> expected;
+  cv::perspectiveTransform(places, expected, h);
+  std::vector<std::size_t> wrong;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    if (!(cv::norm(expected[i] - pixels[i]) <= limit)) wrong.push_back(photo.group[i]);
+  std::sort(wrong.begin(), wrong.end());
+  wrong.erase(std::unique(wrong.begin(), wrong.end()), wrong.end());
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < view.points.size(); ++i) {
+    if (std::binary_search(wrong.begin(), wrong.end(), photo.group[i])) continue;
+    view.points[kept] = view.points[i], view.pixels[kept] = view.pixels[i];
+    photo.group[kept++] = photo.group[i];
+  }
+  view.points.resize(kept), view.pixels.resize(kept), photo.group.resize(kept);
+  return int(wrong.size());
+}
+
+}  // namespace photohull

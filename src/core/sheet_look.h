@@ -1,0 +1,18 @@
+// What a photograph would show of a printed sheet if nothing stood on it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace photohull {
+
+/// Pixel by pixel, row-major from the top left.
+struct SheetLook {
+  int width = 0, height = 0;
+  /// Share of the paper's light that the pixel sends: 0 ink, 1 bare paper, averaged over its area;
+  /// negative where it shows something else than the page, in part at least.
+  std::vector<float> light;
+  std::vector<std::uint8_t> possible;  ///< 255 where the object may appear: its box does
+};
+
+}  // namespace photohull

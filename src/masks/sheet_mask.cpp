@@ -1,0 +1,194 @@
+#include "masks/sheet_mask.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "core/error.h"
+#include "core/median.h"
+#include "masks/mask_evidence.h"
+
+namespace photohull {
+namespace {
+
+constexpr float kPaper = 0.97f, kInk = 0.03f;  // from where on, up to where a pixel is one of both
+constexpr std::size_t kFewest = 200;           // pixels to measure paper by
+constexpr double kPlain = 0.05;  // deviation of a background that tells, roots of linear light
+constexpr double kMostConfidence = 0.99;  // masks that were given have 1
+constexpr int kTerms = 6;
+
+/// 1, x, y and their products, of a pixel's place from -1 to 1.
+std::array<double, kTerms> terms(const cv::Point& at, const cv::Size& size) {
+  const double x = 2.0 * at.x / size.width - 1, y = 2.0 * at.y / size.height - 1;
+  return {1, x, y, x * x, x * y, y * y};
+}
+
+/// A form of second order through the values of places, robustly: shadows are darker.
+cv::Vec6d fit(const std::vector<cv::Point>& places, const std::vector<double>& values,
+              const cv::Size& size) {
+  std::vector<double> weights(places.size(), 1.0);
+  cv::Vec6d form;
+  for (int round = 0; round < 8; ++round) {
+    cv::Matx<double, kTerms, kTerms> normal = cv::Matx<double, kTerms, kTerms>::eye() * 1e-6;
+    cv::Vec6d right;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const auto t = terms(places[i], size);
+      for (int a = 0; a < kTerms; ++a) {
+        right[a] += weights[i] * t[std::size_t(a)] * values[i];
+        for (int b = 0; b < kTerms; ++b)
+          normal(a, b) += weights[i] * t[std::size_t(a)] * t[std::size_t(b)];
+      }
+    }
+    form = normal.solve(right, cv::DECOMP_CHOLESKY);
+    std::vector<double> off;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const auto t = terms(places[i], size);
+      double value = 0;
+      for (int a = 0; a < kTerms; ++a) value += form[a] * t[std::size_t(a)];
+      off.push_back(values[i] - value);
+    }
+    std::vector<double> sizes;
+    for (const double o : off) sizes.push_back(std::abs(o));
+    const double spread = std::max(1e-3, 1.483 * median(sizes));
+    for (std::size_t i = 0; i < off.size(); ++i)
+      weights[i] = 1 / (1 + std::pow(off[i] / (2 * spread), 2));
+  }
+  return form;
+}
+
+class Comparison {
+ public:
+  Comparison(const ColourImage& image, const SheetLook& look)
+      : taken_(light_roots(image)),
+        light_(look.height, look.width, CV_32F, const_cast<float*>(look.light.data())),
+        possible_(look.height, look.width, CV_8U, const_cast<std::uint8_t*>(look.possible.data())),
+        page_(light_ >= 0),
+        expected_(taken_.clone()) {}
+
+  SheetMask run(const ColourImage& image, bool cut) {
+    SheetMask out;
+    if (!expect_page()) return out;
+    const cv::Mat unknown = expect_surroundings();
+    const cv::Mat certain = page_ & ~possible_;
+    MaskEvidence evidence = compare_with_expected(taken_, expected_, certain);
+    evidence.distance.setTo(0, ~possible_);
+    evidence.distance.setTo(255, unknown);
+    out.undecided = double(cv::countNonZero(unknown)) / std::max(1, cv::countNonZero(possible_));
+    out.mask = mask_from_evidence(evidence);
+    if (std::none_of(out.mask.coverage.begin(), out.mask.coverage.end(),
+                     [](std::uint8_t c) { return c >= 128; }))
+      return {};
+    Mask moved = cut_band(evidence, image, out.mask);
+    out.confidence = std::min(kMostConfidence, mask_confidence(evidence, out.mask, &moved));
+    if (cut) out.mask = std::move(moved);
+    return out;
+  }
+
+ private:
+  /// What paper and ink send to the camera, where the page is seen. False where too little of it is
+  /// seen.
+  bool expect_page() {
+    std::vector<cv::Point> paper, ink;
+    const cv::Mat certain = page_ & ~possible_;
+    const int step = std::max(1, int(std::sqrt(double(cv::countNonZero(certain)) / 20000)));
+    for (int y = 0; y < light_.rows; y += step)
+      for (int x = 0; x < light_.cols; x += step) {
+        if (!certain.at<std::uint8_t>(y, x)) continue;
+        const float light = light_.at<float>(y, x);
+        if (light > kPaper) paper.emplace_back(x, y);
+        if (light < kInk) ink.emplace_back(x, y);
+      }
+    if (paper.size() < kFewest || ink.size() < kFewest / 10) return false;
+    for (int c = 0; c < 3; ++c) expect_channel(c, paper, ink);
+    return true;
+  }
+
+  void expect_channel(int c, const std::vector<cv::Point>& paper,
+                      const std::vector<cv::Point>& ink) {
+    std::vector<double> values, shares;
+    for (const cv::Point& at : paper) values.push_back(double(taken_.at<cv::Vec3f>(at)[c]));
+    const cv::Vec6d form = fit(paper, values, taken_.size());
+    const auto paper_at = [&](const cv::Point& at) {
+      const auto t = terms(at, taken_.size());
+      double value = 0;
+      for (int a = 0; a < kTerms; ++a) value += form[a] * t[std::size_t(a)];
+      return std::max(value, 1e-3);
+    };
+    for (const cv::Point& at : ink)
+      shares.push_back(std::pow(double(taken_.at<cv::Vec3f>(at)[c]) / paper_at(at), 2));
+    const double dark = std::clamp(median(shares), 0.0, 1.0);
+    for (int y = 0; y < light_.rows; ++y)
+      for (int x = 0; x < light_.cols; ++x) {
+        if (!page_.at<std::uint8_t>(y, x)) continue;
+        const double light = std::clamp(double(light_.at<float>(y, x)), 0.0, 1.0);
+        expected_.at<cv::Vec3f>(y, x)[c] =
+            float(paper_at({x, y}) * std::sqrt(dark + (1 - dark) * light));
+      }
+  }
+
+  /// Beside the page: as the nearest place where the object cannot be. Returns where nothing is
+  /// known (255), since what lies around is of many colours, or there is nothing.
+  cv::Mat expect_surroundings() {
+    const cv::Mat beside = ~page_, asked = beside & possible_, around = beside & ~possible_;
+    cv::Mat rim;  // of the page, which pixels show in part: neither paper nor background
+    cv::dilate(page_, rim, cv::getStructuringElement(cv::MORPH_RECT, {5, 5}));
+    cv::Mat unknown = asked.clone();
+    cv::Mat source = around & ~rim;
+    if (cv::countNonZero(source) < int(kFewest)) return unknown;
+    cv::Scalar mean, deviation;
+    cv::meanStdDev(taken_, mean, deviation, source);
+    if (std::max({deviation[0], deviation[1], deviation[2]}) > kPlain) return unknown;
+    cv::Mat smooth, distances, labels;
+    cv::blur(taken_, smooth, {5, 5});
+    cv::distanceTransform(~source, distances, labels, cv::DIST_L2, cv::DIST_MASK_5,
+                          cv::DIST_LABEL_PIXEL);
+    std::vector<cv::Point> at(std::size_t(cv::countNonZero(source)) + 1);
+    for (int y = 0; y < source.rows; ++y)
+      for (int x = 0; x < source.cols; ++x)
+        if (source.at<std::uint8_t>(y, x)) at[std::size_t(labels.at<int>(y, x))] = {x, y};
+    for (int y = 0; y < source.rows; ++y)
+      for (int x = 0; x < source.cols; ++x)
+        if (asked.at<std::uint8_t>(y, x))
+          expected_.at<cv::Vec3f>(y, x) =
+              smooth.at<cv::Vec3f>(at[std::size_t(labels.at<int>(y, x))]);
+    // The page's rim is there whatever stands before it: it counts as background but for what
+    // differs from both sides.
+    const cv::Mat thin = asked & rim;
+    for (int y = 0; y < source.rows; ++y)
+      for (int x = 0; x < source.cols; ++x)
+        if (thin.at<std::uint8_t>(y, x)) settle_rim({x, y});
+    return cv::Mat::zeros(unknown.size(), CV_8U);
+  }
+
+  /// A pixel that mixes page and background: what it would be of the mixture nearest to it.
+  void settle_rim(const cv::Point& at) {
+    cv::Vec3f paper;
+    int count = 0;
+    for (int v = -2; v <= 2; ++v)
+      for (int u = -2; u <= 2; ++u) {
+        const cv::Point near = at + cv::Point(u, v);
+        if (!near.inside(cv::Rect({}, page_.size())) || !page_.at<std::uint8_t>(near)) continue;
+        paper += expected_.at<cv::Vec3f>(near), ++count;
+      }
+    if (count == 0) return;
+    paper *= 1.0f / float(count);
+    cv::Vec3f& behind = expected_.at<cv::Vec3f>(at);
+    const cv::Vec3f span = paper - behind, here = taken_.at<cv::Vec3f>(at) - behind;
+    const float share = span.dot(span) > 0 ? here.dot(span) / span.dot(span) : 0.0f;
+    behind += std::clamp(share, 0.0f, 1.0f) * span;
+  }
+
+  cv::Mat taken_, light_, possible_, page_, expected_;
+};
+
+}  // namespace
+
+SheetMask mask_from_sheet(const ColourImage& image, const SheetLook& look, bool cut) {
+  PHOTOHULL_CHECK_OP(image.width, ==, look.width);
+  PHOTOHULL_CHECK_OP(image.height, ==, look.height);
+  return Comparison(image, look).run(image, cut);
+}
+
+}  // namespace photohull

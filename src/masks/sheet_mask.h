@@ -1,0 +1,24 @@
+// Masks of an object that stands on a printed sheet, from what the sheet alone would look like.
+#pragma once
+
+#include "core/image.h"
+#include "core/sheet_look.h"
+
+namespace photohull {
+
+struct SheetMask {
+  Mask mask;
+  double confidence = 0;  ///< as mask_confidence has it, 0.99 at most
+  /// Share of the pixels where the object may be that show something else than the page, before a
+  /// background of many colours: there the mask has the object, for nothing says that it is not.
+  double undecided = 0;
+};
+
+/// The object, rather too large than too small. How light paper and ink are is measured where the
+/// object cannot be, and continued smoothly to where it may; what differs is the object's, but
+/// for shadows, as compare_with_plate says. Beside the page the background is what is seen around
+/// the place. `look` has the image's size. Everything is background where the object cannot be.
+/// `cut`: GrabCut places contours.
+SheetMask mask_from_sheet(const ColourImage& image, const SheetLook& look, bool cut);
+
+}  // namespace photohull

@@ -1,0 +1,144 @@
+// board, synthesize with a sheet, pose and reconstruct, from the command line.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "child_process.h"
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "io/image_file.h"
+#include "io/load_scene.h"
+#include "support/scratch_folder.h"
+
+namespace photohull::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::HasSubstr;
+
+constexpr int kViews = 8;
+
+class PoseCommand : public testing::Test {
+ protected:
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  json read(const std::string& name) const { return json::parse(read_bytes(folder_ / name)); }
+
+  void make_board(const std::string& name = "board.pdf") const {
+    const Finished made = run_photohull({"board", "--out", path(name)});
+    ASSERT_EQ(made.code, 0) << made.err;
+  }
+
+  /// A pawn on the sheet, in `table`.
+  void photograph_table() const {
+    make_board();
+    write_atomically(folder_ / "table.json", R"({"geometry": {"shape": "pawn"},
+      "material": {"base": [0.6, 0.33, 0.16]}, "background": {"colour": [0.1, 0.12, 0.14]},
+      "sheet": {"board": "board.json", "fill": 0.6, "hidden": 0.2},
+      "image": {"width": 800, "height": 600, "samples": 3, "maps": false}, "truth_samples": 2000,
+      "cameras": {"rings": [{"count": 4, "elevation": 32}, {"count": 4, "elevation": 55, "phase": 0.5}],
+                  "distance": 3.2, "fill": 0.5},
+      "degradations": {"k1": -0.05, "photon_noise": 0.01, "blur": 0.5}})");
+    const Finished made = run_photohull({"synthesize", path("table.json"), "--out", path("table")});
+    ASSERT_EQ(made.code, 0) << made.err;
+  }
+
+  ScratchFolder folder_;
+};
+
+double overlap(const Mask& a, const Mask& b) {
+  double both = 0, either = 0;
+  for (std::size_t i = 0; i < a.coverage.size(); ++i) {
+    const bool x = a.coverage[i] >= 128, y = b.coverage[i] >= 128;
+    both += x && y, either += x || y;
+  }
+  return both / either;
+}
+
+TEST_F(PoseCommand, PhotographsOnASheetBecomeAScene) {
+  photograph_table();
+  // One that shows nothing, and one that is no photograph.
+  const std::vector<std::uint8_t> grey(std::size_t(800) * 600 * 3, 90);
+  io::write_png(folder_ / "table/images/grey.png", 800, 600, 3, grey);
+  write_atomically(folder_ / "table/images/torn.png", "\x89PNG\r\n\x1a\n and nothing more");
+  const Finished posed = run_photohull(
+      {"pose", path("table/images"), "--board", path("board.json"), "--out", path("scene")});
+  ASSERT_EQ(posed.code, 0) << posed.err;
+  EXPECT_THAT(posed.out, HasSubstr("8 of 10 photographs have a pose"));
+  EXPECT_THAT(posed.out, HasSubstr("grey.png"));
+  EXPECT_THAT(posed.out, HasSubstr("no tag was found"));
+  EXPECT_THAT(posed.out, HasSubstr("torn.png"));
+  const json report = read("scene/pose.json");
+  EXPECT_LT(report["rms"], 0.15);
+  EXPECT_FALSE(report["bend"]["found"]);
+  // The cameras are where they were.
+  const Scene scene = io::load_scene(path("scene"), {}), truth = io::load_scene(path("table"), {});
+  ASSERT_EQ(scene.views.size(), std::size_t(kViews));
+  const json sheet = read("table/spec.json")["result"]["sheet"];
+  const glm::dvec3 origin(sheet["origin"][0], sheet["origin"][1], sheet["origin"][2]);
+  const double unit = sheet["unit"];
+  for (std::size_t i = 0; i < scene.views.size(); ++i) {
+    const glm::dvec3 exact = (truth.views[i].camera.center() - origin) / unit;
+    EXPECT_LT(glm::length(scene.views[i].camera.center() - exact), 1e-3 * glm::length(exact));
+    EXPECT_NEAR(scene.views[i].camera.intrinsics.fx / truth.views[i].camera.intrinsics.fx, 1, 2e-3);
+    ASSERT_FALSE(scene.views[i].mask.empty());
+    EXPECT_GT(overlap(io::read_mask(scene.views[i].mask), io::read_mask(truth.views[i].mask)), 0.93)
+        << scene.views[i].name;
+  }
+  // The object alone: nothing of the sheet.
+  const Finished made = run_photohull({"reconstruct", path("scene"), "--out", path("model"),
+                                       "--method", "hull", "--resolution", "48"});
+  EXPECT_TRUE(made.code == 0 || made.code == 3) << made.err;
+  const json grid = read("model/report.json")["grid"];
+  const glm::dvec3 size = (truth.box->max - truth.box->min) / unit;
+  const double voxel = grid["voxel_size"];
+  for (int c = 0; c < 3; ++c) {
+    const double side = voxel * double(grid["size"][std::size_t(c)]);
+    EXPECT_LT(side, 1.5 * size[c] + 12 * voxel);
+  }
+}
+
+TEST_F(PoseCommand, SameInputGivesTheSameBytes) {
+  photograph_table();
+  for (const char* out : {"one", "two"}) {
+    const Finished posed = run_photohull({"pose", path("table/images"), "--board",
+                                          path("board.json"), "--out", path(out), "--no-masks"});
+    ASSERT_EQ(posed.code, 0) << posed.err;
+  }
+  EXPECT_EQ(read_bytes(folder_ / "one/pose.json"), read_bytes(folder_ / "two/pose.json"));
+  EXPECT_EQ(read_bytes(folder_ / "one/transforms.json"),
+            read_bytes(folder_ / "two/transforms.json"));
+}
+
+TEST_F(PoseCommand, MistakesAreNamed) {
+  make_board();
+  make_board("other.svg");
+  EXPECT_THAT(read_bytes(folder_ / "other.svg"), testing::StartsWith("<svg"));
+  const auto pose = [&](const Arguments& more) {
+    Arguments all = {"pose", "--out", path("scene")};
+    all.insert(all.end(), more.begin(), more.end());
+    return run_photohull(all);
+  };
+  const Finished ending = run_photohull({"board", "--out", path("board.png")});
+  EXPECT_EQ(ending.code, 2);
+  EXPECT_THAT(ending.err, HasSubstr(".pdf or .svg"));
+  fs::create_directories(folder_ / "photos");
+  const std::vector<std::uint8_t> grey(std::size_t(64) * 48 * 3, 90);
+  io::write_png(folder_ / "photos/a.png", 64, 48, 3, grey);
+  const Finished blank = pose({path("photos"), "--board", path("board.json")});
+  EXPECT_EQ(blank.code, 1);
+  EXPECT_THAT(blank.err, HasSubstr("a.png: no tag was found"));
+  EXPECT_FALSE(fs::exists(folder_ / "scene"));
+  const Finished no_board = pose({path("photos"), "--board", path("photos/a.png")});
+  EXPECT_EQ(no_board.code, 1);
+  EXPECT_THAT(no_board.err, HasSubstr("a.png"));
+  const Finished bar = pose({path("photos"), "--board", path("board.json"), "--bar", "15"});
+  EXPECT_EQ(bar.code, 2);
+  EXPECT_THAT(bar.err, HasSubstr("150"));
+}
+
+}  // namespace
+}  // namespace photohull::test
