@@ -46,6 +46,63 @@ function readCorners(codes) {
   return codes;
 }
 
+/** Unit normals of the vertices, as whole numbers up to 32767: of those at one place, whatever their places on a texture,
+    the mean of all triangles there by area. */
+function normalsOf(positions, triangles) {
+  const first = firstAtPlace(positions), sums = new Float64Array(positions.length);
+  for (let i = 0; i < triangles.length; i += 3) {
+    const a = 3 * triangles[i], b = 3 * triangles[i + 1], c = 3 * triangles[i + 2];
+    const ux = positions[b] - positions[a], uy = positions[b + 1] - positions[a + 1], uz = positions[b + 2] - positions[a + 2];
+    const vx = positions[c] - positions[a], vy = positions[c + 1] - positions[a + 1], vz = positions[c + 2] - positions[a + 2];
+    const x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
+    for (let k = 0; k < 3; ++k) {
+      const at = 3 * first[triangles[i + k]];
+      sums[at] += x;
+      sums[at + 1] += y;
+      sums[at + 2] += z;
+    }
+  }
+  const normals = new Int16Array(positions.length);
+  for (let v = 0; v < first.length; ++v) {
+    const at = 3 * first[v], x = sums[at], y = sums[at + 1], z = sums[at + 2];
+    const scale = 32767 / (Math.sqrt(x * x + y * y + z * z) || 1);
+    normals[3 * v] = scale * x;
+    normals[3 * v + 1] = scale * y;
+    normals[3 * v + 2] = scale * z;
+  }
+  return normals;
+}
+
+/** For each vertex the first one at its place. */
+function firstAtPlace(positions) {
+  const count = positions.length / 3, first = new Uint32Array(count);
+  let slots = 1;
+  while (slots < 2 * count) slots *= 2;
+  const table = new Uint32Array(slots);  // a vertex, counted from 1
+  for (let v = 0; v < count; ++v) {
+    const x = positions[3 * v], y = positions[3 * v + 1], z = positions[3 * v + 2];
+    let at = (Math.imul(x, 73856093) ^ Math.imul(y, 19349663) ^ Math.imul(z, 83492791)) & (slots - 1);
+    for (;; at = (at + 1) & (slots - 1)) {
+      const other = table[at] - 1;
+      if (other >= 0 && (positions[3 * other] !== x || positions[3 * other + 1] !== y || positions[3 * other + 2] !== z)) continue;
+      if (other < 0) table[at] = v + 1;
+      first[v] = other < 0 ? v : other;
+      break;
+    }
+  }
+  return first;
+}
+
+/** The image of a text of base64; nothing for an empty one. */
+async function unpackImage(id) {
+  const text = byId(id).textContent;
+  if (!text) return null;
+  const image = new Image();
+  image.src = "data:image/jpeg;base64," + text;
+  await image.decode();
+  return image;
+}
+
 /** The streams by their names; `table` describes them. */
 function readModel(bytes, table) {
   const model = {};
@@ -54,6 +111,7 @@ function readModel(bytes, table) {
     const count = stream.name === "triangles" ? 3 * table.triangles : table.vertices;
     const numbers = readStream(bytes, from, count, stream);
     model[stream.name] = stream.name === "triangles" ? readCorners(numbers) : numbers;
+    model[stream.name].step = stream.step;
     from += count * stream.components * stream.bytes;
   }
   return model;

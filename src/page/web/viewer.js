@@ -3,7 +3,8 @@
 const FLIGHT_MS = 700, FIELD = 32;  // degrees, of the circling camera
 
 class Viewer {
-  constructor(THREE, data, numbers, colourOf) {
+  /** `texture`: the image that the model's places lie on, or nothing. */
+  constructor(THREE, data, numbers, texture, colourOf) {
     this.THREE = THREE;
     this.canvas = byId("canvas");
     this.numbers = numbers;
@@ -13,10 +14,11 @@ class Viewer {
     this.scene = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera(FIELD, 1, 0.01, 100);
     this.addModel(data.model);
+    this.addTexture(texture);
     this.photographs = new Photographs(THREE, data.views, world => this.local(world), colourOf);
     this.scene.add(this.photographs.group);
     this.addLights();
-    this.orbit = new Orbit(THREE, this.canvas, this.photographs.up(), 1, () => this.leave());
+    this.orbit = new Orbit(THREE, this.canvas, new THREE.Vector3(...data.up), 1, () => this.leave());
     this.orbit.clicked = event => this.click(event);
     this.first = data.first_view;
     this.reset();
@@ -24,8 +26,15 @@ class Viewer {
     this.canvas.addEventListener("pointerleave", () => this.point(null));
     this.canvas.addEventListener("webglcontextrestored", () => this.draw());
     new ResizeObserver(() => this.resize()).observe(byId("viewport"));
-    this.photographs.load(() => this.draw());
     this.resize();
+  }
+
+  /** The model is there; photographs come when it has been drawn. */
+  drawn() {
+    return new Promise(done => {
+      this.onDrawn = done;
+      this.draw();
+    });
   }
 
   /** From the world to the picture, in which the model has radius 1 around the origin. */
@@ -47,12 +56,23 @@ class Viewer {
     this.geometry = new THREE.BufferGeometry();
     this.geometry.setAttribute("position", new THREE.BufferAttribute(positions, 3));
     this.geometry.setIndex(new THREE.BufferAttribute(this.numbers.triangles, 1));
-    this.geometry.computeVertexNormals();
+    this.geometry.setAttribute("normal", new THREE.BufferAttribute(normalsOf(codes, this.numbers.triangles), 3, true));
     this.plain = new THREE.MeshBasicMaterial({ vertexColors: true, side: THREE.DoubleSide });
     this.lit = new THREE.MeshLambertMaterial({ vertexColors: true, side: THREE.DoubleSide });
     this.clay = new THREE.MeshLambertMaterial({ color: 0xb9b2a6, side: THREE.DoubleSide });
     this.mesh = new THREE.Mesh(this.geometry, this.clay);
     this.scene.add(this.mesh);
+  }
+
+  addTexture(image) {
+    if (!image) return;
+    const THREE = this.THREE, texture = new THREE.Texture(image);
+    texture.colorSpace = THREE.SRGBColorSpace;
+    texture.flipY = false;
+    texture.needsUpdate = true;
+    const step = this.numbers.place.step;
+    this.geometry.setAttribute("uv", new THREE.BufferAttribute(Float32Array.from(this.numbers.place, code => step * code), 2));
+    this.textured = new THREE.MeshBasicMaterial({ map: texture, side: THREE.DoubleSide });
   }
 
   /** A lamp at the viewer's shoulder, and light from all around. */
@@ -66,8 +86,8 @@ class Viewer {
 
   show(layer) {
     const colours = layer.colours(this.numbers);
-    if (colours) this.geometry.setAttribute("color", new this.THREE.BufferAttribute(colours, 3));
-    this.mesh.material = !colours ? this.clay : layer.shaded ? this.lit : this.plain;
+    if (colours) this.geometry.setAttribute("color", new this.THREE.BufferAttribute(colours, 3, true));
+    this.mesh.material = layer.textured ? this.textured : !colours ? this.clay : layer.shaded ? this.lit : this.plain;
     this.draw();
   }
 
@@ -184,6 +204,7 @@ class Viewer {
       this.photographs.group.visible = this.camerasWanted && this.through < 0 && !this.flight;
       this.photographs.fade(this.camera.position);
       this.renderer.render(this.scene, this.camera);
+      this.onDrawn?.();
       if (this.flight) this.draw();
     });
   }
