@@ -21,6 +21,12 @@ const LINEAR = Uint16Array.from({ length: 256 }, (_, i) => {
 const css = colour => "rgb(" + colour.join(",") + ")";
 const viewsColour = (count, most) => count === 0 ? UNSEEN_COLOUR : rampColour(VIRIDIS, (count - 1) / Math.max(most - 1, 1));
 
+function linearOf(bytes) {
+  const colours = new Uint16Array(bytes.length);
+  for (let i = 0; i < bytes.length; ++i) colours[i] = LINEAR[bytes[i]];
+  return colours;
+}
+
 /** Colours of the vertices by a table of the 256 codes of a layer. */
 function coloursOfCodes(codes, colourOf) {
   const table = Uint16Array.from(Array.from({ length: 256 }, (_, code) => colourOf(code)).flat(), byte => LINEAR[byte]);
@@ -60,7 +66,7 @@ const LAYERS = [
     id: "texture", title: "Colour", shaded: false, stream: "place", textured: true, colours: () => null, legend: () => [],
   },
   {
-    id: "colour", title: "Colour", shaded: false, stream: "colour", colours: model => Uint16Array.from(model.colour, byte => LINEAR[byte]), legend: () => [],
+    id: "colour", title: "Colour", shaded: false, stream: "colour", colours: model => linearOf(model.colour), legend: () => [],
   },
   { id: "clay", title: "Clay", shaded: true, stream: "position", colours: () => null, legend: () => [] },
   {

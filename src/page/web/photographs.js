@@ -72,7 +72,7 @@ class Photographs {
     this.group.add(plane);
   }
 
-  /** Loads the photographs into the picture; `changed` is called once, when all are there. */
+  /** Loads the photographs, without which the cameras are not drawn; `changed` is called when all are there. */
   async load(changed) {
     await Promise.all(this.views.map(async (view, i) => {
       if (!view.jpeg) return;
@@ -85,6 +85,7 @@ class Photographs {
       Object.assign(this.planes[i].material, { map: texture, needsUpdate: true });
       this.planes[i].material.color.set(0xffffff);
     }));
+    this.loaded = true;
     changed();
   }
 

@@ -2,7 +2,7 @@
 
 async function unpackBytes(id) {
   const text = atob(byId(id).textContent), packed = new Uint8Array(text.length);
-  for (let i = 0; i < packed.length; ++i) packed[i] = text.charCodeAt(i);
+  for (let i = 0; i < text.length; ++i) packed[i] = text.charCodeAt(i);
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
@@ -16,21 +16,18 @@ async function unpackModule(id) {
   }
 }
 
-/** A stream's numbers, element by element. Differences are summed up to what they are of. */
-function readStream(bytes, from, count, stream) {
-  const all = new Uint32Array(count * stream.components);
-  let at = from;
-  for (let c = 0; c < stream.components; ++c)
-    for (let b = 0; b < stream.bytes; ++b)
-      for (let i = 0; i < count; ++i) all[i * stream.components + c] |= bytes[at++] << (8 * b);
-  if (stream.name === "triangles") return all;
-  const mask = 2 ** (8 * stream.bytes) - 1;
-  for (let c = 0; c < stream.components; ++c) {
+/** A stream's numbers, element by element. Differences are summed up to what they are of, modulo what the array's elements hold. */
+function readStream(bytes, from, count, { name, components, bytes: width }) {
+  const all = new (width === 1 ? Uint8Array : width === 2 ? Uint16Array : Uint32Array)(count * components);
+  for (let c = 0; c < components; ++c) {
+    const start = from + c * width * count;
     let value = 0;
-    for (let i = c; i < all.length; i += stream.components) {
-      const code = all[i];
-      value = (value + ((code >>> 1) ^ -(code & 1))) & mask;
-      all[i] = value;
+    for (let i = 0, at = c; i < count; ++i, at += components) {
+      let code = bytes[start + i];
+      if (width > 1) code |= bytes[start + count + i] << 8;
+      if (width > 2) code |= bytes[start + 2 * count + i] << 16 | bytes[start + 3 * count + i] << 24;
+      if (name !== "triangles") code = value = value + ((code >>> 1) ^ -(code & 1)) | 0;
+      all[at] = code;
     }
   }
   return all;
