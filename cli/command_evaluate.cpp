@@ -144,9 +144,9 @@ void write_image(AtomicFile& file, const Arguments& a, const TriMesh& result,
   const std::string title =
       concat(fs::path(a.mesh).filename().string(), ": F ", std::round(10000 * score.f) / 100,
              " % within ", 100 * score.threshold, " % of the diagonal");
-  const eval::ErrorImage image = eval::draw_error_image(
+  const RgbImage image = eval::draw_error_image(
       result, truth, {a.error_range * truth.diagonal(), 480, title}, progress);
-  io::write_png(file, image.width, image.height, 3, image.rgb);
+  io::write_png(file, image);
 }
 
 bool ends_with(const std::string& path, const char* extension) {

@@ -96,7 +96,7 @@ void write_picture(const std::string& path, const pipeline::Inspection& info,
   std::vector<ScenePoint> listed;
   if (points.empty())
     for (const glm::dvec3& p : info.scene.points) listed.push_back({p, {}});
-  const pipeline::BoxPicture picture =
+  const RgbImage picture =
       pipeline::draw_box(info.scene, info.scales, info.grid.voxel_size,
                          points.empty() ? std::span<const ScenePoint>(listed) : points);
   make_folder(std::filesystem::path(path).parent_path(), "--picture");

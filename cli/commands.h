@@ -33,6 +33,7 @@ void add_info(CLI::App& app);
 void add_synthesize(CLI::App& app);
 void add_devices(CLI::App& app);
 void add_view(CLI::App& app);
+void add_render(CLI::App& app);
 
 /// All of these.
 Commands main_commands();

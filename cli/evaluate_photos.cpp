@@ -96,8 +96,8 @@ void write_picture(AtomicFile& file, const std::string& mesh_name, const Prepare
   std::snprintf(figures, sizeof figures, "ZNCC %.3f", score.zncc().value_or(0));
   const std::string title =
       concat(fs::path(mesh_name).filename().string(), " in ", view.name, ": ", figures);
-  const eval::ErrorImage image = eval::draw_agreement(view, maps, title);
-  io::write_png(file, image.width, image.height, 3, image.rgb);
+  const RgbImage image = eval::draw_agreement(view, maps, title);
+  io::write_png(file, image);
 }
 
 std::string shown(const std::optional<double>& value, double scale, const char* format) {

@@ -129,7 +129,7 @@ void main() {
     detail += best_weight[k] * details[k];
   }
   if (!(total > 0.0)) {
-    baked[i] = BakeResult(vec4(0.0), vec4(0.0));
+    baked[i] = BakeResult(vec4(0.0), vec4(0.0), vec4(0.0));
     return;
   }
   vec3 colour = robust_mean(colours, encoded, total);
@@ -137,5 +137,6 @@ void main() {
   baked[i] = BakeResult(
       vec4(colour, used),
       vec4(max(scatter, 0.0), spread_about(sqrt(colour), encoded, total),
-           spread_about(detail / total, details, total), spread_about(vec3(0.0), details, total)));
+           spread_about(detail / total, details, total), spread_about(vec3(0.0), details, total)),
+      vec4(direction_count, 0.0, 0.0, 0.0));
 }

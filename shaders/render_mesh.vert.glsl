@@ -1,9 +1,9 @@
 #version 450 core
 #extension GL_GOOGLE_include_directive : require
-// A mesh for render::Rasterizer.
+// A mesh for render::Rasterizer. With TEXTURED its colours are on pages.
 layout(location = 0) in vec3 position;  // relative to the mesh's origin
 layout(location = 1) in vec3 normal;
-layout(location = 2) in vec4 colour;    // sRGB-encoded
+layout(location = 2) in vec4 colour;    // sRGB-encoded; with TEXTURED xy: place on the page, z: page
 layout(location = 0) out vec3 camera_normal;
 layout(location = 1) out vec3 vertex_colour;
 layout(location = 2) out vec3 mesh_position;

@@ -11,6 +11,7 @@ namespace {
 constexpr CommandEntry kCommands[] = {
     {"reconstruct", "carve a volume and a mesh from photographs", kMainProgram},
     {"view", "open the page that reconstruct wrote in a browser", kMainProgram},
+    {"render", "draw a result: a film of it turning, or stills", kMainProgram},
     {"info", "tell what was understood of a scene", kMainProgram},
     {"masks", "find the object in photographs, as reconstruct does", kMainProgram},
     {"convert", "write a scene's cameras for another program", kMainProgram},

@@ -34,11 +34,12 @@ struct BakeParameters {
 struct BakeResult {
   vec4 colour;    // rgb: linear, w: views whose colours are mixed; 0: nobody sees the vertex
   vec4 evidence;  // scatter, disagreement, fine disagreement, fine energy of render::SurfaceEvidence
+  vec4 sight;     // x: views that see the vertex, also those whose colours are not mixed
 };
 
 #ifdef __cplusplus
 static_assert(sizeof(BakeParameters) == 32);
-static_assert(sizeof(BakeResult) == 32);
+static_assert(sizeof(BakeResult) == 48);
 }  // namespace photohull::shaders
 #endif
 

@@ -75,8 +75,7 @@ void draw_text(cv::Mat& image, const std::string& text, int x, int baseline) {
 
 }  // namespace
 
-ErrorImage draw_agreement(const PreparedView& view, const PhotoMaps& maps,
-                          const std::string& title) {
+RgbImage draw_agreement(const PreparedView& view, const PhotoMaps& maps, const std::string& title) {
   PHOTOHULL_CHECK_OP(view.image.width, ==, maps.prediction.width);
   PHOTOHULL_CHECK_OP(view.image.height, ==, maps.prediction.height);
   const cv::Rect frame = frame_of(maps);

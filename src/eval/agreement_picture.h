@@ -14,7 +14,6 @@ namespace photohull::eval {
 /// too bright, blue: too dark, full at 0.2 of the square root of linear light; green: the mesh does
 /// not cover the foreground, yellow: it covers background); the ZNCC of the windows (white 1, black
 /// 0 and below; slate where nothing is judged). `title` is ASCII. `view` is the one of the maps.
-ErrorImage draw_agreement(const PreparedView& view, const PhotoMaps& maps,
-                          const std::string& title);
+RgbImage draw_agreement(const PreparedView& view, const PhotoMaps& maps, const std::string& title);
 
 }  // namespace photohull::eval

@@ -150,8 +150,8 @@ void draw_legend(cv::Mat& image, int top, double range, double diagonal) {
 
 }  // namespace
 
-ErrorImage draw_error_image(const TriMesh& result, const Truth& truth,
-                            const ErrorImageOptions& options, Progress& progress) {
+RgbImage draw_error_image(const TriMesh& result, const Truth& truth,
+                          const ErrorImageOptions& options, Progress& progress) {
   PHOTOHULL_CHECK(options.range > 0 && options.panel >= 64 && options.panel <= 4096);
   const Box box = bounds_of(truth.mesh()), all = bounds_of(result);
   const glm::dvec3 size = box.size();

@@ -1,12 +1,11 @@
 // A picture of where a reconstruction is off.
 #pragma once
 
-#include <cstdint>
 #include <string>
-#include <vector>
 
 #include "core/mesh.h"
 #include "core/progress.h"
+#include "core/rgb_image.h"
 #include "eval/truth.h"
 
 namespace photohull::eval {
@@ -17,17 +16,10 @@ struct ErrorImageOptions {
   std::string title;  ///< ASCII, drawn above the views
 };
 
-/// 8-bit sRGB, row-major from the top-left, 3 bytes a pixel.
-struct ErrorImage {
-  int width = 0;
-  int height = 0;
-  std::vector<std::uint8_t> rgb;
-};
-
 /// The result from the six directions of the world's axes, parallel projections framed on the
 /// truth, in the colours of error_colour by the exact distance at every pixel, under a headlight;
 /// and a legend. `result` must have faces. Throws Cancelled.
-ErrorImage draw_error_image(const TriMesh& result, const Truth& truth,
-                            const ErrorImageOptions& options, Progress& progress);
+RgbImage draw_error_image(const TriMesh& result, const Truth& truth,
+                          const ErrorImageOptions& options, Progress& progress);
 
 }  // namespace photohull::eval

@@ -231,6 +231,10 @@ void write_png(AtomicFile& file, int width, int height, int channels,
   file.write(compressed.data(), compressed.size());
 }
 
+void write_png(AtomicFile& file, const RgbImage& picture) {
+  write_png(file, picture.width, picture.height, 3, picture.rgb);
+}
+
 void write_png(const fs::path& path, int width, int height, int channels,
                std::span<const std::uint8_t> bytes) {
   AtomicFile file(path);

@@ -11,6 +11,7 @@
 #include "core/atomic_file.h"
 #include "core/file_mask.h"
 #include "core/image.h"
+#include "core/rgb_image.h"
 
 namespace photohull::io {
 
@@ -67,6 +68,7 @@ void write_png(const std::filesystem::path& path, int width, int height, int cha
 /// The same, for the caller to commit.
 void write_png(AtomicFile& file, int width, int height, int channels,
                std::span<const std::uint8_t> bytes);
+void write_png(AtomicFile& file, const RgbImage& picture);
 /// The bytes of that file.
 std::vector<std::uint8_t> encode_png(int width, int height, int channels,
                                      std::span<const std::uint8_t> bytes);

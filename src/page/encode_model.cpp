@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr double kPositionSteps = 65535, kLayerSteps = 254;
+constexpr double kPositionSteps = 65535, kPlaceSteps = 8191, kLayerSteps = 254;
 constexpr std::uint32_t kNotKnown = 255;
 
 /// Triangles and vertices in the order in which they are stored.
@@ -103,7 +103,8 @@ void add_triangles(const Order& o, Streams& streams) {
 
 }  // namespace
 
-Model encode_model(const TriMesh& mesh, std::span<const Layer> layers) {
+Model encode_model(const TriMesh& mesh, std::span<const Layer> layers,
+                   std::span<const glm::vec2> places) {
   PHOTOHULL_CHECK(!mesh.triangles.empty());
   const Order o = order(mesh);
   glm::vec3 low = mesh.positions.front(), high = low;
@@ -117,6 +118,13 @@ Model encode_model(const TriMesh& mesh, std::span<const Layer> layers) {
     return std::uint32_t(
         std::lround((double(mesh.positions[o.vertices[i]][c]) - double(low[c])) / step));
   });
+  PHOTOHULL_CHECK(places.empty() || places.size() == mesh.positions.size());
+  if (!places.empty())
+    streams.add_differences(
+        {{"name", "place"}, {"step", 1 / kPlaceSteps}}, count, 2, 2, [&](std::size_t i, int c) {
+          const double place = double(places[o.vertices[i]][c]);
+          return std::uint32_t(std::lround(kPlaceSteps * std::clamp(place, 0.0, 1.0)));
+        });
   if (!mesh.colours.empty())
     streams.add_differences({{"name", "colour"}}, count, 3, 1, [&](std::size_t i, int c) {
       const double linear = std::clamp(double(mesh.colours[o.vertices[i]][c]), 0.0, 1.0);

@@ -29,6 +29,7 @@ struct Model {
 /// first use. Streams:
 ///
 ///   position   3 x 16 bits, in steps of the mesh's longest side / 65535
+///   place      2 x 16 bits, in steps of 1 / 8191, where the mesh has a texture
 ///   colour     3 x 8 bits sRGB, where the mesh has colours
 ///   layers     8 bits each: 0 to 254 for 0 to `most`, 255 where nothing is known
 ///   triangles  32 bits a corner: how far below the vertex not used yet it is; 0 is that vertex
@@ -38,7 +39,9 @@ struct Model {
 /// component the lowest bytes of all elements first: what is alike lies together and deflates well.
 /// Normals are not kept, as the triangles tell them.
 ///
-/// The mesh needs triangles. Layers have a value for each vertex.
-Model encode_model(const TriMesh& mesh, std::span<const Layer> layers);
+/// The mesh needs triangles. Layers have a value for each vertex, and so have `places` on a
+/// texture, in [0, 1] from its top-left corner; empty: there is none.
+Model encode_model(const TriMesh& mesh, std::span<const Layer> layers,
+                   std::span<const glm::vec2> places = {});
 
 }  // namespace photohull::page

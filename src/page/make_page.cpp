@@ -7,6 +7,7 @@
 #include "core/html_template.h"
 #include "page/embedded_files.h"
 #include "page/pack.h"
+#include "page/style.h"
 
 namespace photohull::page {
 namespace {
@@ -26,12 +27,13 @@ ordered_json view_json(const ShownView& view) {
 }
 
 /// What the page needs of the report: not the digests of the files that were read, nor the work of
-/// each kernel, of which there is much.
+/// each kernel, of which there is much, nor the cameras, which it has beside their photographs.
 ordered_json shown_report(const std::string& report) {
   ordered_json json = ordered_json::parse(report, nullptr, false);
   if (!json.is_object()) throw Error("the report that a page is to be made of is not JSON");
   json.erase("inputs");
   json.erase("device_work");
+  json.erase("cameras");
   return json;
 }
 
@@ -40,6 +42,7 @@ std::string data_json(const std::string& report, const std::string& command, con
                        {"command", command},
                        {"model", ordered_json::parse(shown.model.table)},
                        {"first_view", shown.first_view},
+                       {"up", {shown.up.x, shown.up.y, shown.up.z}},
                        {"views", ordered_json::array()}};
   for (const ShownView& view : shown.views) data["views"].push_back(view_json(view));
   return inside_script(data.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
@@ -53,9 +56,10 @@ std::string packed_text(std::string_view text) {
 
 std::string make_page(const std::string& report, const std::string& command, const Shown& shown) {
   return fill_template(page_template(), [&](std::string_view name) -> std::string {
-    if (name == "STYLE") return std::string(page_style());
+    if (name == "STYLE") return std::string(base_style()) + std::string(page_style());
     if (name == "DATA") return data_json(report, command, shown);
     if (name == "MODEL") return shown.model.packed;
+    if (name == "TEXTURE") return base64(shown.texture);
     if (name == "THREE") return packed_text(three_js());
     if (name == "SCRIPT") return std::string(page_script());
     return "";

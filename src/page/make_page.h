@@ -22,6 +22,8 @@ struct ShownView {
 struct Shown {
   Model model;
   std::vector<ShownView> views;
+  std::vector<std::uint8_t> texture{};  ///< JPEG, where the model has places on one
+  glm::dvec3 up{0, 0, 1};               ///< unit, world: the model turns about it
   int first_view = 0;  ///< the model is looked at from the side of this one at first
 };
 

@@ -273,8 +273,8 @@ cv::Mat draw_photograph(const PreparedView& view, std::size_t index, const Box& 
 }  // namespace
 }  // namespace picture
 
-BoxPicture draw_box(const Scene& scene, std::span<const double> scales, double voxel_size,
-                    std::span<const ScenePoint> points) {
+RgbImage draw_box(const Scene& scene, std::span<const double> scales, double voxel_size,
+                  std::span<const ScenePoint> points) {
   using namespace picture;
   PHOTOHULL_CHECK_OP(scales.size(), ==, scene.views.size());
   PHOTOHULL_CHECK(scene.box.has_value());
@@ -283,7 +283,7 @@ BoxPicture draw_box(const Scene& scene, std::span<const double> scales, double v
     panels.push_back(draw_photograph(load(scene.views[i], scales[i]), i, *scene.box, voxel_size));
   panels.push_back(draw_plan(scene, points));
   const int rows = int(panels.size() + 1) / 2, head = 2 * kTitle, gap = 6;
-  BoxPicture out{2 * kPanelWidth + gap, head + rows * (kPanelHeight + gap), {}};
+  RgbImage out{2 * kPanelWidth + gap, head + rows * (kPanelHeight + gap), {}};
   cv::Mat sheet(out.height, out.width, CV_8UC3, cv::Scalar(60, 60, 60));
   sheet(cv::Rect(0, 0, out.width, head)).setTo(kPaper);
   for (int i = 0; i < int(panels.size()); ++i)

@@ -77,7 +77,7 @@ MissingPicture draw_explained(std::span<const PreparedView> views,
     return {};
   const PreparedView& view = views[std::size_t(worst - all.begin())];
   const ColourImage& image = view.image;
-  MissingPicture picture{view.name, image.width, image.height, {}};
+  MissingPicture picture{{image.width, image.height, {}}, view.name};
   picture.rgb.reserve(3 * std::size_t(image.width) * std::size_t(image.height));
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {

@@ -11,6 +11,7 @@
 
 #include "assess/verdict.h"
 #include "core/box.h"
+#include "core/camera.h"
 #include "core/scene.h"
 #include "pipeline/input_hashes.h"
 
@@ -167,6 +168,18 @@ struct MeshFindings {
   std::int64_t islands = 0;             ///< pieces that too few photographs support, which went
   double islands_area_share = 0;        ///< of the open mesh's area
   std::optional<MeshErrorFindings> error;
+};
+
+/// From where the model can be looked at.
+struct CameraPose {
+  std::string name;
+  Camera camera;  ///< of the whole photograph as read, but for its lens distortion
+};
+struct LookFindings {
+  std::vector<CameraPose> cameras;  ///< as they took effect
+  glm::dvec3 up{0, 0, 1};           ///< unit, world: upward in the photographs (render/scene_up.h)
+  glm::dvec3 up_axis{0, 0, 1};      ///< the world axis that is upward in files that have one
+  std::string main_view;            ///< that shows the model best
 };
 
 /// The texture of files that hold one (texture/texture_mesh.h).

@@ -34,7 +34,7 @@ std::int64_t fit_stems(const SurfaceJob& job, TriMesh& mesh) {
 SeenVertices seen_vertices(const std::vector<render::PooledEvidence>& evidence) {
   SeenVertices seen;
   for (const render::PooledEvidence& e : evidence) {
-    seen.views.push_back(e.views);
+    seen.views.push_back(e.seeing);
     seen.disagreement.push_back(e.seen ? e.disagreement : NAN);
   }
   return seen;

@@ -14,7 +14,7 @@ namespace photohull::pipeline {
 
 /// What is known of each vertex beside the mesh's attributes.
 struct SeenVertices {
-  std::vector<float> views;         ///< that see it, up to kMaxBakeViews
+  std::vector<float> views;         ///< that see it
   std::vector<float> disagreement;  ///< PooledEvidence::disagreement; NaN where no view sees it
 };
 

@@ -30,7 +30,7 @@ MissingPicture draw_missing(const CheckedResult& result,
   if (!view.silhouette.widened.empty()) own = silhouette_distance(view.mask);
   const SilhouetteDistance& given = own.pixels.empty() ? used : own;
 
-  MissingPicture picture{view.name, used.width, used.height, {}};
+  MissingPicture picture{{used.width, used.height, {}}, view.name};
   const RayScene rays(*result.mesh);
   picture.rgb.resize(3 * used.pixels.size());
   const glm::dvec3 origin = view.camera.center();

@@ -1,22 +1,18 @@
 // Where the model leaves a mask empty, as a picture.
 #pragma once
 
-#include <cstdint>
 #include <span>
-#include <vector>
+#include <string>
 
 #include "assess/silhouette_check.h"
 #include "core/image.h"
-#include "core/mesh.h"
+#include "core/rgb_image.h"
 #include "pipeline/self_check.h"
 
 namespace photohull::pipeline {
 
-/// 8-bit sRGB, row-major from the top-left.
-struct MissingPicture {
+struct MissingPicture : RgbImage {
   std::string view;  ///< whose photograph it is
-  int width = 0, height = 0;
-  std::vector<std::uint8_t> rgb;
 };
 
 /// The photograph whose mask the mesh fills worst, by `fits`, darkened: foreground that the mesh

@@ -17,6 +17,7 @@
 #include "pipeline/finish_mesh.h"
 #include "pipeline/given_words.h"
 #include "pipeline/judge_result.h"
+#include "pipeline/look.h"
 #include "pipeline/methods/sampler.h"
 #include "pipeline/photometric_stage.h"
 #include "pipeline/place_lattice.h"
@@ -168,10 +169,7 @@ class Carver {
     judge(around, out);
     if (open && bounded_) out.mesh = open_unseen(job(), out.mesh, seen, mesh_findings_);
     append_mesh(around.mesh, out.mesh);
-    if (run_.options.report_page == ReportPage::kOn)
-      out.shown = clock.run("page", Weights::kPage,
-                            [&] { return show_result(out.mesh, std::move(seen), subject_.views); });
-    deliver(out);
+    deliver(out, seen);
     return out;
   }
 
@@ -277,11 +275,15 @@ class Carver {
     out.evidence->explained = std::move(judgement.explained);
   }
 
-  void deliver(Reconstruction& out) {
+  void deliver(Reconstruction& out, const SeenVertices& seen) {
     MeshFindings& found = mesh_findings_;
     found.uniform_triangles = std::int64_t(out.mesh.triangles.size());
     const bool textured = makes_texture(run_.options);
+    const bool page = run_.options.report_page == ReportPage::kOn;
     const TriMesh uniform = textured ? out.mesh : TriMesh();
+    if (page && !textured)
+      out.shown = run_.clock.run("page", Weights::kPage,
+                                 [&] { return show_result(out.mesh, seen, subject_.views); });
     if (run_.options.mesh_error.value > 0)
       out.mesh = run_.clock.run("simplify", Weights::kSimplify,
                                 [&] { return simplify(job(), out.mesh, found); });
@@ -293,15 +295,24 @@ class Carver {
       out.textured = run_.clock.run("texture", Weights::kTexture, [&] {
         return make_textured(job(), uniform, out.mesh, run_.report.texture.emplace());
       });
+    if (page && textured)
+      out.shown = run_.clock.run("page", Weights::kPage, [&] {
+        return show_textured(*out.textured, uniform, seen, subject_.views);
+      });
     run_.report.voxels_kept = std::int64_t(out.volume.inside_voxels());
     run_.report.bricks_stored = std::int64_t(out.volume.bricks.size());
     run_.report.hull = hull_.findings();
     run_.clock.count_samples("hull", hull_.findings().samples);  // later stages carve hulls, too
     const int main = render::choose_main_view(out.mesh, subject_.views);
-    if (out.shown) out.shown->first_view = main;
+    run_.report.look = look_at(out.mesh, subject_.views, main);
+    if (out.shown) {
+      out.shown->first_view = main;
+      out.shown->up = run_.report.look.up;
+    }
     keep_only_photograph(main, subject_.views);
     out.preview = run_.clock.run("preview", Weights::kPreview, [&] {
-      return render_preview(*run_.context, out.mesh, subject_.views);
+      return out.textured ? render_preview(*run_.context, *out.textured, subject_.views)
+                          : render_preview(*run_.context, out.mesh, subject_.views);
     });
   }
 

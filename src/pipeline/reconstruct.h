@@ -35,7 +35,7 @@ struct Reconstruction {
   /// For files that hold a texture: where such a format is among the options' exports.
   std::optional<TexturedMesh> textured;
   glm::dvec3 up{0, 0, 1};  ///< the world axis that is upward in most photographs
-  PreviewImage preview;
+  RgbImage preview;
   std::optional<Evidence> evidence;  ///< on demand
   std::optional<page::Shown> shown;  ///< what report.html shows, unless it is off
   Report report;                     ///< of all but writing files

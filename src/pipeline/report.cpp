@@ -118,6 +118,26 @@ void add_refinement(const RefineFindings& refine, ordered_json& j) {
                                 {"kept", fit.kept}});
 }
 
+void add_look(const LookFindings& look, ordered_json& j) {
+  j["up"] = array_of(look.up);
+  j["up_axis"] = array_of(look.up_axis);
+  j["preview_png_shows"] = look.main_view;
+  j["cameras"] = ordered_json::array();
+  for (const CameraPose& pose : look.cameras) {
+    const Intrinsics& k = pose.camera.intrinsics;
+    const glm::dmat3& r = pose.camera.cam_from_world.rotation;
+    ordered_json rows = ordered_json::array();
+    for (int row = 0; row < 3; ++row) rows.push_back({r[0][row], r[1][row], r[2][row]});
+    j["cameras"].push_back({{"name", pose.name},
+                            {"size", {k.width, k.height}},
+                            {"focal", {k.fx, k.fy}},
+                            {"skew", k.skew},
+                            {"principal", {k.cx, k.cy}},
+                            {"rotation", rows},
+                            {"centre", array_of(pose.camera.center())}});
+  }
+}
+
 void add_mesh(const Report& r, ordered_json& j) {
   j["voxels_kept"] = r.voxels_kept;
   j["mesh"] = {{"vertices", r.mesh.vertices},
@@ -144,6 +164,7 @@ void add_mesh(const Report& r, ordered_json& j) {
                     {"filled_share", t->filled_share},
                     {"unseen_share", t->unseen_share},
                     {"memory_bytes", t->bytes}};
+  add_look(r.look, j);
   j["surroundings"] = ordered_json::array();
   for (const ShellFindings& shell : r.surroundings)
     j["surroundings"].push_back(

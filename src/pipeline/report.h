@@ -34,6 +34,7 @@ struct Report {
   SurfaceFindings surface;
   std::int64_t voxels_kept = 0, bricks_stored = 0;
   MeshFindings mesh;
+  LookFindings look;
   std::optional<TextureFindings> texture;   ///< nothing: none was made
   std::vector<ShellFindings> surroundings;  ///< the innermost first; empty: none were made
   VerdictFindings verdict;

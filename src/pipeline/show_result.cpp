@@ -23,7 +23,7 @@ std::vector<std::uint8_t> picture(const ColourImage& image, double edge) {
   const double scale = std::min(1.0, edge / std::max(image.width, image.height));
   const int width = std::max(1, int(std::lround(scale * image.width)));
   const int height = std::max(1, int(std::lround(scale * image.height)));
-  const PreviewImage small = render::cut_photograph(image, 0, 0, scale, width, height);
+  const RgbImage small = render::cut_photograph(image, 0, 0, scale, width, height);
   return io::encode_jpeg(width, height, small.rgb, kQuality);
 }
 
@@ -66,12 +66,21 @@ page::Shown show_result(const TriMesh& mesh, SeenVertices seen,
   seen.views.resize(mesh.positions.size(), kNotKnown);
   seen.disagreement.resize(mesh.positions.size(), kNotKnown);
   const TriMesh reduced = reduce_mesh(mesh, kShownTriangles, {&seen.views, &seen.disagreement});
+  page::Shown shown = show_views(views);
+  shown.model = page::encode_model(reduced, layers_of(reduced, std::move(seen)));
+  return shown;
+}
+
+std::vector<page::Layer> layers_of(const TriMesh& mesh, SeenVertices seen) {
   std::vector<page::Layer> layers;
-  if (!reduced.confidence.empty()) layers.push_back({"confidence", reduced.confidence, 1});
+  if (!mesh.confidence.empty()) layers.push_back({"confidence", mesh.confidence, 1});
   layers.push_back({"views", std::move(seen.views), kMostViews});
   layers.push_back({"disagreement", std::move(seen.disagreement), kMostDisagreement});
+  return layers;
+}
+
+page::Shown show_views(std::span<const PreparedView> views) {
   page::Shown shown;
-  shown.model = page::encode_model(reduced, layers);
   for (const PreparedView& view : views) shown.views.push_back({view.name, view.camera, {}});
   const std::vector<int> which = pictured(int(views.size()));
   std::vector<std::vector<std::uint8_t>> made = pictures(views, which);

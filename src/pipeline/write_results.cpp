@@ -47,11 +47,6 @@ std::vector<std::string> file_names(const std::vector<std::string>& formats, boo
   return names;
 }
 
-template <typename Picture>
-void write_picture(AtomicFile& file, const Picture& picture) {
-  io::write_png(file, picture.width, picture.height, 3, picture.rgb);
-}
-
 void write_volume(const Reconstruction& result, ResultFiles& files, Progress& progress) {
   const double voxel = result.report.grid.voxel_size;
   if (const double unit = vdb_unit(voxel); unit != 1)
@@ -84,7 +79,7 @@ void write_evidence(const Evidence& evidence, ResultFiles& files, Report& report
   report.files.push_back("evidence.ply");
   const auto add = [&](const char* name, const MissingPicture& picture) {
     if (picture.rgb.empty()) return;  // scenes have one of the two, by whether they have masks
-    write_picture(files.open(name), picture);
+    io::write_png(files.open(name), picture);
     report.files.push_back(name);
   };
   add("missing.png", evidence.missing);
@@ -109,7 +104,7 @@ Report write_all(const Reconstruction& result, const ExportChoice& exports, Resu
     progress.check_cancelled();
     report.files = {"volume.vdb"};
     write_meshes(result, exports, files, report);
-    write_picture(files.open("preview.png"), result.preview);
+    io::write_png(files.open("preview.png"), result.preview);
     report.files.push_back("preview.png");
     if (result.evidence) write_evidence(*result.evidence, files, report);
   });

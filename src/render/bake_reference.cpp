@@ -128,6 +128,7 @@ BakedVertex bake_vertex(std::span<const BakeView> views, double noise_sigma,
   std::vector<Sight> sights = find_sights(views, position, normal);
   if (sights.empty()) return {};
   const double scatter = scatter_of(sights);
+  const std::size_t seeing = sights.size();
   keep_best(sights, position);
   if (sights.empty()) return {};
   BakedVertex out;
@@ -146,6 +147,7 @@ BakedVertex bake_vertex(std::span<const BakeView> views, double noise_sigma,
   SurfaceEvidence& e = out.evidence;
   e.views = float(sights.size());
   e.scatter = float(scatter);
+  e.seeing = float(seeing);
   e.disagreement =
       float(mean([&](const Sight& s) { return squared(s.root - glm::sqrt(out.colour)); }));
   e.fine_disagreement = float(mean([&](const Sight& s) { return squared(s.detail - detail); }));

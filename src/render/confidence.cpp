@@ -56,14 +56,18 @@ void spread(const TriMesh& mesh, std::vector<Pool>& pools) {
   }
 }
 
-PooledEvidence sum_up(const Pool& p, float views) {
+PooledEvidence sum_up(const Pool& p, const SurfaceEvidence& own) {
   const double spare = double(p.spare) / p.weight + kPriorPairs;
   const double energy = double(p.fine_energy) / p.weight;
   const double variance =
       (double(p.disagreement) / p.weight + kPriorPairs * kPriorDeviation * kPriorDeviation) / spare;
   const double fine = (double(p.fine_disagreement) / p.weight + kPriorPairs * energy) / spare;
-  return {true, p.scatter / p.weight, float(std::sqrt(variance)),
-          float((fine + kLeastFine) / (energy + 2 * kLeastFine)), views};
+  return {true,
+          p.scatter / p.weight,
+          float(std::sqrt(variance)),
+          float((fine + kLeastFine) / (energy + 2 * kLeastFine)),
+          own.views,
+          own.seeing};
 }
 
 }  // namespace
@@ -76,7 +80,7 @@ std::vector<PooledEvidence> pool_evidence(const TriMesh& mesh,
   for (int round = 0; round < kRounds; ++round) spread(mesh, pools);
   std::vector<PooledEvidence> pooled(evidence.size());
   for (std::size_t i = 0; i < evidence.size(); ++i)
-    if (evidence[i].views > 0) pooled[i] = sum_up(pools[i], evidence[i].views);
+    if (evidence[i].views > 0) pooled[i] = sum_up(pools[i], evidence[i]);
   return pooled;
 }
 

@@ -17,6 +17,7 @@ struct SurfaceEvidence {
   float disagreement = 0;       ///< mean squared distance of the views from the vertex's colour
   float fine_disagreement = 0;  ///< mean squared distance of their fine detail from its mean
   float fine_energy = 0;        ///< mean square of their fine detail
+  float seeing = 0;             ///< all views that see the vertex, where `views` is above 0
 };
 
 /// The same of a vertex and its surroundings, about two voxels wide.
@@ -26,6 +27,7 @@ struct PooledEvidence {
   float disagreement = 0;  ///< standard deviation between views, > 0
   float fine_share = 1;    ///< of fine detail that differs between views: 1 says nothing, 0 agrees
   float views = 0;         ///< of the vertex itself: SurfaceEvidence::views
+  float seeing = 0;        ///< the same: SurfaceEvidence::seeing
 };
 
 /// What shaped a surface.

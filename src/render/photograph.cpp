@@ -59,9 +59,9 @@ float decode_srgb(std::uint8_t byte) {
   return table[byte];
 }
 
-PreviewImage cut_photograph(const ColourImage& image, double x, double y, double scale, int width,
-                            int height) {
-  PreviewImage out{width, height, {}};
+RgbImage cut_photograph(const ColourImage& image, double x, double y, double scale, int width,
+                        int height) {
+  RgbImage out{width, height, {}};
   out.rgb.reserve(std::size_t(width) * height * 3);
   for (int row = 0; row < height; ++row)
     for (int column = 0; column < width; ++column) {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/image.h"
-#include "render/preview.h"
+#include "core/rgb_image.h"
 
 namespace photohull::render {
 
@@ -14,7 +14,7 @@ float decode_srgb(std::uint8_t byte);
 /// A rectangle of a photograph, its top-left corner at pixel area corner (x, y), at `scale` output
 /// pixels a pixel: means over pixel areas when smaller, bilinear when larger. What lies outside the
 /// photograph repeats its border.
-PreviewImage cut_photograph(const ColourImage& image, double x, double y, double scale, int width,
-                            int height);
+RgbImage cut_photograph(const ColourImage& image, double x, double y, double scale, int width,
+                        int height);
 
 }  // namespace photohull::render

@@ -17,12 +17,12 @@ constexpr int kGap = 8;              // pixels between panels
 constexpr double kMargin = 0.06;     // of the mesh's projection around it
 constexpr double kMaxEnlarge = 2.0;  // a photograph's pixels are not blown up further
 
-PreviewImage blank(int width, int height) {
+RgbImage blank(int width, int height) {
   return {width, height,
           std::vector<std::uint8_t>(std::size_t(width) * height * 3, render::kBackground)};
 }
 
-void paste(const PreviewImage& panel, int x, int y, PreviewImage& page) {
+void paste(const RgbImage& panel, int x, int y, RgbImage& page) {
   for (int row = 0; row < panel.height; ++row)
     std::copy_n(&panel.rgb[std::size_t(row) * panel.width * 3], std::size_t(panel.width) * 3,
                 &page.rgb[(std::size_t(y + row) * page.width + x) * 3]);
@@ -75,15 +75,15 @@ Panel panel_for(Window& window, int edge) {
   return out;
 }
 
-PreviewImage photograph(const PreparedView& view, const Window& window, const Panel& panel) {
+RgbImage photograph(const PreparedView& view, const Window& window, const Panel& panel) {
   return render::cut_photograph(view.image, window.x, window.y, panel.scale, panel.width,
                                 panel.height);
 }
 
-}  // namespace
-
-PreviewImage render_preview(gpu::Context& context, const TriMesh& mesh,
-                            std::span<const PreparedView> views, const PreviewOptions& options) {
+/// `drawn` is the mesh, or its textured form.
+template <typename Drawn>
+RgbImage preview_of(gpu::Context& context, const Drawn& drawn, const TriMesh& mesh,
+                    std::span<const PreparedView> views, const PreviewOptions& options) {
   PHOTOHULL_CHECK(!views.empty());
   PHOTOHULL_CHECK(options.panel_edge >= 16 && options.panel_edge <= 4096);
   PHOTOHULL_CHECK(options.other_views >= 0 && options.other_views <= 4);
@@ -103,9 +103,9 @@ PreviewImage render_preview(gpu::Context& context, const TriMesh& mesh,
   const int page_width = 3 * panel.width + 2 * kGap;
   const int small_width = columns ? std::max(1, (page_width - (columns - 1) * kGap) / columns) : 0;
   const int small_height = columns ? std::max(1, small_width * panel.height / panel.width) : 0;
-  PreviewImage page = blank(page_width, panel.height + (columns ? kGap + small_height : 0));
+  RgbImage page = blank(page_width, panel.height + (columns ? kGap + small_height : 0));
 
-  render::Rasterizer rasterizer(context, mesh);
+  render::Rasterizer rasterizer(context, drawn);
   const render::Rendering large = rasterizer.draw(camera, window, panel.width, panel.height);
   paste(photograph(views[main], window, panel), 0, 0, page);
   paste(large.coloured, panel.width + kGap, 0, page);
@@ -120,6 +120,18 @@ PreviewImage render_preview(gpu::Context& context, const TriMesh& mesh,
     paste(small.coloured, (2 * i + 1) * step, y, page);
   }
   return page;
+}
+
+}  // namespace
+
+RgbImage render_preview(gpu::Context& context, const TriMesh& mesh,
+                        std::span<const PreparedView> views, const PreviewOptions& options) {
+  return preview_of(context, mesh, mesh, views, options);
+}
+
+RgbImage render_preview(gpu::Context& context, const TexturedMesh& textured,
+                        std::span<const PreparedView> views, const PreviewOptions& options) {
+  return preview_of(context, textured, textured.mesh, views, options);
 }
 
 }  // namespace photohull

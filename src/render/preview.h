@@ -1,22 +1,15 @@
 // One picture of a reconstruction for people.
 #pragma once
 
-#include <cstdint>
 #include <span>
-#include <vector>
 
 #include "core/mesh.h"
+#include "core/mesh_texture.h"
 #include "core/prepared_view.h"
+#include "core/rgb_image.h"
 #include "gpu/context.h"
 
 namespace photohull {
-
-/// 8-bit sRGB, row-major from the top-left, 3 bytes a pixel.
-struct PreviewImage {
-  int width = 0;
-  int height = 0;
-  std::vector<std::uint8_t> rgb;
-};
 
 struct PreviewOptions {
   int panel_edge = 512;  ///< longest side of a panel of the top row, pixels; in [16, 4096]
@@ -31,8 +24,11 @@ struct PreviewOptions {
 /// A mesh without triangles gives the first photograph alone. mesh.normals must be present when
 /// there are triangles; without mesh.colours the colour is clay's. `views` must not be empty.
 /// Throws Error when the device cannot hold the mesh or the picture.
-PreviewImage render_preview(gpu::Context& context, const TriMesh& mesh,
-                            std::span<const PreparedView> views,
-                            const PreviewOptions& options = {});
+RgbImage render_preview(gpu::Context& context, const TriMesh& mesh,
+                        std::span<const PreparedView> views, const PreviewOptions& options = {});
+
+/// The same of a mesh with a texture, whose colours it has.
+RgbImage render_preview(gpu::Context& context, const TexturedMesh& textured,
+                        std::span<const PreparedView> views, const PreviewOptions& options = {});
 
 }  // namespace photohull

@@ -2,16 +2,19 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "core/error.h"
 #include "gpu/gl.h"
 #include "render/photograph.h"
+#include "shared/mesh_pages.h"
 
 namespace photohull::render {
 namespace {
 
 constexpr int kSupersample = 2;  // samples along each side of a pixel
 constexpr float kClayGrey = 0.45f;
+constexpr int kPageLevels = 6;  // mip levels: coarser ones mix charts that lie side by side
 const glm::dvec3 kSideLight(-0.66, -0.56, -0.5);  // towards it, camera axes; render_mesh.frag.glsl
 constexpr double kLightDistance = 6;              // radii of the mesh's bounding sphere
 
@@ -27,58 +30,9 @@ visibility::Technique shadows() {
   return out;
 }
 
-/// Colour (two attachments) and depth to draw into.
-class Target {
- public:
-  Target(int width, int height) : width_(width), height_(height) {
-    glCreateFramebuffers(1, &framebuffer_);
-    glCreateRenderbuffers(3, buffers_.data());
-    for (int i = 0; i < 2; ++i) {
-      glNamedRenderbufferStorage(buffers_[i], GL_RGBA8, width, height);
-      glNamedFramebufferRenderbuffer(framebuffer_, GLenum(GL_COLOR_ATTACHMENT0 + i),
-                                     GL_RENDERBUFFER, buffers_[i]);
-    }
-    glNamedRenderbufferStorage(buffers_[2], GL_DEPTH_COMPONENT32F, width, height);
-    glNamedFramebufferRenderbuffer(framebuffer_, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, buffers_[2]);
-    const GLenum attachments[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
-    glNamedFramebufferDrawBuffers(framebuffer_, 2, attachments);
-    if (glCheckNamedFramebufferStatus(framebuffer_, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-      release();
-      throw Error(concat("the device cannot draw a picture of ", width, "x", height, " pixels"));
-    }
-    constexpr float kGrey = float(kBackground) / 255.0f;
-    const float background[] = {kGrey, kGrey, kGrey, 1}, farthest = 1;
-    for (int i = 0; i < 2; ++i) glClearNamedFramebufferfv(framebuffer_, GL_COLOR, i, background);
-    glClearNamedFramebufferfv(framebuffer_, GL_DEPTH, 0, &farthest);
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
-    glViewport(0, 0, width, height);
-  }
-  ~Target() { release(); }
-  Target(const Target&) = delete;
-  Target& operator=(const Target&) = delete;
-
-  std::vector<std::uint8_t> read(int attachment) const {
-    std::vector<std::uint8_t> rgba(std::size_t(width_) * height_ * 4);
-    glReadBuffer(GLenum(GL_COLOR_ATTACHMENT0 + attachment));
-    glReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
-    gpu::count_download(rgba.size());
-    return rgba;
-  }
-
- private:
-  void release() {
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    glDeleteFramebuffers(1, &framebuffer_);
-    glDeleteRenderbuffers(3, buffers_.data());
-  }
-  int width_, height_;
-  unsigned framebuffer_ = 0;
-  std::array<unsigned, 3> buffers_{};
-};
-
 /// Mean over kSupersample^2 samples in linear light.
-PreviewImage resolve(const std::vector<std::uint8_t>& rgba, int width, int height) {
-  PreviewImage out{width, height, std::vector<std::uint8_t>(std::size_t(width) * height * 3)};
+RgbImage resolve(const std::vector<std::uint8_t>& rgba, int width, int height) {
+  RgbImage out{width, height, std::vector<std::uint8_t>(std::size_t(width) * height * 3)};
   const std::size_t stride = std::size_t(width) * kSupersample * 4;
   std::uint8_t* target = out.rgb.data();
   for (int y = 0; y < height; ++y)
@@ -121,22 +75,129 @@ std::vector<std::array<std::uint8_t, 4>> encode_colours(const TriMesh& mesh) {
   return out;
 }
 
+/// A vertex for each corner: its places on the pages differ.
+TriMesh unjoined(const TriMesh& mesh) {
+  TriMesh out;
+  out.origin = mesh.origin;
+  for (const auto& triangle : mesh.triangles) {
+    const auto first = std::uint32_t(out.positions.size());
+    for (const std::uint32_t vertex : triangle) {
+      out.positions.push_back(mesh.positions[vertex]);
+      out.normals.push_back(mesh.normals[vertex]);
+    }
+    out.triangles.push_back({first, first + 1, first + 2});
+  }
+  return out;
+}
+
+/// Of each corner its place and its page.
+std::vector<glm::vec3> places_on_pages(const MeshTexture& texture) {
+  std::vector<glm::vec3> places;
+  places.reserve(3 * texture.corners.size());
+  for (std::size_t t = 0; t < texture.corners.size(); ++t)
+    for (const glm::vec2& corner : texture.corners[t])
+      places.emplace_back(corner, float(texture.page[t]));
+  return places;
+}
+
+gpu::TextureArray to_device(const std::vector<TexturePage>& pages) {
+  const int width = pages.front().width, height = pages.front().height;
+  gpu::TextureArray out(gpu::TextureFormat::kSrgb8Alpha8, width, height, int(pages.size()),
+                        kPageLevels);
+  std::vector<std::uint8_t> rgba(std::size_t(width) * std::size_t(height) * 4, 255);
+  for (std::size_t page = 0; page < pages.size(); ++page) {
+    PHOTOHULL_CHECK(pages[page].width == width && pages[page].height == height);
+    for (std::size_t i = 0; 4 * i < rgba.size(); ++i)
+      std::copy_n(&pages[page].rgb[3 * i], 3, &rgba[4 * i]);
+    out.upload(int(page), width, height, rgba.data());
+  }
+  out.generate_mipmaps();
+  out.set_filter(true);
+  return out;
+}
+
 }  // namespace
 
+/// Colour (two attachments) and depth to draw into.
+class Rasterizer::Target {
+ public:
+  Target(int width, int height, const Colour& background) : width_(width), height_(height) {
+    glCreateFramebuffers(1, &framebuffer_);
+    glCreateRenderbuffers(3, buffers_.data());
+    for (int i = 0; i < 2; ++i) {
+      glNamedRenderbufferStorage(buffers_[i], GL_RGBA8, width, height);
+      glNamedFramebufferRenderbuffer(framebuffer_, GLenum(GL_COLOR_ATTACHMENT0 + i),
+                                     GL_RENDERBUFFER, buffers_[i]);
+    }
+    glNamedRenderbufferStorage(buffers_[2], GL_DEPTH_COMPONENT32F, width, height);
+    glNamedFramebufferRenderbuffer(framebuffer_, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, buffers_[2]);
+    const GLenum attachments[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+    glNamedFramebufferDrawBuffers(framebuffer_, 2, attachments);
+    if (glCheckNamedFramebufferStatus(framebuffer_, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+      release();
+      throw Error(concat("the device cannot draw a picture of ", width, "x", height, " pixels"));
+    }
+    const float clear[] = {float(background[0]) / 255.0f, float(background[1]) / 255.0f,
+                           float(background[2]) / 255.0f, 1};
+    const float farthest = 1;
+    for (int i = 0; i < 2; ++i) glClearNamedFramebufferfv(framebuffer_, GL_COLOR, i, clear);
+    glClearNamedFramebufferfv(framebuffer_, GL_DEPTH, 0, &farthest);
+  }
+  ~Target() { release(); }
+  Target(const Target&) = delete;
+  Target& operator=(const Target&) = delete;
+
+  void bind() const {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+    glViewport(0, 0, width_, height_);
+  }
+
+  std::vector<std::uint8_t> read(int attachment) const {
+    std::vector<std::uint8_t> rgba(std::size_t(width_) * height_ * 4);
+    glReadBuffer(GLenum(GL_COLOR_ATTACHMENT0 + attachment));
+    glReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+    gpu::count_download(rgba.size());
+    return rgba;
+  }
+
+ private:
+  void release() {
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glDeleteFramebuffers(1, &framebuffer_);
+    glDeleteRenderbuffers(3, buffers_.data());
+  }
+  int width_, height_;
+  unsigned framebuffer_ = 0;
+  std::array<unsigned, 3> buffers_{};
+};
+
 Rasterizer::Rasterizer(gpu::Context& context, const TriMesh& mesh)
+    : Rasterizer(context, mesh, gpu::Buffer::of(encode_colours(mesh)), 4) {}
+
+Rasterizer::Rasterizer(gpu::Context& context, const TexturedMesh& textured)
+    : Rasterizer(context, unjoined(textured.mesh),
+                 gpu::Buffer::of(places_on_pages(textured.texture)), 3) {
+  pages_ = to_device(textured.texture.pages);
+}
+
+Rasterizer::Rasterizer(gpu::Context& context, const TriMesh& mesh, gpu::Buffer colours,
+                       int components)
     : context_(context),
       geometry_(visibility::Geometry::of_mesh(mesh)),
       normals_(gpu::Buffer::of(mesh.normals)),
-      colours_(gpu::Buffer::of(encode_colours(mesh))),
+      colours_(std::move(colours)),
       program_(gpu::Program::raster(context, "render_mesh.vert.glsl", "render_mesh.frag.glsl",
-                                    visibility::technique_defines(shadows()))) {
+                                    visibility::technique_defines(shadows()) +
+                                        (components == 3 ? "#define TEXTURED\n" : ""))) {
+  const bool bytes = components == 4;
   glCreateVertexArrays(1, &vertex_array_);
   glVertexArrayVertexBuffer(vertex_array_, 0, geometry_.positions().id(), 0, sizeof(glm::vec3));
   glVertexArrayVertexBuffer(vertex_array_, 1, normals_.id(), 0, sizeof(glm::vec3));
-  glVertexArrayVertexBuffer(vertex_array_, 2, colours_.id(), 0, 4);
+  glVertexArrayVertexBuffer(vertex_array_, 2, colours_.id(), 0, bytes ? 4 : sizeof(glm::vec3));
   glVertexArrayAttribFormat(vertex_array_, 0, 3, GL_FLOAT, GL_FALSE, 0);
   glVertexArrayAttribFormat(vertex_array_, 1, 3, GL_FLOAT, GL_FALSE, 0);
-  glVertexArrayAttribFormat(vertex_array_, 2, 4, GL_UNSIGNED_BYTE, GL_TRUE, 0);
+  glVertexArrayAttribFormat(vertex_array_, 2, components, bytes ? GL_UNSIGNED_BYTE : GL_FLOAT,
+                            bytes, 0);
   for (unsigned i = 0; i < 3; ++i) {
     glVertexArrayAttribBinding(vertex_array_, i, i);
     glEnableVertexArrayAttrib(vertex_array_, i);
@@ -165,9 +226,9 @@ visibility::VisibilityMap Rasterizer::side_light(const Camera& camera) const {
   return visibility::render_map(context_, light, geometry_, shadows());
 }
 
-Rendering Rasterizer::draw(const Camera& camera, const Window& window, int width, int height) {
+void Rasterizer::draw_into(const Target& target, const Camera& camera, const Window& window) {
   const visibility::VisibilityMap light = side_light(camera);
-  const Target target(width * kSupersample, height * kSupersample);
+  target.bind();
   program_->set("clip_from_mesh", clip_from_mesh(camera, geometry_.origin(), window));
   program_->set("camera_from_mesh", glm::mat4(glm::dmat4(camera.cam_from_world.rotation)));
   glEnable(GL_DEPTH_TEST);
@@ -175,6 +236,7 @@ Rendering Rasterizer::draw(const Camera& camera, const Window& window, int width
   glFrontFace(GL_CW);
   program_->use();
   light.bind();
+  if (pages_.id()) pages_.bind(shaders::kMeshPagesUnit);
   glBindVertexArray(vertex_array_);
   {
     gpu::Launch launch(context_, "render_mesh");
@@ -184,7 +246,20 @@ Rendering Rasterizer::draw(const Camera& camera, const Window& window, int width
   glDisable(GL_DEPTH_TEST);
   glBindVertexArray(0);
   context_.check_errors("render_mesh");
+}
+
+Rendering Rasterizer::draw(const Camera& camera, const Window& window, int width, int height) {
+  const Target target(width * kSupersample, height * kSupersample,
+                      {kBackground, kBackground, kBackground});
+  draw_into(target, camera, window);
   return {resolve(target.read(0), width, height), resolve(target.read(1), width, height)};
+}
+
+RgbImage Rasterizer::draw(const Camera& camera, const Window& window, int width, int height,
+                          Look look, const Colour& background) {
+  const Target target(width * kSupersample, height * kSupersample, background);
+  draw_into(target, camera, window);
+  return resolve(target.read(look == Look::kClay ? 1 : 0), width, height);
 }
 
 }  // namespace photohull::render

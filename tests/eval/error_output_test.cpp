@@ -55,7 +55,7 @@ TEST(ErrorMesh, AFullDiskIsAnError) {
   EXPECT_EQ(folder.file_count(), 0u);
 }
 
-glm::ivec3 pixel(const ErrorImage& image, int x, int y) {
+glm::ivec3 pixel(const RgbImage& image, int x, int y) {
   const std::uint8_t* p = &image.rgb[3 * (std::size_t(y) * image.width + x)];
   return {p[0], p[1], p[2]};
 }
@@ -66,7 +66,7 @@ TEST(ErrorImage, PanelsShowTheSidesOfTheResult) {
   const TriMesh truth = test::box({-1, -1, -1}, {1, 1, 1});
   const TriMesh result = test::box({-0.9, -1, -1}, {1.1, 1, 1});
   const int n = 64;
-  const ErrorImage image = draw_error_image(result, Truth(truth), {0.1, n, "a box"}, progress);
+  const RgbImage image = draw_error_image(result, Truth(truth), {0.1, n, "a box"}, progress);
   ASSERT_EQ(image.width, 3 * n);
   ASSERT_EQ(image.rgb.size(), std::size_t(3 * image.width) * image.height);
   const auto middle = [&](int column, int row) {

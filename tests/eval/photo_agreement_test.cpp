@@ -182,7 +182,7 @@ TEST(PhotoAgreement, PictureShowsTheWorstView) {
   const std::size_t other = 1 - *a.worst;
   EXPECT_LE(a.views[*a.worst].zncc(), a.views[other].zncc());
   ASSERT_EQ(worst.view, kHeldOut[*a.worst]);
-  const ErrorImage image = draw_agreement(ring()[worst.view], worst, "title");
+  const RgbImage image = draw_agreement(ring()[worst.view], worst, "title");
   ASSERT_EQ(image.rgb.size(), std::size_t(image.width) * std::size_t(image.height) * 3);
   int uncovered = 0, excess = 0;
   for (std::size_t i = 0; i < image.rgb.size(); i += 3) {

@@ -20,6 +20,7 @@ from browser import Page
 
 NO_BROWSER = 77
 WINDOW = (480, 640)  # pixels
+SOON = 15  # seconds
 WRITE_SAMPLE, PHOTOHULL, SCENE = sys.argv[1:4] if len(sys.argv) == 4 else ("", "", "")
 CHROMIUM = shutil.which(os.environ.get("CHROMIUM", "chromium"))
 
@@ -76,6 +77,7 @@ class PageCase(unittest.TestCase):
     page: ClassVar[Page]
     path: ClassVar[Path]
     folder: ClassVar[tempfile.TemporaryDirectory]
+    seconds: ClassVar[float]
 
     @classmethod
     def write(cls, folder: Path) -> Path:
@@ -88,8 +90,8 @@ class PageCase(unittest.TestCase):
         cls.page = Page(CHROMIUM)
         cls.page.size(*WINDOW)
         cls.page.prefers(still=True)
-        seconds = cls.page.load(cls.path)
-        print(f"{cls.__name__}: {cls.path.stat().st_size / 1e6:.2f} MB, ready after {seconds:.2f} s")
+        cls.seconds = cls.page.load(cls.path)
+        print(f"{cls.__name__}: {cls.path.stat().st_size / 1e6:.2f} MB, ready after {cls.seconds:.2f} s")
 
     @classmethod
     def tearDownClass(cls) -> None:
@@ -109,7 +111,7 @@ class PageCase(unittest.TestCase):
     def text(self, selector: str) -> str:
         return self.page.evaluate(f"document.querySelector('{selector}').textContent")
 
-    def check_basics(self) -> None:
+    def check_basics(self, first: str = "colour") -> None:
         """The model is in the picture, and each switch changes it."""
         self.click("#cameras")  # off
         self.page.evaluate("document.getElementById('canvas').style.visibility = 'hidden'")
@@ -123,7 +125,7 @@ class PageCase(unittest.TestCase):
             for before in shown[:-1]:
                 self.assertGreater(difference(shown[-1], before), 0.02, layer)
         self.assertIn("differ", self.text("#legend"))
-        self.click("#layer-colour")
+        self.click(f"#layer-{first}")
         self.assertLess(difference(self.picture(), shown[0]), 0.001)
         self.click("#cameras")  # on
         self.assertGreater(difference(self.picture(), shown[0]), 0.002)
@@ -174,7 +176,7 @@ class SamplePage(PageCase):
         self.check_keys()
 
     def test_names_stay_text(self) -> None:
-        self.assertEqual(self.page.evaluate("document.querySelectorAll('script').length"), 4)
+        self.assertEqual(self.page.evaluate("document.querySelectorAll('script').length"), 5)
         self.assertEqual(self.page.evaluate("document.querySelectorAll('img[src=x]').length"), 0)
         self.assertIn("<img src=x onerror=alert(2)>", self.text("#details"))
         self.assertIn("view2a</script><script>alert(1)</script>", self.text("#details"))
@@ -219,6 +221,33 @@ class SamplePage(PageCase):
             "[...document.querySelectorAll('button, select, input')].filter(e => !(e.textContent.trim() || e.ariaLabel || "
             "e.labels?.[0]?.textContent.trim())).map(e => e.outerHTML)")
         self.assertEqual(unnamed, [])
+
+
+class LargePage(PageCase):
+    """As many triangles as a page may have, with a texture."""
+
+    @classmethod
+    def write(cls, folder: Path) -> Path:
+        path = folder / "report.html"
+        subprocess.run([WRITE_SAMPLE, str(path), "316"], check=True)
+        return path
+
+    def test_shows_the_texture(self) -> None:
+        """Its red and green squares, which no vertex has."""
+        self.click("#cameras")
+        pixels = self.picture().pixels
+        self.click("#cameras")
+        for red, green in ((220, 40), (30, 200)):
+            share = sum(1 for p in pixels if abs(p[0] - red) < 16 and abs(p[1] - green) < 16) / len(pixels)
+            self.assertGreater(share, 0.02, (red, green))
+        self.assertEqual(self.page.evaluate("document.querySelectorAll('#layers input').length"), 5)
+
+    def test_model_and_switches(self) -> None:
+        self.check_basics("texture")
+
+    def test_opens_soon(self) -> None:
+        """Two seconds where nothing else runs (docs/guide/report_page.md); machines of tests are busy."""
+        self.assertLess(self.seconds, SOON)
 
 
 class ReconstructionPage(PageCase):

@@ -123,17 +123,42 @@ std::string sample_report(const TriMesh& mesh) {
       .dump();
 }
 
+/// Squares of 32 texels, red and green by turns along x, blue growing along y.
+std::vector<std::uint8_t> sample_texture(int edge) {
+  std::vector<std::uint8_t> rgb;
+  for (int y = 0; y < edge; ++y)
+    for (int x = 0; x < edge; ++x) {
+      const bool odd = x / 32 % 2 == 1;
+      rgb.insert(rgb.end(), {std::uint8_t(odd ? 30 : 220), std::uint8_t(odd ? 200 : 40),
+                             std::uint8_t(255 * y / edge)});
+    }
+  return io::encode_jpeg(edge, edge, rgb, 80);
+}
+
+page::Shown textured_shown(const TriMesh& mesh) {
+  page::Shown shown = sample_shown(mesh);
+  std::vector<glm::vec2> places;
+  for (const glm::vec3& p : mesh.positions)
+    places.emplace_back(0.5 + 0.45 * double(p.x) / 1.1, 0.5 + 0.45 * double(p.z) / 1.1);
+  shown.model = page::encode_model(mesh, sample_layers(mesh), places);
+  shown.texture = sample_texture(1024);
+  return shown;
+}
+
 page::Shown sample_shown(const TriMesh& mesh) {
+  return {page::encode_model(mesh, sample_layers(mesh)), ring_of_views(), {}, {0, 0, 1}, 1};
+}
+
+std::vector<page::Layer> sample_layers(const TriMesh& mesh) {
   std::vector<float> views, disagreement;
   for (const float confidence : mesh.confidence) {
     views.push_back(std::round(6 * confidence));
     disagreement.push_back(confidence > 0 ? 0.2f * (1 - confidence)
                                           : std::numeric_limits<float>::quiet_NaN());
   }
-  const std::vector<page::Layer> layers = {{"confidence", mesh.confidence, 1},
-                                           {"views", views, 254},
-                                           {"disagreement", disagreement, 0.25}};
-  return {page::encode_model(mesh, layers), ring_of_views(), 1};
+  return {{"confidence", mesh.confidence, 1},
+          {"views", views, 254},
+          {"disagreement", disagreement, 0.25}};
 }
 
 }  // namespace photohull::test

@@ -25,5 +25,8 @@ std::string sample_report(const TriMesh& mesh);
 
 /// The model with the layers that a reconstruction has.
 page::Shown sample_shown(const TriMesh& mesh);
+/// The same with a texture in place of the vertices' colours.
+page::Shown textured_shown(const TriMesh& mesh);
+std::vector<page::Layer> sample_layers(const TriMesh& mesh);
 
 }  // namespace photohull::test

@@ -1,5 +1,7 @@
-// write_sample_page FILE: a page of a result that nobody made, for the test in a browser.
+// write_sample_page FILE [RINGS]: a page of a result that nobody made, for the test in a browser; with
+// a number of rings a textured one, of twice their square of triangles.
 #include <cstdio>
+#include <cstdlib>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -7,15 +9,16 @@
 
 int main(int count, char** words) {
   using namespace photohull;
-  if (count != 2) {
-    std::fputs("write_sample_page FILE\n", stderr);
+  if (count != 2 && count != 3) {
+    std::fputs("write_sample_page FILE [RINGS]\n", stderr);
     return 2;
   }
   try {
-    const TriMesh mesh = test::wrinkled_ball(60);
+    const TriMesh mesh = test::wrinkled_ball(count == 3 ? std::atoi(words[2]) : 60);
     write_atomically(words[1],
                      page::make_page(test::sample_report(mesh), "photohull reconstruct 'a b'",
-                                     test::sample_shown(mesh)));
+                                     count == 3 ? test::textured_shown(mesh)
+                                                : test::sample_shown(mesh)));
   } catch (const Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

@@ -115,7 +115,7 @@ TEST(CompleteBox, NamesTheSceneWherePlainPicturesTellNothing) {
 }
 
 /// Pixels of the colour that edges along an axis have.
-std::array<int, 3> edge_pixels(const BoxPicture& picture) {
+std::array<int, 3> edge_pixels(const RgbImage& picture) {
   constexpr std::uint8_t kColours[3][3] = {{255, 70, 70}, {80, 220, 80}, {60, 150, 255}};
   std::array<int, 3> count{};
   for (std::size_t i = 0; i < picture.rgb.size(); i += 3)
@@ -129,12 +129,12 @@ TEST(DrawBox, ShowsTheBoxInPhotographsAndFromAbove) {
   render(kRings, folder / "scene");
   Scene scene = io::load_scene(folder / "scene/transforms.json");
   const std::vector<double> scales(scene.views.size(), 1), halves(scene.views.size(), 0.5);
-  const BoxPicture whole = draw_box(scene, scales, 0.01 * scene.box->diagonal(), {});
+  const RgbImage whole = draw_box(scene, scales, 0.01 * scene.box->diagonal(), {});
   ASSERT_EQ(whole.rgb.size(), std::size_t(3) * whole.width * whole.height);
   const std::array<int, 3> edges = edge_pixels(whole);
   for (int axis = 0; axis < 3; ++axis) EXPECT_GT(edges[std::size_t(axis)], 300) << axis;
   // Photographs of fewer pixels are drawn as large, with the box at the same place.
-  const BoxPicture coarse = draw_box(scene, halves, 0.01 * scene.box->diagonal(), {});
+  const RgbImage coarse = draw_box(scene, halves, 0.01 * scene.box->diagonal(), {});
   ASSERT_EQ(coarse.rgb.size(), whole.rgb.size());
   for (int axis = 0; axis < 3; ++axis)
     EXPECT_NEAR(edge_pixels(coarse)[std::size_t(axis)], edges[std::size_t(axis)],
@@ -142,7 +142,7 @@ TEST(DrawBox, ShowsTheBoxInPhotographsAndFromAbove) {
   EXPECT_NE(coarse.rgb, whole.rgb);
   // Half as long along x: fewer red pixels, and not in the same places.
   scene.box->max.x = scene.box->center().x;
-  const BoxPicture half = draw_box(scene, scales, 0.01 * scene.box->diagonal(), {});
+  const RgbImage half = draw_box(scene, scales, 0.01 * scene.box->diagonal(), {});
   EXPECT_LT(edge_pixels(half)[0], 0.8 * edges[0]);
 }
 

@@ -94,5 +94,41 @@ TEST(ShowResult, HasLayersOfVerticesOfWhichLessIsKnown) {
   EXPECT_EQ(table["streams"][2]["step"], 1.0);
 }
 
+/// A mesh with each triangle on its own part of one of three pages of noise.
+TexturedMesh with_texture(const TriMesh& mesh) {
+  TexturedMesh out{mesh, {}};
+  std::uint32_t state = 7;
+  for (int p = 0; p < 3; ++p) {
+    TexturePage page{1024, 512, {}};
+    for (int i = 0; i < 3 * 1024 * 512; ++i)
+      page.rgb.push_back(std::uint8_t((state = 1664525 * state + 1013904223) >> 24));
+    out.texture.pages.push_back(std::move(page));
+  }
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    out.texture.page.push_back(std::uint32_t(t % 3));
+    const float x = float(t % 100) / 128, y = float(t / 100 % 100) / 128;
+    out.texture.corners.push_back({glm::vec2(x, y), {x + 0.005f, y}, {x, y + 0.005f}});
+  }
+  return out;
+}
+
+TEST(ShowTextured, HasPlacesOnOneImageThatIsNoLargerThanItMay) {
+  const TriMesh uniform = ball(6);
+  SeenVertices seen = seen_of(uniform);
+  seen.views.assign(seen.views.size(), 9);
+  const page::Shown shown =
+      show_textured(with_texture(uniform), uniform, seen, noisy_views(3, 60, 40));
+  EXPECT_LE(shown.texture.size(), kTextureBytes);
+  EXPECT_GT(shown.texture.size(), kTextureBytes / 2);
+  EXPECT_EQ(shown.views.size(), 3u);
+  const auto table = nlohmann::json::parse(shown.model.table);
+  std::vector<std::string> names;
+  for (const auto& stream : table["streams"]) names.push_back(stream["name"]);
+  EXPECT_EQ(names, (std::vector<std::string>{"position", "place", "confidence", "views",
+                                             "disagreement", "triangles"}));
+  EXPECT_EQ(table["triangles"], uniform.triangles.size());
+  EXPECT_EQ(table["vertices"], 3 * uniform.triangles.size()) << "no two corners share a place";
+}
+
 }  // namespace
 }  // namespace photohull::pipeline

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "render/bake_colour.h"
@@ -106,9 +107,69 @@ TEST(Rasterizer, SideLightCastsShadowsOntoClay) {
   EXPECT_GT(clay(ball, shaded), 150) << "a body does not shade itself where it faces the light";
 }
 
+/// A square of two triangles before the camera, each on a page of its own that is red or green in
+/// its left half.
+TexturedMesh square_of_two_pages() {
+  TexturedMesh out;
+  out.mesh.origin = kCentre;
+  out.mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  out.mesh.normals.assign(4, {0, 0, -1});
+  out.mesh.triangles = {{0, 3, 2}, {0, 2, 1}};
+  for (const glm::ivec3& left : {glm::ivec3(255, 0, 0), glm::ivec3(0, 200, 0)}) {
+    TexturePage page{64, 32, {}};
+    for (int i = 0; i < 64 * 32; ++i)
+      for (int c = 0; c < 3; ++c) page.rgb.push_back(std::uint8_t(i % 64 < 32 ? left[c] : 0));
+    out.texture.pages.push_back(page);
+  }
+  const glm::vec2 places[] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  for (std::size_t t = 0; t < 2; ++t) {
+    out.texture.page.push_back(std::uint32_t(t));
+    auto& corners = out.texture.corners.emplace_back();
+    for (std::size_t c = 0; c < 3; ++c) corners[c] = places[out.mesh.triangles[t][c]];
+  }
+  return out;
+}
+
+TEST(Rasterizer, ColoursAreTheTexturesWhereThereIsOne) {
+  Camera camera;  // axes as the world's
+  camera.intrinsics = {100, 100, 200, 200, 0, 49.5, 49.5};
+  camera.cam_from_world.translation = glm::dvec3(0, 0, 6) - kCentre;
+  render::Window window = whole(camera);
+  window.near = 3, window.far = 9;
+  render::Rasterizer rasterizer(test::gl_context(), square_of_two_pages());
+  const RgbImage drawn =
+      rasterizer.draw(camera, window, 100, 100, render::Look::kColours, {10, 20, 30});
+  const auto at = [&](int x, int y) {
+    const std::uint8_t* p = &drawn.rgb[3 * std::size_t(100 * y + x)];
+    return std::array<int, 3>{p[0], p[1], p[2]};
+  };
+  using Pixel = std::array<int, 3>;
+  // Below the diagonal from the first corner the first page, above it the second.
+  EXPECT_EQ(at(25, 70), (Pixel{255, 0, 0}));
+  EXPECT_EQ(at(40, 25), (Pixel{0, 200, 0}));
+  EXPECT_EQ(at(75, 40), (Pixel{0, 0, 0})) << "the right half of both pages is black";
+  EXPECT_EQ(at(5, 5), (Pixel{10, 20, 30})) << "the background";
+  const RgbImage clay =
+      rasterizer.draw(camera, window, 100, 100, render::Look::kClay, {10, 20, 30});
+  EXPECT_NE(clay.rgb, drawn.rgb);
+  EXPECT_EQ(rasterizer.draw(camera, window, 100, 100, render::Look::kClay, {10, 20, 30}).rgb,
+            clay.rgb);
+}
+
+TEST(Preview, HasTheTexturesColours) {
+  std::vector<PreparedView> views = sphere_views(1, 80, 60);
+  views[0].camera.cam_from_world = {};
+  views[0].camera.cam_from_world.translation = glm::dvec3(0, 0, 6) - kCentre;
+  const RgbImage page = render_preview(test::gl_context(), square_of_two_pages(), views);
+  std::size_t red = 0;
+  for (std::size_t i = 0; i < page.rgb.size(); i += 3)
+    red += page.rgb[i] == 255 && page.rgb[i + 1] == 0 && page.rgb[i + 2] == 0;
+  EXPECT_GT(red, page.rgb.size() / 3 / 40);
+}
+
 /// Root mean square of the difference in bytes between a rendering and a photograph that is moved
 /// by `dx` pixels, well inside the sphere.
-double difference(const PreviewImage& rendering, const PreparedView& view, int dx) {
+double difference(const RgbImage& rendering, const PreparedView& view, int dx) {
   const test::Outline outline = test::sphere_outline(view.camera, kCentre, kRadius);
   double sum = 0;
   int count = 0;
@@ -143,7 +204,7 @@ TEST(Preview, ShowsPhotographColourAndClayThenOtherViews) {
   const TriMesh mesh = baked_sphere(views);
   PreviewOptions options;
   options.panel_edge = 90;
-  const PreviewImage page = render_preview(test::gl_context(), mesh, views, options);
+  const RgbImage page = render_preview(test::gl_context(), mesh, views, options);
   ASSERT_EQ(page.rgb.size(), std::size_t(page.width) * page.height * 3);
   EXPECT_GT(page.width, 200);
   EXPECT_LE(page.width, 3 * 90 + 16);
@@ -164,7 +225,7 @@ TEST(Preview, OfAnEmptyMeshIsThePhotograph) {
   const std::vector<PreparedView> views = sphere_views(1, 80, 60);
   PreviewOptions options;
   options.panel_edge = 80;
-  const PreviewImage page = render_preview(test::gl_context(), TriMesh{}, views, options);
+  const RgbImage page = render_preview(test::gl_context(), TriMesh{}, views, options);
   ASSERT_EQ(page.width, 80);
   ASSERT_EQ(page.height, 60);
   for (std::size_t i = 0; i < 80 * 60; ++i)
@@ -174,7 +235,7 @@ TEST(Preview, OfAnEmptyMeshIsThePhotograph) {
 TEST(Preview, OneViewAndNoColours) {
   const std::vector<PreparedView> views = sphere_views(1, 80, 60);
   const TriMesh mesh = test::sphere_mesh(kCentre, kRadius, 20);
-  const PreviewImage page = render_preview(test::gl_context(), mesh, views);
+  const RgbImage page = render_preview(test::gl_context(), mesh, views);
   EXPECT_LE(page.height, 120) << "there is no other viewpoint to show";
   EXPECT_GT(page.width, page.height);
 }
@@ -183,7 +244,7 @@ TEST(Preview, CameraInsideTheMesh) {
   std::vector<PreparedView> views = sphere_views(1, 80, 60);
   views[0].camera = test::look_at(kCentre, kCentre + glm::dvec3(1, 0, 0), 50, 80, 60);
   const TriMesh mesh = test::sphere_mesh(kCentre, kRadius, 20);
-  const PreviewImage page = render_preview(test::gl_context(), mesh, views);
+  const RgbImage page = render_preview(test::gl_context(), mesh, views);
   EXPECT_GT(page.width, 0);
 }
 

@@ -182,16 +182,34 @@ GltfFile::Span GltfFile::span(const Json& accessor, std::uint64_t element_bytes)
   return out;
 }
 
-std::vector<glm::vec3> GltfFile::vectors(std::uint64_t accessor) {
+template <typename Vector>
+std::vector<Vector> GltfFile::floats(std::uint64_t accessor, const char* type) {
   constexpr std::uint64_t kFloat = 5126;
   const Json& object = element("accessors", accessor);
-  if (index(object, "componentType") != kFloat || object.value("type", Json()) != "VEC3")
-    fail("positions must be vectors of three floats");
-  const Span from = span(object, sizeof(glm::vec3));
-  std::vector<glm::vec3> values(from.count);
+  if (index(object, "componentType") != kFloat || object.value("type", Json()) != type)
+    fail(concat(type[3] == '3' ? "positions must be vectors of three floats"
+                               : "places on textures must be vectors of two floats"));
+  const Span from = span(object, sizeof(Vector));
+  std::vector<Vector> values(from.count);
   for (std::uint64_t i = 0; i < from.count; ++i)
-    std::memcpy(&values[i], from.first + i * from.stride, sizeof(glm::vec3));
+    std::memcpy(&values[i], from.first + i * from.stride, sizeof(Vector));
   return values;
+}
+
+std::vector<glm::vec3> GltfFile::vectors(std::uint64_t accessor) {
+  return floats<glm::vec3>(accessor, "VEC3");
+}
+
+std::vector<glm::vec2> GltfFile::places(std::uint64_t accessor) {
+  return floats<glm::vec2>(accessor, "VEC2");
+}
+
+std::span<const std::uint8_t> GltfFile::bytes(std::uint64_t buffer_view) {
+  const Json& view = element("bufferViews", buffer_view);
+  const std::string& all = buffer(index(view, "buffer"));
+  const std::uint64_t begin = index(view, "byteOffset", 0), length = index(view, "byteLength");
+  if (begin + length > all.size()) fail("a buffer ends early");
+  return {reinterpret_cast<const std::uint8_t*>(all.data()) + begin, length};
 }
 
 std::vector<std::uint32_t> GltfFile::integers(std::uint64_t accessor) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,15 +30,20 @@ class GltfFile {
   /// The elements of a list of whole numbers; empty where it is absent.
   std::vector<std::uint64_t> indices(const nlohmann::json& object, const char* key) const;
 
-  /// The values of an accessor: VEC3 of floats, and SCALAR of unsigned integers.
+  /// The values of an accessor: VEC3 and VEC2 of floats, and SCALAR of unsigned integers.
   std::vector<glm::vec3> vectors(std::uint64_t accessor);
+  std::vector<glm::vec2> places(std::uint64_t accessor);
   std::vector<std::uint32_t> integers(std::uint64_t accessor);
+  /// All of a buffer view, as long as this file is.
+  std::span<const std::uint8_t> bytes(std::uint64_t buffer_view);
 
  private:
   struct Span {
     const char* first = nullptr;
     std::uint64_t count = 0, stride = 0;
   };
+  template <typename Vector>
+  std::vector<Vector> floats(std::uint64_t accessor, const char* type);
   std::string split_binary(const std::string& bytes);
   std::string decode(const std::string& uri) const;
   const std::string& buffer(std::uint64_t index);

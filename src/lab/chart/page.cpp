@@ -5,6 +5,7 @@
 
 #include "core/html_template.h"
 #include "lab/chart/embedded_files.h"
+#include "page/style.h"
 
 namespace photohull::chart {
 namespace {
@@ -56,9 +57,12 @@ std::string table(const std::vector<Outcome>& outcomes, double threshold_percent
   const std::set<double> thresholds = thresholds_of(outcomes);
   const auto front = front_labels(outcomes, threshold_percent);
   std::string html =
-      "<table id=results><thead><tr><th>scene<th>run<th>status<th>CPU s<th>wall s<th>MiB";
-  for (const double t : thresholds) html += "<th>F " + shown(t) + " %";
-  html += "<th>90 % within %<th>complete %<th>triangles</tr></thead><tbody>\n";
+      "<table id=results><thead><tr><th>scene<th>run<th>status<th class=n>CPU s<th class=n>wall "
+      "s<th "
+      "class=n>MiB";
+  for (const double t : thresholds) html += "<th class=n>F " + shown(t) + " %";
+  html +=
+      "<th class=n>90 % within %<th class=n>complete %<th class=n>triangles</tr></thead><tbody>\n";
   for (const Outcome& o : outcomes) {
     const bool first = front.contains({o.scene, o.label()});
     html += std::string("<tr") +
@@ -85,6 +89,7 @@ std::string make_page(const PageParts& parts) {
   std::string note_items;
   for (const std::string& note : parts.notes) note_items += "<li>" + escaped(note) + "</li>\n";
   return fill_template(page_template(), [&](std::string_view name) -> std::string {
+    if (name == "STYLE") return std::string(page::base_style());
     if (name == "TITLE") return escaped(parts.title);
     if (name == "NOTES") return note_items;
     if (name == "ECHARTS") return std::string(echarts_js());

@@ -101,14 +101,15 @@ function connect() {
 }
 
 async function start() {
-  const [THREE, bytes] = await Promise.all([unpackModule("packed-three"), unpackBytes("packed-model")]);
+  const [THREE, bytes, texture] = await Promise.all([unpackModule("packed-three"), unpackBytes("packed-model"), unpackImage("texture")]);
   const numbers = readModel(bytes, data.model);
   const marked = new Set(judged.filter(view => view.worst > 1).map(view => view.index));
-  viewer = new Viewer(THREE, data, numbers, i => marked.has(i) ? "#e8590c" : "#3b82c4");
+  viewer = new Viewer(THREE, data, numbers, texture, i => marked.has(i) ? "#e8590c" : "#3b82c4");
   fillLayers(numbers);
   fillCameras();
   connect();
   viewer.showCameras(byId("cameras").checked);
+  await viewer.drawn();
   byId("message").textContent = "";
 }
 
@@ -121,3 +122,4 @@ try {
     ". It needs WebGL 2 and a browser of 2023 or later; preview.png beside this page shows the model, too.";
 }
 byId("viewport").setAttribute("aria-busy", "false");
+viewer?.photographs.load(() => viewer.draw());

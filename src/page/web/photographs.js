@@ -72,21 +72,21 @@ class Photographs {
     this.group.add(plane);
   }
 
-  /** Loads the photographs into the picture; `changed` is called whenever one is there. */
-  load(changed) {
-    this.views.forEach((view, i) => {
+  /** Loads the photographs, without which the cameras are not drawn; `changed` is called when all are there. */
+  async load(changed) {
+    await Promise.all(this.views.map(async (view, i) => {
       if (!view.jpeg) return;
       const image = new Image();
-      image.onload = () => {
-        const texture = new this.THREE.Texture(image);
-        texture.colorSpace = this.THREE.SRGBColorSpace;
-        texture.needsUpdate = true;
-        Object.assign(this.planes[i].material, { map: texture, needsUpdate: true });
-        this.planes[i].material.color.set(0xffffff);
-        changed();
-      };
       image.src = pictureOf(view);
-    });
+      await image.decode();
+      const texture = new this.THREE.Texture(image);
+      texture.colorSpace = this.THREE.SRGBColorSpace;
+      texture.needsUpdate = true;
+      Object.assign(this.planes[i].material, { map: texture, needsUpdate: true });
+      this.planes[i].material.color.set(0xffffff);
+    }));
+    this.loaded = true;
+    changed();
   }
 
   /** Photographs that stand between a place and the model, with their backs to it, are nearly clear. */
@@ -122,31 +122,5 @@ class Photographs {
       0, down * focal[1], -(1 - down * (principal[1] + 0.5) - 2 * top / height), 0,
       0, 0, -(far + near) / (far - near), -2 * far * near / (far - near),
       0, 0, -1, 0);
-  }
-
-  /** The axis that most views share as one of theirs, whatever its sign (row 0: to the right, 1: down), and how much, up to 1. */
-  sharedAxis(row) {
-    const THREE = this.THREE, axes = this.views.map(view => new THREE.Vector3(...view.rotation[row]));
-    let axis = axes[0]?.clone() || new THREE.Vector3(0, 1, 0), share = 0;
-    for (let round = 0; round < 50; ++round) {
-      const sum = new THREE.Vector3();
-      for (const each of axes) sum.addScaledVector(each, each.dot(axis) / axes.length);
-      share = sum.length();
-      if (share > 0) axis = sum.divideScalar(share);
-    }
-    return { axis, share, sign: axes.reduce((sum, each) => sum + each.dot(axis), 0) / Math.max(axes.length, 1) };
-  }
-
-  /** Up: what photographs have above, or beside where the camera was turned on its side and circled all the same. Where they do
-      not say which end is up, it is the one on the cameras' side of the model, or else the positive one. */
-  up() {
-    const across = this.sharedAxis(0), down = this.sharedAxis(1);
-    const sideways = across.share > down.share + 0.1;
-    const { axis, sign } = sideways ? across : down;
-    if (!sideways && Math.abs(sign) > 0.3) return axis.multiplyScalar(-Math.sign(sign));
-    const height = this.centres.reduce((sum, centre) => sum + centre.dot(axis), 0) / Math.max(this.centres.length, 1);
-    const way = median(this.centres.map(centre => centre.length()));
-    const side = Math.abs(height) > 0.1 * way ? height : axis.x + axis.y + axis.z;
-    return side < 0 ? axis.negate() : axis;
   }
 }

@@ -2,21 +2,34 @@
 
 const FLIGHT_MS = 700, FIELD = 32;  // degrees, of the circling camera
 
+/** WebGL 2; smooth edges and fine pixels only where there is a graphics device, for software takes seconds with them. */
+function contextOf(canvas) {
+  const attributes = { alpha: true, antialias: true, failIfMajorPerformanceCaveat: true };
+  const context = canvas.getContext("webgl2", attributes)
+    || canvas.getContext("webgl2", { ...attributes, antialias: false, failIfMajorPerformanceCaveat: false });
+  if (!context) throw new Error("the browser gives no WebGL 2");
+  return context;
+}
+
 class Viewer {
-  constructor(THREE, data, numbers, colourOf) {
+  /** `texture`: the image that the model's places lie on, or nothing. */
+  constructor(THREE, data, numbers, texture, colourOf) {
     this.THREE = THREE;
     this.canvas = byId("canvas");
     this.numbers = numbers;
     this.through = -1;  // the camera that is looked through
-    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true });
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    const context = contextOf(this.canvas);
+    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, context });
+    this.renderer.debug.checkShaderErrors = false;  // asking makes the browser wait
+    this.renderer.setPixelRatio(context.getContextAttributes().antialias ? Math.min(devicePixelRatio, 2) : 1);
     this.scene = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera(FIELD, 1, 0.01, 100);
     this.addModel(data.model);
+    this.addTexture(texture);
     this.photographs = new Photographs(THREE, data.views, world => this.local(world), colourOf);
     this.scene.add(this.photographs.group);
     this.addLights();
-    this.orbit = new Orbit(THREE, this.canvas, this.photographs.up(), 1, () => this.leave());
+    this.orbit = new Orbit(THREE, this.canvas, new THREE.Vector3(...data.up), 1, () => this.leave());
     this.orbit.clicked = event => this.click(event);
     this.first = data.first_view;
     this.reset();
@@ -24,8 +37,15 @@ class Viewer {
     this.canvas.addEventListener("pointerleave", () => this.point(null));
     this.canvas.addEventListener("webglcontextrestored", () => this.draw());
     new ResizeObserver(() => this.resize()).observe(byId("viewport"));
-    this.photographs.load(() => this.draw());
     this.resize();
+  }
+
+  /** The model is there; photographs come when it has been drawn. */
+  drawn() {
+    return new Promise(done => {
+      this.onDrawn = done;
+      this.draw();
+    });
   }
 
   /** From the world to the picture, in which the model has radius 1 around the origin. */
@@ -36,23 +56,40 @@ class Viewer {
   addModel(table) {
     const THREE = this.THREE, codes = this.numbers.position;
     const high = [0, 0, 0];
-    for (let i = 0; i < codes.length; ++i) high[i % 3] = Math.max(high[i % 3], codes[i]);
-    this.middle = high.map((h, axis) => table.low[axis] + table.step * h / 2);
-    let farthest = 0;  // from the middle, in steps
     for (let i = 0; i < codes.length; i += 3)
-      farthest = Math.max(farthest, Math.hypot(codes[i] - high[0] / 2, codes[i + 1] - high[1] / 2, codes[i + 2] - high[2] / 2));
-    this.radius = table.step * farthest || 1;
-    const scale = table.step / this.radius;
-    const positions = Float32Array.from(codes, (code, i) => scale * (code - high[i % 3] / 2));
+      for (let axis = 0; axis < 3; ++axis)
+        if (codes[i + axis] > high[axis]) high[axis] = codes[i + axis];
+    this.middle = high.map((h, axis) => table.low[axis] + table.step * h / 2);
+    let farthest = 0;  // from the middle, in steps, squared
+    for (let i = 0; i < codes.length; i += 3) {
+      const x = codes[i] - high[0] / 2, y = codes[i + 1] - high[1] / 2, z = codes[i + 2] - high[2] / 2;
+      farthest = Math.max(farthest, x * x + y * y + z * z);
+    }
+    this.radius = table.step * Math.sqrt(farthest) || 1;
+    const scale = table.step / this.radius, positions = new Float32Array(codes.length);
+    for (let i = 0; i < codes.length; i += 3)
+      for (let axis = 0; axis < 3; ++axis) positions[i + axis] = scale * (codes[i + axis] - high[axis] / 2);
     this.geometry = new THREE.BufferGeometry();
     this.geometry.setAttribute("position", new THREE.BufferAttribute(positions, 3));
     this.geometry.setIndex(new THREE.BufferAttribute(this.numbers.triangles, 1));
-    this.geometry.computeVertexNormals();
+    this.geometry.setAttribute("normal", new THREE.BufferAttribute(normalsOf(codes, this.numbers.triangles), 3, true));
     this.plain = new THREE.MeshBasicMaterial({ vertexColors: true, side: THREE.DoubleSide });
     this.lit = new THREE.MeshLambertMaterial({ vertexColors: true, side: THREE.DoubleSide });
     this.clay = new THREE.MeshLambertMaterial({ color: 0xb9b2a6, side: THREE.DoubleSide });
     this.mesh = new THREE.Mesh(this.geometry, this.clay);
     this.scene.add(this.mesh);
+  }
+
+  addTexture(image) {
+    if (!image) return;
+    const THREE = this.THREE, texture = new THREE.Texture(image);
+    texture.colorSpace = THREE.SRGBColorSpace;
+    texture.flipY = false;
+    texture.needsUpdate = true;
+    const { place } = this.numbers, places = new Float32Array(place.length);
+    for (let i = 0; i < place.length; ++i) places[i] = place.step * place[i];
+    this.geometry.setAttribute("uv", new THREE.BufferAttribute(places, 2));
+    this.textured = new THREE.MeshBasicMaterial({ map: texture, side: THREE.DoubleSide });
   }
 
   /** A lamp at the viewer's shoulder, and light from all around. */
@@ -66,8 +103,8 @@ class Viewer {
 
   show(layer) {
     const colours = layer.colours(this.numbers);
-    if (colours) this.geometry.setAttribute("color", new this.THREE.BufferAttribute(colours, 3));
-    this.mesh.material = !colours ? this.clay : layer.shaded ? this.lit : this.plain;
+    if (colours) this.geometry.setAttribute("color", new this.THREE.BufferAttribute(colours, 3, true));
+    this.mesh.material = layer.textured ? this.textured : !colours ? this.clay : layer.shaded ? this.lit : this.plain;
     this.draw();
   }
 
@@ -181,9 +218,10 @@ class Viewer {
     this.frame ??= requestAnimationFrame(() => {
       this.frame = null;
       this.place();
-      this.photographs.group.visible = this.camerasWanted && this.through < 0 && !this.flight;
+      this.photographs.group.visible = this.photographs.loaded && this.camerasWanted && this.through < 0 && !this.flight;
       this.photographs.fade(this.camera.position);
       this.renderer.render(this.scene, this.camera);
+      this.onDrawn?.();
       if (this.flight) this.draw();
     });
   }

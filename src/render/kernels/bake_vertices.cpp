@@ -52,7 +52,7 @@ BakedVertices bake_vertices(gpu::Context& context, const GridSpec& grid,
     for (std::size_t i = 0; i < part.size(); ++i) {
       const glm::vec4& e = results[i].evidence;
       out.colours[first + i] = glm::vec3(results[i].colour);
-      out.evidence[first + i] = {results[i].colour.w, e.x, e.y, e.z, e.w};
+      out.evidence[first + i] = {results[i].colour.w, e.x, e.y, e.z, e.w, results[i].sight.x};
     }
     progress.update(double(first + part.size()) / double(total));
   }

@@ -17,6 +17,7 @@
 #include "io/image_file.h"
 #include "io/mesh/mesh_writers.h"
 #include "io/mesh/read_mesh.h"
+#include "io/mesh/read_textured.h"
 #include "io/mesh/split_mesh.h"
 #include "support/scratch_folder.h"
 
@@ -263,6 +264,53 @@ TEST(TexturedWriters, TheSameBytesEveryTime) {
   for (const std::string format : {"glb", "obj", "usdz"}) {
     const std::string first = bytes_of(write(folder, format, {t.mesh, &t.texture}));
     EXPECT_EQ(bytes_of(write(folder, format, {t.mesh, &t.texture})), first) << format;
+  }
+}
+
+TEST(TexturedMeshes, OfGlbComeBackAsTheyWere) {
+  const ScratchFolder folder;
+  const TexturedMesh given = tetrahedron();
+  for (const glm::dvec3& up : {glm::dvec3(0, 0, 1), glm::dvec3(-1, 0, 0), glm::dvec3(0, 1, 0)}) {
+    const TexturedMesh back =
+        read_textured_glb(write(folder, "glb", {given.mesh, &given.texture, up}), up);
+    ASSERT_EQ(back.mesh.triangles.size(), given.mesh.triangles.size());
+    ASSERT_EQ(back.texture.pages.size(), 2u);
+    for (std::size_t p = 0; p < 2; ++p)
+      EXPECT_EQ(back.texture.pages[p].rgb, given.texture.pages[p].rgb);
+    EXPECT_EQ(back.texture.page, given.texture.page);
+    EXPECT_EQ(back.texture.corners, given.texture.corners);
+    for (std::size_t t = 0; t < 4; ++t)
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::uint32_t a = given.mesh.triangles[t][c], b = back.mesh.triangles[t][c];
+        EXPECT_LT(glm::distance(back.mesh.world(b), given.mesh.world(a)), 1e-6);
+        EXPECT_LT(glm::distance(back.mesh.normals[b], given.mesh.normals[a]), 1e-6);
+      }
+  }
+}
+
+TEST(TexturedMeshes, OfOtherOrDamagedFilesAreRefused) {
+  const ScratchFolder folder;
+  const TexturedMesh given = tetrahedron();
+  const std::filesystem::path plain = write(folder, "glb", {given.mesh, nullptr, {0, 0, 1}});
+  const auto refusal = [&](const std::filesystem::path& path) -> std::string {
+    try {
+      read_textured_glb(path, {0, 0, 1});
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(refusal(plain), testing::HasSubstr("no baseColorTexture"));
+  const std::string whole = bytes_of(write(folder, "glb", {given.mesh, &given.texture, {0, 0, 1}}));
+  const std::filesystem::path damaged = folder / "damaged.glb";
+  for (std::size_t at = 0; at < whole.size(); at += 7) {
+    std::string bytes = whole;
+    bytes[at] = char(bytes[at] ^ 0x15);
+    std::ofstream(damaged, std::ios::binary) << bytes;
+    const std::string said = refusal(damaged);  // some damage cannot be seen
+    EXPECT_TRUE(said.empty() || said.find(damaged.string()) != std::string::npos) << said;
+    std::ofstream(damaged, std::ios::binary) << whole.substr(0, at);
+    EXPECT_NE(refusal(damaged), "") << at;
   }
 }
 

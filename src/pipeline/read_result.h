@@ -1,0 +1,32 @@
+// A folder of results, read back for pictures.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "core/mesh.h"
+#include "core/mesh_texture.h"
+#include "pipeline/findings.h"
+
+namespace photohull::pipeline {
+
+struct ResultModel {
+  TriMesh mesh;                          ///< of mesh.ply; empty where there is a texture
+  std::optional<TexturedMesh> textured;  ///< of mesh.glb, where that has a texture
+  LookFindings look;                     ///< as report.json tells
+
+  const TriMesh& shape() const { return textured ? textured->mesh : mesh; }
+};
+
+/// The model of a folder that `write` wrote: from mesh.glb where the report says that it has a
+/// texture, else from mesh.ply. Normals are there. Throws Error where there is no such folder,
+/// where one of its files is missing or damaged, and where the report is of a version that told no
+/// cameras.
+ResultModel read_result(const std::filesystem::path& folder);
+
+/// The camera of a photograph, by its name or its index from 0 in the report. Throws Error that
+/// names the option `camera` and the nearest name where there is none.
+const CameraPose& find_camera(const LookFindings& look, const std::string& view);
+
+}  // namespace photohull::pipeline
