@@ -303,8 +303,10 @@ class Carver {
     run_.report.bricks_stored = std::int64_t(out.volume.bricks.size());
     run_.report.hull = hull_.findings();
     run_.clock.count_samples("hull", hull_.findings().samples);  // later stages carve hulls, too
-    const int main = render::choose_main_view(out.mesh, subject_.views);
-    run_.report.look = look_at(out.mesh, subject_.views, main);
+    // The preview chooses its view by the mesh that it draws, and no other photograph is kept.
+    const TriMesh& drawn = out.textured ? out.textured->mesh : out.mesh;
+    const int main = render::choose_main_view(drawn, subject_.views);
+    run_.report.look = look_at(drawn, subject_.views, main);
     if (out.shown) {
       out.shown->first_view = main;
       out.shown->up = run_.report.look.up;
