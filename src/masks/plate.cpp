@@ -115,6 +115,18 @@ cv::Mat shadow_depth(const cv::Mat& image, const cv::Mat& plate) {
   return depth;
 }
 
+/// How much a shadow's depth varies in 5 x 5 pixels: around a pixel, or around the smoothest one
+/// that is `edge` pixels away at most.
+cv::Mat roughness_of(const cv::Mat& depth, int edge) {
+  cv::Mat mean, squares, rough;
+  cv::blur(depth, mean, {5, 5});
+  cv::blur(depth.mul(depth), squares, {5, 5});
+  cv::sqrt(cv::max(squares - mean.mul(mean), 0.0), rough);
+  const cv::Size window(2 * edge + 1, 2 * edge + 1);
+  if (edge > 0) cv::erode(rough, rough, cv::getStructuringElement(cv::MORPH_RECT, window));
+  return rough;
+}
+
 }  // namespace
 
 MaskEvidence compare_with_plate(const ColourImage& image, const ColourImage& plate_image) {
@@ -125,17 +137,14 @@ MaskEvidence compare_with_plate(const ColourImage& image, const ColourImage& pla
   match_exposure(taken, plate);
   cv::Mat frame(taken.size(), CV_8U, cv::Scalar(0));
   for_each_at_frame(taken.size(), [&](int x, int y) { frame.at<std::uint8_t>(y, x) = 255; });
-  return compare_with_expected(taken, plate, frame);
+  return compare_with_expected(taken, plate, frame, 0);
 }
 
 MaskEvidence compare_with_expected(const cv::Mat& taken, const cv::Mat& plate,
-                                   const cv::Mat& certain) {
+                                   const cv::Mat& certain, int edge) {
   const cv::Mat sigma = expected_deviation(taken, plate, certain),
                 depth = shadow_depth(taken, plate);
-  cv::Mat mean, squares;
-  cv::blur(depth, mean, {5, 5});
-  cv::blur(depth.mul(depth), squares, {5, 5});
-
+  const cv::Mat roughness = roughness_of(depth, edge);
   MaskEvidence out;
   out.weak = kWeak, out.strong = kStrong;
   out.distance.create(taken.size(), CV_8U);
@@ -148,8 +157,7 @@ MaskEvidence compare_with_expected(const cv::Mat& taken, const cv::Mat& plate,
       const float brightness = std::sqrt(p.dot(p) / 3);
       if (a < 1 && a > kDarkestShadow && brightness > kLeastPlate) {
         const cv::Vec3f hue = i - a * p;
-        const float rough = std::sqrt(
-            std::max(0.0f, squares.at<float>(y, x) - mean.at<float>(y, x) * mean.at<float>(y, x)));
+        const float rough = roughness.at<float>(y, x);
         // Noise alone makes the depth vary by 0.6 deviations over brightness.
         const bool like = kLevels * std::sqrt(hue.dot(hue) / 2) / s < kStrong &&
                           rough * brightness / s < kRoughness;

@@ -18,6 +18,7 @@ constexpr std::size_t kFewest = 200;           // pixels to measure paper by
 constexpr double kPlain = 0.05;  // deviation of a background that tells, roots of linear light
 constexpr double kMostConfidence = 0.99;  // masks that were given have 1
 constexpr int kTerms = 6;
+constexpr int kShadowEdge = 4;  // pixels: half of the window that looks for texture, and the edge
 
 /// 1, x, y and their products, of a pixel's place from -1 to 1.
 std::array<double, kTerms> terms(const cv::Point& at, const cv::Size& size) {
@@ -72,7 +73,7 @@ class Comparison {
     if (!expect_page()) return out;
     const cv::Mat unknown = expect_surroundings();
     const cv::Mat certain = page_ & ~possible_;
-    MaskEvidence evidence = compare_with_expected(taken_, expected_, certain);
+    MaskEvidence evidence = compare_with_expected(taken_, expected_, certain, kShadowEdge);
     evidence.distance.setTo(0, ~possible_);
     evidence.distance.setTo(255, unknown);
     out.undecided = double(cv::countNonZero(unknown)) / std::max(1, cv::countNonZero(possible_));
