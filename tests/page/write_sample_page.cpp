@@ -1,5 +1,5 @@
-// write_sample_page FILE [RINGS]: a page of a result that nobody made, for the test in a browser; with
-// a number of rings a textured one, of twice their square of triangles.
+// write_sample_page FILE [RINGS]: a page of a result that nobody made, for the test in a browser;
+// with a number of rings a textured one, of twice their square of triangles.
 #include <cstdio>
 #include <cstdlib>
 
@@ -15,10 +15,10 @@ int main(int count, char** words) {
   }
   try {
     const TriMesh mesh = test::wrinkled_ball(count == 3 ? std::atoi(words[2]) : 60);
-    write_atomically(words[1],
-                     page::make_page(test::sample_report(mesh), "photohull reconstruct 'a b'",
-                                     count == 3 ? test::textured_shown(mesh)
-                                                : test::sample_shown(mesh)));
+    write_atomically(
+        words[1],
+        page::make_page(test::sample_report(mesh), "photohull reconstruct 'a b'",
+                        count == 3 ? test::textured_shown(mesh) : test::sample_shown(mesh)));
   } catch (const Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;
