@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "io/image_file.h"
 #include "io/load_scene.h"
+#include "sphere_scene.h"
 #include "support/scratch_folder.h"
 
 namespace photohull::test {
