@@ -105,8 +105,8 @@ TEST_F(Render, DrawsTheTextureWhereThereIsOne) {
 }
 
 TEST_F(Render, RefusesReportsThatTellNoCameras) {
-  for (const auto& [from, to] : {std::pair<std::string, std::string>{"\"cameras\"", "\"gone\""},
-                                 {"\"focal\"", "\"vocal\""},
+  for (const auto& [from, to] : {std::pair<std::string, std::string>{"\"cameras\":", "\"gone\":"},
+                                 {"\"focal\":", "\"vocal\":"},
                                  {"{", "["}}) {
     const std::string whole = read_bytes(path("out/report.json"));
     edit(path("out/report.json"), from, to);

@@ -24,8 +24,8 @@ using testing::Not;
 
 constexpr int kRuns = 5;
 constexpr rlim_t kMemory = rlim_t(8) << 30;
-// Of a processor: ten times what the longest run was seen to take (run 1132: 25 to 55 s, for carving
-// 100^3 voxels from 25 samples each), so that only what does not end is ended.
+// Of a processor: ten times what the longest run was seen to take (run 1132: 25 to 55 s, for
+// carving 100^3 voxels from 25 samples each), so that only what does not end is ended.
 constexpr rlim_t kSeconds = 600;
 
 /// The first run's number: PHOTOHULL_FIRST_RUN repeats one that failed.

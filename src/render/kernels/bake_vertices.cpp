@@ -15,7 +15,7 @@ namespace {
 
 using gpu::Buffer;
 
-constexpr std::size_t kBatch = std::size_t(1) << 20;  // 32 MiB of vertices a dispatch
+constexpr std::size_t kBatch = std::size_t(1) << 20;  // 48 MiB of results a dispatch
 
 }  // namespace
 
@@ -31,7 +31,9 @@ BakedVertices bake_vertices(gpu::Context& context, const GridSpec& grid,
   const auto program =
       gpu::Program::compute(context, "render_bake_vertices.comp.glsl", maps.defines());
   const std::size_t total = vertices.size();
-  const std::size_t batch = listed_batch(sizeof(shaders::SurfacePoint), kBatch, cameras.size());
+  constexpr std::size_t kLargest =
+      std::max(sizeof(shaders::SurfacePoint), sizeof(shaders::BakeResult));
+  const std::size_t batch = listed_batch(kLargest, kBatch, cameras.size());
   BakedVertices out{std::vector<glm::vec3>(total), std::vector<SurfaceEvidence>(total)};
   photographs.images.texture().bind(shaders::kImagesUnit);
   for (std::size_t first = 0; first < total; first += batch) {
