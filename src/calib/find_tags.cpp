@@ -125,7 +125,7 @@ SheetView find_tags(const ColourImage& image, const Sheet& sheet, const std::str
       const auto measured = measure_tag(linear, as_quad(quad), cells);
       if (!measured) continue;
       const auto tag = std::find_if(sheet.tags.begin(), sheet.tags.end(),
-                                    [&](const SheetTag& t) { return t.id == id; });
+                                    [&, id = id](const SheetTag& t) { return t.id == id; });
       view.tags.push_back(id);
       widths.push_back(measured->edge_width);
       for (std::size_t i = 0; i < 4; ++i) {

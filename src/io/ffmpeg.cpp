@@ -60,7 +60,8 @@ Ffmpeg::Ffmpeg(std::filesystem::path target, const std::vector<std::string>& wor
   ::posix_spawnattr_init(&attributes);
   ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);  // out of Ctrl-C's reach
   ::posix_spawnattr_setpgroup(&attributes, 0);
-  std::vector<std::string> all = {kProgram, "-hide_banner", "-loglevel", "error", "-nostdin", "-y"};
+  std::vector<std::string> all = {kProgram,   "-hide_banner", "-loglevel", "error",
+                                  "-nostdin", "-xerror",      "-y"};
   all.insert(all.end(), words.begin(), words.end());
   std::vector<char*> pointers;
   for (std::string& word : all) pointers.push_back(word.data());
