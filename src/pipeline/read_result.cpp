@@ -140,9 +140,8 @@ ResultModel read_result(const fs::path& folder) {
   const fs::path path = folder / "report.json";
   if (!fs::is_regular_file(path, ignored))
     throw Error(concat(folder.string(),
-                       " has no report.json, so no result is there: 'photohull reconstruct SCENE "
-                       "--out ",
-                       folder.string(), "' writes one"));
+                       " has no report.json, so no result is there: 'photohull reconstruct SCENE ",
+                       option_word("out"), " ", folder.string(), "' writes one"));
   const ReportFile report(path);
   ResultModel out;
   out.look = read_look(report);
