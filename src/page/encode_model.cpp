@@ -125,7 +125,7 @@ Model encode_model(const TriMesh& mesh, std::span<const Layer> layers,
           const double place = double(places[o.vertices[i]][c]);
           return std::uint32_t(std::lround(kPlaceSteps * std::clamp(place, 0.0, 1.0)));
         });
-  if (!mesh.colours.empty())
+  if (places.empty() && !mesh.colours.empty())
     streams.add_differences({{"name", "colour"}}, count, 3, 1, [&](std::size_t i, int c) {
       const double linear = std::clamp(double(mesh.colours[o.vertices[i]][c]), 0.0, 1.0);
       return std::uint32_t(std::lround(255 * srgb_from_linear(linear)));
