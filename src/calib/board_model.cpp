@@ -2,6 +2,8 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <unordered_set>
+#include <vector>
 
 #include "core/error.h"
 #include "core/median.h"
@@ -101,14 +103,32 @@ void hold_lens(ceres::Problem& problem, LensModel model, bool known, Lens& lens)
   problem.SetManifold(lens.data(), new ceres::SubsetManifold(12, fixed));
 }
 
+namespace {
+
+/// All parameter blocks, as the residuals use them: Ceres lists them by their addresses, which
+/// differ from run to run, and sums with them.
+std::vector<double*> blocks_in_order(const ceres::Problem& problem) {
+  std::vector<ceres::ResidualBlockId> residuals;
+  problem.GetResidualBlocks(&residuals);
+  std::vector<double*> all, some;
+  std::unordered_set<double*> known;
+  for (const ceres::ResidualBlockId residual : residuals) {
+    problem.GetParameterBlocksForResidualBlock(residual, &some);
+    for (double* block : some)
+      if (known.insert(block).second) all.push_back(block);
+  }
+  return all;
+}
+
+}  // namespace
+
 void solve(ceres::Problem& problem, const std::vector<double*>& eliminated) {
   ceres::Solver::Options options;
   options.linear_solver_type = eliminated.empty() ? ceres::DENSE_QR : ceres::DENSE_SCHUR;
   if (!eliminated.empty()) {
     auto* ordering = new ceres::ParameterBlockOrdering;
-    std::vector<double*> blocks;
-    problem.GetParameterBlocks(&blocks);
-    for (double* block : blocks) ordering->AddElementToGroup(block, 1);
+    int group = 1;
+    for (double* block : blocks_in_order(problem)) ordering->AddElementToGroup(block, group++);
     for (double* block : eliminated) ordering->AddElementToGroup(block, 0);
     options.linear_solver_ordering.reset(ordering);
   }
@@ -122,10 +142,8 @@ void solve(ceres::Problem& problem, const std::vector<double*>& eliminated) {
 }
 
 StandardDeviations::StandardDeviations(ceres::Problem& problem) : problem_(problem) {
-  std::vector<double*> all;
-  problem.GetParameterBlocks(&all);
   int columns = 0;
-  for (double* block : all) {
+  for (double* block : blocks_in_order(problem)) {
     if (problem.IsParameterBlockConstant(block)) continue;
     blocks_.push_back(block);
     first_.push_back(columns);
