@@ -7,18 +7,12 @@
 #include <vector>
 
 #include "core/mesh.h"
+#include "core/rgb_image.h"
 
 namespace photohull {
 
-/// 8-bit sRGB, row-major from the top-left, 3 bytes a texel.
-struct TexturePage {
-  int width = 0;
-  int height = 0;
-  std::vector<std::uint8_t> rgb;
-};
-
 struct MeshTexture {
-  std::vector<TexturePage> pages;
+  std::vector<RgbImage> pages;
   std::vector<std::uint32_t> page;  ///< of each triangle
   /// Of each triangle's corners the place on its page, in [0, 1]: (0, 0) is the top-left corner of
   /// the page, (1, 1) its bottom-right one.

@@ -89,7 +89,7 @@ std::vector<std::uint32_t> nearest_vertices(const TriMesh& mesh, const TriMesh& 
 }
 
 /// All pages in one image.
-ColourImage joined(const std::vector<TexturePage>& pages, const Sheet& sheet) {
+ColourImage joined(const std::vector<RgbImage>& pages, const Sheet& sheet) {
   const int width = pages.front().width, height = pages.front().height;
   ColourImage out;
   out.width = sheet.columns * width;

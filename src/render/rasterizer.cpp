@@ -100,7 +100,7 @@ std::vector<glm::vec3> places_on_pages(const MeshTexture& texture) {
   return places;
 }
 
-gpu::TextureArray to_device(const std::vector<TexturePage>& pages) {
+gpu::TextureArray to_device(const std::vector<RgbImage>& pages) {
   const int width = pages.front().width, height = pages.front().height;
   gpu::TextureArray out(gpu::TextureFormat::kSrgb8Alpha8, width, height, int(pages.size()),
                         kPageLevels);

@@ -14,7 +14,7 @@
 namespace photohull::texture {
 
 struct PaintedPage {
-  TexturePage page;
+  RgbImage page;
   std::int64_t texels = 0;  ///< that show the surface
   std::int64_t filled = 0;  ///< of these, with the fill's colours, for no photograph is clear there
   std::int64_t most_at_once = 0;  ///< texels of the charts that were painted at a time

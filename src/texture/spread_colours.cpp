@@ -17,7 +17,7 @@ struct Level {
 
 glm::vec4 mean_of(const glm::vec4& sum) { return sum.w > 0 ? sum / sum.w : glm::vec4(0); }
 
-Level half_of(const std::vector<std::uint8_t>& shown, const TexturePage& page) {
+Level half_of(const std::vector<std::uint8_t>& shown, const RgbImage& page) {
   Level out{(page.width + 1) / 2, (page.height + 1) / 2, {}};
   out.texels.resize(std::size_t(out.width) * out.height, glm::vec4(0));
   for (int y = 0; y < page.height; ++y)
@@ -41,7 +41,7 @@ Level half_of(Level& fine) {
 
 }  // namespace
 
-void spread_colours(const std::vector<std::uint8_t>& shown, TexturePage& page) {
+void spread_colours(const std::vector<std::uint8_t>& shown, RgbImage& page) {
   std::vector<Level> levels{half_of(shown, page)};
   while (levels.back().width > 1 || levels.back().height > 1)
     levels.push_back(half_of(levels.back()));

@@ -10,6 +10,6 @@ namespace photohull::texture {
 
 /// Gives texels that show nothing the mean colour of those nearby that do, from ever larger squares
 /// around: coarser mip levels mix them with charts. All keep theirs where none shows anything.
-void spread_colours(const std::vector<std::uint8_t>& shown, TexturePage& page);
+void spread_colours(const std::vector<std::uint8_t>& shown, RgbImage& page);
 
 }  // namespace photohull::texture

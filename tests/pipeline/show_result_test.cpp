@@ -99,7 +99,7 @@ TexturedMesh with_texture(const TriMesh& mesh) {
   TexturedMesh out{mesh, {}};
   std::uint32_t state = 7;
   for (int p = 0; p < 3; ++p) {
-    TexturePage page{1024, 512, {}};
+    RgbImage page{1024, 512, {}};
     for (int i = 0; i < 3 * 1024 * 512; ++i)
       page.rgb.push_back(std::uint8_t((state = 1664525 * state + 1013904223) >> 24));
     out.texture.pages.push_back(std::move(page));

@@ -116,7 +116,7 @@ TexturedMesh square_of_two_pages() {
   out.mesh.normals.assign(4, {0, 0, -1});
   out.mesh.triangles = {{0, 3, 2}, {0, 2, 1}};
   for (const glm::ivec3& left : {glm::ivec3(255, 0, 0), glm::ivec3(0, 200, 0)}) {
-    TexturePage page{64, 32, {}};
+    RgbImage page{64, 32, {}};
     for (int i = 0; i < 64 * 32; ++i)
       for (int c = 0; c < 3; ++c) page.rgb.push_back(std::uint8_t(i % 64 < 32 ? left[c] : 0));
     out.texture.pages.push_back(page);

@@ -112,7 +112,7 @@ struct Counts {
 
 void look_at_triangle(const TexturedMesh& mesh, std::size_t face, const Truth& truth,
                       Counts& counts) {
-  const TexturePage& page = mesh.texture.pages[mesh.texture.page[face]];
+  const RgbImage& page = mesh.texture.pages[mesh.texture.page[face]];
   std::array<glm::dvec2, 3> at;
   for (std::size_t i = 0; i < 3; ++i)
     at[i] = glm::dvec2(mesh.texture.corners[face][i]) * glm::dvec2(page.width, page.height) - 0.5;

@@ -15,7 +15,7 @@
 namespace photohull::texture {
 namespace {
 
-TexturePage page_of(const aiScene& scene, const aiMesh& mesh) {
+RgbImage page_of(const aiScene& scene, const aiMesh& mesh) {
   aiString name;
   scene.mMaterials[mesh.mMaterialIndex]->GetTexture(aiTextureType_DIFFUSE, 0, &name);
   const aiTexture* embedded = scene.GetEmbeddedTexture(name.C_Str());
@@ -24,7 +24,7 @@ TexturePage page_of(const aiScene& scene, const aiMesh& mesh) {
   std::ofstream(folder / "page.png", std::ios::binary)
       .write(reinterpret_cast<const char*>(embedded->pcData), embedded->mWidth);
   const ColourImage image = io::read_image(folder / "page.png");
-  TexturePage page{image.width, image.height, {}};
+  RgbImage page{image.width, image.height, {}};
   for (std::size_t i = 0; i < image.bytes.size(); i += 4)
     page.rgb.insert(page.rgb.end(), &image.bytes[i], &image.bytes[i] + 3);
   return page;

@@ -98,7 +98,7 @@ inline Colour plain(const glm::dvec3& colour) {
 /// Bilinear, linear light, at weights of a triangle's corners.
 inline glm::vec3 colour_at(const MeshTexture& texture, std::size_t face,
                            const glm::dvec3& weights) {
-  const TexturePage& page = texture.pages[texture.page[face]];
+  const RgbImage& page = texture.pages[texture.page[face]];
   glm::dvec2 at(0);
   for (int i = 0; i < 3; ++i) at += weights[i] * glm::dvec2(texture.corners[face][std::size_t(i)]);
   at = at * glm::dvec2(page.width, page.height) - 0.5;

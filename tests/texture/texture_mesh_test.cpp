@@ -41,7 +41,7 @@ TextureResult textured(const TriMesh& mesh, const std::vector<PreparedView>& vie
 /// Of all texels of all pages, also of those beyond charts.
 double most_apart(const MeshTexture& texture, const glm::dvec3& colour) {
   double most = 0;
-  for (const TexturePage& page : texture.pages)
+  for (const RgbImage& page : texture.pages)
     for (std::size_t i = 0; i < page.rgb.size(); i += 3)
       for (std::size_t c = 0; c < 3; ++c)
         most = std::max(
@@ -222,7 +222,7 @@ TEST(TextureMesh, CornersLieOnTheirPages) {
       EXPECT_TRUE(glm::all(glm::greaterThan(at, glm::vec2(0))));
       EXPECT_TRUE(glm::all(glm::lessThan(at, glm::vec2(1))));
     }
-  for (const TexturePage& page : texture.pages) {
+  for (const RgbImage& page : texture.pages) {
     EXPECT_TRUE(std::has_single_bit(unsigned(page.width)));
     EXPECT_TRUE(std::has_single_bit(unsigned(page.height)));
   }

@@ -60,7 +60,7 @@ void describe(Described& to, MeshFileOptions& o) {
       "it (default: stl keeps the scene's numbers, and in glb and usdz they count as metres)");
 }
 
-PageImage encode_page(const TexturePage& page, TextureFormat format) {
+PageImage encode_page(const RgbImage& page, TextureFormat format) {
   if (format == TextureFormat::kJpeg)
     return {io::encode_jpeg(page.width, page.height, page.rgb, kJpegQuality), "image/jpeg"};
   return {io::encode_png(page.width, page.height, 3, page.rgb), "image/png"};

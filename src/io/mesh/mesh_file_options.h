@@ -35,7 +35,7 @@ struct PageImage {
   const char* type;  ///< "image/png"
 };
 
-PageImage encode_page(const TexturePage& page, TextureFormat format);
+PageImage encode_page(const RgbImage& page, TextureFormat format);
 /// "png" or "jpg".
 const char* extension_of(TextureFormat format);
 

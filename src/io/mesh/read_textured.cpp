@@ -95,8 +95,12 @@ TexturedMesh read_textured_glb(const std::filesystem::path& path, const glm::dve
   }
   if (out.mesh.triangles.empty()) file.fail("it has no triangles");
   const glm::dmat3 turn = glm::transpose(y_up_from_world(up));
-  if (const auto t = file.numbers(file.element("nodes", 0), "translation", 3); !t.empty())
-    out.mesh.origin = turn * glm::dvec3(t[0], t[1], t[2]);
+  const Json& node = file.element("nodes", 0);
+  double metres = 1;  // a scene unit
+  if (const auto s = file.numbers(node, "scale", 3); !s.empty()) metres = s[0];
+  if (!(metres > 0)) file.fail("a node's scale is none");
+  if (const auto t = file.numbers(node, "translation", 3); !t.empty())
+    out.mesh.origin = turn * glm::dvec3(t[0], t[1], t[2]) / metres;
   for (glm::vec3& p : out.mesh.positions) p = glm::mat3(turn) * p;
   for (glm::vec3& n : out.mesh.normals) n = glm::mat3(turn) * n;
   return out;

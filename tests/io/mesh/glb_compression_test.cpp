@@ -19,6 +19,7 @@
 #include "io/mesh/read_mesh.h"
 #include "io/mesh/split_mesh.h"
 #include "support/scratch_folder.h"
+#include "written_mesh.h"
 
 namespace photohull {
 namespace {
@@ -44,7 +45,7 @@ TexturedMesh sheet() {
       mesh.triangles.push_back({a, b, c});
       mesh.triangles.push_back({b, d, c});
     }
-  TexturePage page{16, 16, {}};
+  RgbImage page{16, 16, {}};
   for (std::uint8_t i = 0; page.rgb.size() < 3 * 256; ++i)
     page.rgb.insert(page.rgb.end(), {i, std::uint8_t(255 - i), std::uint8_t(i / 2)});
   out.texture.pages.push_back(page);
@@ -56,27 +57,6 @@ TexturedMesh sheet() {
     out.texture.corners.push_back(places);
   }
   return out;
-}
-
-std::filesystem::path write(const ScratchFolder& folder, const std::string& format,
-                            const MeshContents& contents) {
-  const std::filesystem::path path = folder / ("mesh." + format);
-  std::deque<AtomicFile> beside;
-  AtomicFile file(path);
-  find_mesh_writer("format", format)
-      .write(file, contents, [&](const std::string& name) -> AtomicFile& {
-        return beside.emplace_back(folder / name);
-      });
-  file.commit();
-  for (AtomicFile& f : beside) f.commit();
-  return path;
-}
-
-std::string bytes_of(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::stringstream text;
-  text << in.rdbuf();
-  return text.str();
 }
 
 /// A GLB file whose accessors are decoded.

@@ -20,6 +20,7 @@
 #include "io/mesh/read_textured.h"
 #include "io/mesh/split_mesh.h"
 #include "support/scratch_folder.h"
+#include "written_mesh.h"
 
 namespace photohull {
 namespace {
@@ -41,7 +42,7 @@ TexturedMesh tetrahedron() {
   mesh.colours.assign(4, glm::vec3(0.25f));
   mesh.confidence = {0, 0.25f, 0.5f, 1};
   for (std::uint32_t p = 0; p < 2; ++p) {
-    TexturePage page{kEdge, kEdge, {}};
+    RgbImage page{kEdge, kEdge, {}};
     for (int y = 0; y < kEdge; ++y)
       for (int x = 0; x < kEdge; ++x) {
         const std::uint8_t* c = kColours[2 * p + (x < kEdge / 2 ? 0u : 1u)];
@@ -55,28 +56,6 @@ TexturedMesh tetrahedron() {
     out.texture.corners.push_back({glm::vec2(left, 0.1f), {left + 0.3f, 0.2f}, {left, 0.9f}});
   }
   return out;
-}
-
-/// Writes into a folder; the files beside it, too.
-std::filesystem::path write(const ScratchFolder& folder, const std::string& format,
-                            const MeshContents& contents) {
-  const std::filesystem::path path = folder / ("mesh." + format);
-  std::deque<AtomicFile> beside;
-  AtomicFile file(path);
-  find_mesh_writer("format", format)
-      .write(file, contents, [&](const std::string& name) -> AtomicFile& {
-        return beside.emplace_back(folder / name);
-      });
-  file.commit();
-  for (AtomicFile& f : beside) f.commit();
-  return path;
-}
-
-std::string bytes_of(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::stringstream text;
-  text << in.rdbuf();
-  return text.str();
 }
 
 /// A triangle as a reader has it: corners, and the colour of its page in its middle.
@@ -286,6 +265,20 @@ TEST(TexturedMeshes, OfGlbComeBackAsTheyWere) {
         EXPECT_LT(glm::distance(back.mesh.normals[b], given.mesh.normals[a]), 1e-6);
       }
   }
+}
+
+TEST(TexturedMeshes, OfGlbInMetresComeBackInSceneUnits) {
+  const ScratchFolder folder;
+  TexturedMesh given = tetrahedron();
+  given.mesh.origin = {100, -200, 300};
+  MeshContents contents{given.mesh, &given.texture, {0, 0, 1}};
+  contents.options.unit = LengthUnit::kMillimetre;
+  const TexturedMesh back = read_textured_glb(write(folder, "glb", contents), {0, 0, 1});
+  for (std::size_t t = 0; t < 4; ++t)
+    for (std::size_t c = 0; c < 3; ++c)
+      EXPECT_LT(glm::distance(back.mesh.world(back.mesh.triangles[t][c]),
+                              given.mesh.world(given.mesh.triangles[t][c])),
+                1e-6);
 }
 
 TEST(TexturedMeshes, OfOtherOrDamagedFilesAreRefused) {
