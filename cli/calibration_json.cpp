@@ -4,22 +4,12 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "json_parts.h"
+
 namespace photohull::cli {
 namespace {
 
 using nlohmann::ordered_json;
-
-ordered_json finite_or_null(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json();
-}
-
-ordered_json vector_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
-
-void add_camera_pose(const Pose& pose, ordered_json& j) {
-  const glm::dmat3& r = pose.rotation;
-  j["R"] = {{r[0][0], r[1][0], r[2][0]}, {r[0][1], r[1][1], r[2][1]}, {r[0][2], r[1][2], r[2][2]}};
-  j["t"] = vector_json(pose.translation);
-}
 
 void add_lens(const Intrinsics& k, const Distortion& distortion, LensModel lens, ordered_json& j) {
   j["image_width"] = k.width;
@@ -91,7 +81,7 @@ std::string calibration_json(const std::vector<BoardView>& views, const Calibrat
   for (std::size_t i = 0; i < views.size(); ++i) {
     ordered_json view = view_json(views[i], c.rms[i], c.left_out[i]);
     if (!c.left_out[i]) {
-      add_camera_pose(c.cam_from_board[i], view);
+      add_pose_json(c.cam_from_board[i], view);
       if (c.turntable) view["angle_degrees"] = c.turntable->angles[i];
     }
     j["views"].push_back(view);
@@ -113,7 +103,7 @@ std::string rig_json(const std::vector<RigCameraViews>& views,
     ordered_json entry;
     entry["name"] = camera.name;
     add_lens(camera.intrinsics, camera.distortion, camera.model, entry);
-    add_camera_pose(camera.cam_from_rig, entry);
+    add_pose_json(camera.cam_from_rig, entry);
     entry["rms"] = camera.all_rms;
     entry["focal_sigma"] = camera.focal_sigma;
     entry["principal_point_sigma"] = camera.principal_sigma;

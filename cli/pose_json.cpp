@@ -4,16 +4,12 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "json_parts.h"
+
 namespace photohull::cli {
 namespace {
 
 using nlohmann::ordered_json;
-
-ordered_json finite_or_null(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json();
-}
-
-ordered_json vector_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
 ordered_json camera_json(const PosedCamera& c) {
   const Intrinsics& k = c.intrinsics;
@@ -36,14 +32,12 @@ ordered_json photo_json(const std::string& name, const PosedPhoto& p) {
     j["reason"] = p.reason;
     return j;
   }
-  const glm::dmat3& r = p.cam_from_world.rotation;
   j["tags_used"] = p.tags_used;
   j["camera"] = p.camera;
   j["rms"] = finite_or_null(p.rms);
   j["rotation_sigma_degrees"] = p.turn_sigma;
   j["position_sigma"] = p.place_sigma;
-  j["R"] = {{r[0][0], r[1][0], r[2][0]}, {r[0][1], r[1][1], r[2][1]}, {r[0][2], r[1][2], r[2][2]}};
-  j["t"] = vector_json(p.cam_from_world.translation);
+  add_pose_json(p.cam_from_world, j);
   return j;
 }
 
