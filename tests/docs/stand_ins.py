@@ -36,7 +36,7 @@ WORDS = {
 WORDS_OF = {"stress": {"PLAN": "bench/plans/stress_smoke.json"}}
 # What scenes of that name have besides, and what it is a copy of.
 PARTS = {"scan": {"cutouts": "masks"}, "plant": {"sparse/0": "colmap_text", "alpha": "masks"}}
-SCENES = re.compile(r"(?:\.\./shared/datasets|datasets)/(?!synthetic\b)\w+|\b(?:scan|plant|templeRing|room|enlarged)\b")
+SCENES = re.compile(r"(?:\.\./shared/datasets|datasets)/(?!synthetic\b|boards\b)\w+|\b(?:scan|plant|templeRing|room|enlarged)\b")
 CUBE_CORNER = """solid corner
 facet normal 0 0 1
 outer loop
@@ -63,7 +63,7 @@ def make_scene(program: str, folder: Path) -> Path:
 def make_page_folder(folder: Path, source: Path, scene: Path, text: str) -> Path:
     """A folder to run a page's commands in, with all that its text names; what is there may be written to."""
     project = folder / "project"
-    for name in ("bench/plans", "bench/specs", "datasets/synthetic"):
+    for name in ("bench/plans", "bench/specs", "datasets/synthetic", "datasets/boards"):
         shutil.copytree(source / name, project / name)
     for name in {"scene", *SCENES.findall(text)}:
         shutil.copytree(scene, (project / name).resolve())
