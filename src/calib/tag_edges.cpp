@@ -15,6 +15,7 @@ constexpr double kLeastReach = 1.25, kMostReach = 6;  // pixels to either side
 constexpr double kReachInCells = 0.75;
 constexpr double kLeastContrast = 0.02;  // of linear light
 constexpr double kLeastPeers = 0.35;     // of the greatest contrast of the tag's edges
+constexpr double kMostUneven = 0.3;      // of the contrast, between an edge's places
 constexpr double kSearchPixels = 2.5, kSearchInCells = 0.9;  // to either side at first
 constexpr double kCoarseSpread = 0.9, kMostSpread = 0.45;    // pixels, of an edge's points
 constexpr double kLeastCell = 1, kLeastSine = 0.05;          // pixels; of the angle of two edges
@@ -42,9 +43,26 @@ struct Line {
 
 struct EdgePoints {
   std::vector<glm::dvec2> places;
-  std::vector<double> contrasts, widths;
+  std::vector<double> darks, contrasts, widths;
   std::size_t asked = 0;
 };
+
+/// Without the places where something else than the edge's paper or ink lies to either side.
+void drop_covered(EdgePoints& edge) {
+  if (edge.places.empty()) return;
+  const double dark = median(edge.darks), contrast = median(edge.contrasts);
+  EdgePoints kept;
+  kept.asked = edge.asked;
+  for (std::size_t i = 0; i < edge.places.size(); ++i) {
+    if (std::abs(edge.darks[i] - dark) > kMostUneven * contrast) continue;
+    if (std::abs(edge.contrasts[i] - contrast) > kMostUneven * contrast) continue;
+    kept.places.push_back(edge.places[i]);
+    kept.darks.push_back(edge.darks[i]);
+    kept.contrasts.push_back(edge.contrasts[i]);
+    kept.widths.push_back(edge.widths[i]);
+  }
+  edge = std::move(kept);
+}
 
 /// Brightness across an edge, from `reach` inside the tag to as far outside.
 std::vector<double> profile(const cv::Mat& image, const glm::dvec2& at, const glm::dvec2& outward,
@@ -113,9 +131,11 @@ EdgePoints find_points(const cv::Mat& image, const glm::dvec2& a, const glm::dve
         const double offset = kStep * (double(light.size()) / 2 - area);
         if (std::abs(offset) > reach) return;
         found.places.push_back(at + offset * out);
+        found.darks.push_back(dark);
         found.contrasts.push_back(contrast);
         found.widths.push_back(kStep * double(rising));
       });
+  drop_covered(found);
   return found;
 }
 
@@ -132,6 +152,22 @@ Line fit(const std::vector<glm::dvec2>& points, const std::vector<double>& weigh
   }
   const double angle = 0.5 * std::atan2(2 * xy, xx - yy);
   return {middle, {std::cos(angle), std::sin(angle)}};
+}
+
+/// Points of more than a tenth of the weight in that third of the line that has the fewest. Corners
+/// are where lines go on to, so that what covers an edge's end would move them.
+std::size_t fewest_in_thirds(const std::vector<glm::dvec2>& points,
+                             const std::vector<double>& weights, const Line& line) {
+  std::vector<double> along;
+  for (const glm::dvec2& p : points) along.push_back(glm::dot(p - line.point, line.direction));
+  const auto [low, high] = std::minmax_element(along.begin(), along.end());
+  std::array<std::size_t, 3> count{};
+  for (std::size_t i = 0; i < along.size(); ++i)
+    if (weights[i] > 0.1)
+      ++count[along[i] < *low + (*high - *low) / 3    ? 0
+              : along[i] > *high - (*high - *low) / 3 ? 2
+                                                      : 1];
+  return *std::min_element(count.begin(), count.end());
 }
 
 /// By Tukey's weights about the median distance; nothing where the points are on no line, to a
@@ -152,8 +188,9 @@ std::optional<Line> fit_robustly(const EdgePoints& edge, double most) {
     }
     line = fit(edge.places, weights);
   }
-  const auto kept = std::count_if(weights.begin(), weights.end(), [](double w) { return w > 0.1; });
-  if (spread > most || std::size_t(kept) < std::max(kFewestProfiles, edge.asked / 2))
+  // Half of what was asked for, in each third of the edge.
+  if (spread > most || edge.places.size() < kFewestProfiles ||
+      fewest_in_thirds(edge.places, weights, line) < edge.asked / 6)
     return std::nullopt;
   return line;
 }

@@ -89,7 +89,8 @@ Cameras miscalibrated(const Cameras& cameras, const DegradationSpec& spec, std::
   if (spec.intrinsics_error <= 0) return posed;
   Random random(seed, 0x1275);
   const double focal = random.normal();
-  const glm::dvec2 principal(random.normal(), random.normal());
+  const double down = random.normal(), right = random.normal();
+  const glm::dvec2 principal(right, down);
   const auto with_error = [&](Cameras set, double scale) {
     for (LensCamera& lens : set) {
       Intrinsics& k = lens.camera.intrinsics;

@@ -38,7 +38,8 @@ void PrintedSheet::hide_tags(const Sheet& sheet, const Spec& spec) {
     for (std::size_t i = 0; i < count; ++i) {
       const auto& c = sheet.tags[order[i]].corners;
       const double side = glm::length(c[1] - c[0]);
-      const glm::dvec2 off(random.uniform() - 0.5, random.uniform() - 0.5);
+      const double up = random.uniform() - 0.5, right = random.uniform() - 0.5;
+      const glm::dvec2 off(right, up);
       hidden_[view].push_back(
           {0.5 * (c[0] + c[2]) + 0.7 * side * off, side * (0.4 + 0.3 * random.uniform())});
     }

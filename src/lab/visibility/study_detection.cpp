@@ -87,8 +87,8 @@ std::vector<DetectionCell> detect_triangles(gpu::Context& context, const StudySc
     if (texels.empty()) {
       std::mt19937_64 random(seed);
       for (int tries = 0; int(texels.size()) < kTexels && tries < 100 * kTexels; ++tries) {
-        const ivec2 t(int(random() % std::uint64_t(resolution)),
-                      int(random() % std::uint64_t(resolution)));
+        const int row = int(random() % std::uint64_t(resolution));
+        const ivec2 t(int(random() % std::uint64_t(resolution)), row);
         if (!map.triangles_at(context, 0, t).empty()) texels.push_back(t);
       }
       const Candidates candidates(map.layout(), scene.mesh, texels);
