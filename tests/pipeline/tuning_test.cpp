@@ -125,7 +125,7 @@ void expect_all_described(std::size_t others = 0) {
 
 TEST(Tune, ReachesEveryField) {
   expect_all_described<refine::RefineOptions>(1);  // bounded: no choice of a user
-  expect_all_described<refine::VoteOptions>();
+  expect_all_described<refine::VoteOptions>(1);    // nearest_partner: follows the views around
   expect_all_described<refine::OpenVoteOptions>();
   expect_all_described<refine::LabelOptions>();
   expect_all_described<refine::CloseOptions>();
