@@ -56,7 +56,8 @@ unsigned link(std::initializer_list<unsigned> shaders, std::string_view name) {
     const std::string beyond = beyond_promise(resources_of(program));
     if (beyond.empty()) return program;
     glDeleteProgram(program);
-    throw Error(concat("shaders/", name, " takes more than OpenGL 4.5 promises: ", beyond));
+    throw Error(concat("shaders/", name,
+                       " takes more than devices of OpenGL 4.5 are sure to have: ", beyond));
   }
   GLint length = 0;
   glGetProgramiv(program, GL_INFO_LOG_LENGTH, &length);

@@ -130,8 +130,7 @@ std::string beyond_promise(const ProgramResources& r) {
   std::string found;
   const auto look = [&](int taken, int promised, const char* what) {
     if (taken > promised)
-      found +=
-          concat(found.empty() ? "" : ", ", taken, ' ', what, " (", promised, " are promised)");
+      found += concat(found.empty() ? "" : ", ", taken, ' ', what, " (at most ", promised, ")");
   };
   look(r.compute.storage_blocks, kStorageBlocks, "storage blocks in a compute shader");
   look(r.fragment.storage_blocks, kStorageBlocks, "storage blocks in a fragment shader");

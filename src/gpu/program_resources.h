@@ -23,7 +23,7 @@ struct ProgramResources {
 ProgramResources resources_of(unsigned program);
 
 /// What goes beyond the minimum of the implementation-dependent values of the OpenGL 4.5 core
-/// specification (its tables 23.53 to 23.70), so that some device may not have it; empty: nothing.
+/// specification, so that some device may not have it; empty: nothing.
 /// Storage blocks are the exception: the specification promises 8 bindings and 8 blocks of a
 /// shader, and the sweeps' kernels take 10 blocks and 14 bindings; 16 are allowed here.
 std::string beyond_promise(const ProgramResources& resources);

@@ -1,5 +1,6 @@
 #include "pipeline/camera_cache.h"
 
+#include <cmath>
 #include <fstream>
 #include <iomanip>
 #include <nlohmann/json.hpp>
@@ -40,8 +41,7 @@ std::string identity_of(const ReconstructOptions& options, const Scene& scene,
   text << std::setprecision(kIdentityDigits);
   add_program(text);
   text << (options.refine_cameras ? int(*options.refine_cameras) : -1) << '\n';
-  for (const glm::dvec3& corner : {scene.box->min, scene.box->max})
-    text << corner.x << ' ' << corner.y << ' ' << corner.z << '\n';
+  add_box(*scene.box, text);
   for (const SceneTrack& track : scene.tracks)
     for (const SceneTrack::Observation& o : track.observations)
       text << o.view << ' ' << o.pixel.x << ' ' << o.pixel.y
@@ -130,12 +130,10 @@ std::optional<Kept> read(const fs::path& file, const std::string& identity,
 
 }  // namespace
 
-fs::path camera_cache_file(const fs::path& folder) { return folder / ".photohull-cameras"; }
-
 AgreeingCameras agree_cameras_once(const fs::path& folder, const ReconstructOptions& options,
                                    const Scene& scene, std::vector<PreparedView> views,
                                    Progress& progress) {
-  const fs::path file = camera_cache_file(folder);
+  const fs::path file = folder / ".photohull-cameras";
   const std::string identity = identity_of(options, scene, views);
   if (!options.fresh)
     if (std::optional<Kept> kept = read(file, identity, views, progress)) {

@@ -12,8 +12,6 @@
 
 namespace photohull::pipeline {
 
-std::filesystem::path camera_cache_file(const std::filesystem::path& folder);
-
 /// agree_cameras, or what it came to in the run before where that went by the same pixels, masks,
 /// cameras and tracks, whatever became of them afterwards (another method, other voxels): its
 /// warnings are given again, and a note says so. Cameras that a refinement looked at are kept in

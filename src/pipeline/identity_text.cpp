@@ -20,6 +20,11 @@ void add_program(std::ostream& out) {
   add_file("/proc/self/exe", out);
 }
 
+void add_box(const Box& box, std::ostream& out) {
+  for (const glm::dvec3& corner : {box.min, box.max})
+    out << corner.x << ' ' << corner.y << ' ' << corner.z << '\n';
+}
+
 void add_camera(const Camera& camera, std::ostream& out) {
   const Intrinsics& k = camera.intrinsics;
   out << k.width << ' ' << k.height << ' ' << k.fx << ' ' << k.fy << ' ' << k.skew << ' ' << k.cx

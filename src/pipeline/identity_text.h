@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <ostream>
 
+#include "core/box.h"
 #include "core/camera.h"
 #include "core/scene.h"
 
@@ -15,6 +16,7 @@ inline constexpr int kIdentityDigits = 17;  ///< that tell any two numbers apart
 void add_program(std::ostream& out);
 /// Size and time of a file's last change; nothing of a file that is not there.
 void add_file(const std::filesystem::path& path, std::ostream& out);
+void add_box(const Box& box, std::ostream& out);
 void add_camera(const Camera& camera, std::ostream& out);
 void add_distortion(const Distortion& distortion, std::ostream& out);
 

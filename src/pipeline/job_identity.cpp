@@ -32,8 +32,7 @@ std::string job_identity(const ReconstructOptions& options, const Photographs& p
   const GridSpec& grid = subject.grid;
   text << grid.voxel_size << ' ' << grid.origin.x << ' ' << grid.origin.y << ' ' << grid.origin.z
        << ' ' << grid.bricks.x << ' ' << grid.bricks.y << ' ' << grid.bricks.z << '\n';
-  for (const glm::dvec3& corner : {subject.box.min, subject.box.max})
-    text << corner.x << ' ' << corner.y << ' ' << corner.z << '\n';
+  add_box(subject.box, text);
   add_file(photographs.scene.path, text);
   text << photographs.digest << '\n';
   for (const PreparedView& view : subject.views) {

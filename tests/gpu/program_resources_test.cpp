@@ -28,8 +28,9 @@ TEST(ProgramResources, EachNumberBeyondThePromiseIsNamed) {
   };
   using R = ProgramResources;
   EXPECT_EQ(with([](R& r) { r.compute.storage_blocks = 17; }),
-            "17 storage blocks in a compute shader (16 are promised)");
-  EXPECT_THAT(with([](R& r) { r.vertex.storage_blocks = 1; }), HasSubstr("vertex shader (0"));
+            "17 storage blocks in a compute shader (at most 16)");
+  EXPECT_THAT(with([](R& r) { r.vertex.storage_blocks = 1; }),
+              HasSubstr("vertex shader (at most 0)"));
   EXPECT_THAT(with([](R& r) { r.fragment.storage_blocks = 17; }), HasSubstr("fragment shader"));
   EXPECT_THAT(with([](R& r) { r.compute.textures = 17; }), HasSubstr("17 textures"));
   EXPECT_THAT(with([](R& r) { r.fragment.images = 9; }), HasSubstr("9 images"));
@@ -38,11 +39,11 @@ TEST(ProgramResources, EachNumberBeyondThePromiseIsNamed) {
   EXPECT_THAT(with([](R& r) { r.highest_image_unit = 8; }), HasSubstr("9 image units"));
   EXPECT_THAT(with([](R& r) { r.uniform_components = 1025; }), HasSubstr("1025 numbers"));
   EXPECT_THAT(with([](R& r) { r.uniform_block_bytes = 16400; }), HasSubstr("16400 bytes"));
-  EXPECT_THAT(with([](R& r) { r.group = {1, 1, 65}; }), HasSubstr("along z (64"));
+  EXPECT_THAT(with([](R& r) { r.group = {1, 1, 65}; }), HasSubstr("along z (at most 64)"));
   EXPECT_EQ(with([](R& r) {
               r.group = {64, 32, 1};
             }),
-            "2048 invocations of a group (1024 are promised)");
+            "2048 invocations of a group (at most 1024)");
 }
 
 }  // namespace
