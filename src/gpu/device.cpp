@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/option_word.h"
 #include "core/process_limits.h"
+#include "gpu/debug_messages.h"
 #include "gpu/egl_devices.h"
 #include "gpu/gl.h"
 
@@ -66,6 +67,8 @@ EglHandles make_context(EGLDeviceEXT device, DeviceInfo& info) {
                          4,
                          EGL_CONTEXT_MINOR_VERSION,
                          5,
+                         EGL_CONTEXT_OPENGL_DEBUG,
+                         debug_is_asked_for() ? EGL_TRUE : EGL_FALSE,
                          EGL_CONTEXT_OPENGL_PROFILE_MASK,
                          EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
                          EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
@@ -82,6 +85,7 @@ EglHandles make_context(EGLDeviceEXT device, DeviceInfo& info) {
     eglDestroyContext(handles.display, handles.context);
     throw Error("its context cannot be made current without a surface");
   }
+  if (debug_is_asked_for()) print_debug_messages();
   info.renderer = text_of(GL_RENDERER);
   info.vendor = text_of(GL_VENDOR);
   info.version = text_of(GL_VERSION);

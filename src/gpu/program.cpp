@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "gpu/context.h"
 #include "gpu/gl.h"
+#include "gpu/program_resources.h"
 #include "gpu/shader_source.h"
 
 namespace photohull::gpu {
@@ -50,7 +51,13 @@ unsigned link(std::initializer_list<unsigned> shaders, std::string_view name) {
   for (const unsigned shader : shaders) glDeleteShader(shader);
   GLint ok = 0;
   glGetProgramiv(program, GL_LINK_STATUS, &ok);
-  if (ok) return program;
+  if (ok) {
+    // This device may have more: others need not.
+    const std::string beyond = beyond_promise(resources_of(program));
+    if (beyond.empty()) return program;
+    glDeleteProgram(program);
+    throw Error(concat("shaders/", name, " takes more than OpenGL 4.5 promises: ", beyond));
+  }
   GLint length = 0;
   glGetProgramiv(program, GL_INFO_LOG_LENGTH, &length);
   std::string log(std::size_t(length), '\0');

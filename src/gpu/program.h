@@ -30,6 +30,7 @@ class Program {
   }
   ~Program();
 
+  unsigned id() const { return id_; }
   void use() const;
   /// Sets a uniform of the program; CHECKs that it exists.
   void set(const char* name, int value) const;

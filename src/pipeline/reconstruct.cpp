@@ -13,6 +13,7 @@
 #include "mesh/join_meshes.h"
 #include "photo/opencv_threads.h"
 #include "pipeline/agree_cameras.h"
+#include "pipeline/camera_cache.h"
 #include "pipeline/find_silhouettes.h"
 #include "pipeline/finish_mesh.h"
 #include "pipeline/given_words.h"
@@ -73,7 +74,10 @@ Prepared prepare(Run& run) {
   AgreeingCameras agreeing{std::move(scene.views), {}, {}};
   if (const double weight = Weights::cameras(options); weight > 0)
     agreeing = run.clock.run("cameras", weight, [&] {
-      return agree_cameras(options, scene.scene, std::move(agreeing.views), progress);
+      return options.checkpoint.empty()
+                 ? agree_cameras(options, scene.scene, std::move(agreeing.views), progress)
+                 : agree_cameras_once(options.checkpoint, options, scene.scene,
+                                      std::move(agreeing.views), progress);
     });
   report.cameras = agreeing.findings;
   const SourcedBox box =

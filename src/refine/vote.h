@@ -13,7 +13,10 @@ namespace photohull::refine {
 
 struct VoteOptions {
   double ray_spacing = 1, again_spacing = 1.5, last_spacing = 2.5, again_score = 0.7;
-  double tap_spacing = 0.7, nearest_partner = 4, best_pairs = 0.5, least_score = 0.5;
+  double tap_spacing = 0.7, best_pairs = 0.5, least_score = 0.5;
+  /// Degrees, the least between a view and those that its rays are matched with: half and twice of
+  /// it change nothing where views are evenly spread.
+  double nearest_partner = 4;
   double distinct_by = 0.25, band = 1.5;
   double least_weight = 1.5, again_weight = 2, freeing_weight = 3;
   int rounds = 2, last_rounds = 1, tiles = 1, bare_reach = 0;
@@ -32,8 +35,6 @@ inline void describe(Described& to, VoteOptions& o) {
             "score of a ray below which the surface does not explain it and it votes again");
   to.number("tap_spacing", &o.tap_spacing, above(0, 1000), "voxels",
             "distance between the taps of the patches across the rays");
-  to.number("nearest_partner", &o.nearest_partner, from_to(0, 180), "degrees",
-            "least angle between a view and those that its rays are matched with");
   to.number("best_pairs", &o.best_pairs, above(0, 1), "",
             "share of the pairs of views that a score is the mean of");
   to.number("least_score", &o.least_score, from_to(-1, 1), "",

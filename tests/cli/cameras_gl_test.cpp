@@ -11,6 +11,7 @@ namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
+using testing::Not;
 
 class CamerasCommand : public SphereScene {
  protected:
@@ -102,6 +103,43 @@ TEST_F(CamerasCommand, ReconstructRefinesThemWhereOutlinesDisagree) {
     EXPECT_EQ(run_photohull(reconstruct(all)).code, code) << option[0];
     EXPECT_FALSE(report().contains("camera_refinement")) << option[0];
   }
+}
+
+TEST_F(CamerasCommand, RefinedCamerasAreKeptForTheNextRun) {
+  put_cameras_off();
+  const auto cameras = [&] { return report()["cameras"]; };
+  const std::string taken = "the run before made agree";
+  EXPECT_THAT(succeed(reconstruct({})).err, Not(HasSubstr(taken)));
+  const json first = report()["camera_refinement"], refined = cameras();
+  // Whatever becomes of them afterwards.
+  const Finished hull = succeed(reconstruct({"--method", "hull", "--resolution", "40"}));
+  EXPECT_THAT(hull.err, HasSubstr(taken));
+  EXPECT_THAT(hull.err, HasSubstr("the cameras were refined"));
+  EXPECT_EQ(report()["camera_refinement"], first);
+  EXPECT_EQ(cameras(), refined);
+  // Not where they are asked for anew, for something else, or with other masks or cameras.
+  EXPECT_THAT(succeed(reconstruct({"--fresh"})).err, Not(HasSubstr(taken)));
+  EXPECT_THAT(succeed(reconstruct({"--refine-cameras", "poses"})).err, Not(HasSubstr(taken)));
+  succeed(reconstruct({}));
+  scene_.views[2].camera.cam_from_world.translation.x += 1e-9;
+  write_scene_file();
+  EXPECT_THAT(succeed(reconstruct({})).err, Not(HasSubstr(taken)));
+}
+
+TEST_F(CamerasCommand, WhatIsLeftOfKeptCamerasIsNotTaken) {
+  put_cameras_off();
+  succeed(reconstruct({}));
+  const std::string mesh = read_bytes(out() + "/mesh.ply"), file = out() + "/.photohull-cameras";
+  const std::string whole = read_bytes(file);
+  ASSERT_GT(whole.size(), 1000u);
+  for (const std::string& left :
+       {whole.substr(0, whole.size() / 2), std::string("{}"), std::string()}) {
+    write_bytes(file, left);
+    EXPECT_THAT(succeed(reconstruct({})).err, HasSubstr(".photohull-cameras: damaged"))
+        << left.size();
+    EXPECT_EQ(read_bytes(out() + "/mesh.ply"), mesh);
+  }
+  EXPECT_EQ(read_bytes(file), whole);
 }
 
 TEST_F(CamerasCommand, ReconstructRefinesThem) {

@@ -48,6 +48,19 @@ TEST_F(DeviceLimits, WithoutMasksToo) {
               "groups=3,block=4000000");
 }
 
+TEST_F(DeviceLimits, DriversHaveNothingToComplainOf) {
+  RunOptions debug;
+  debug.environment = {"PHOTOHULL_GL_DEBUG=1"};
+  for (const std::string method : {"hull", "voxel-coloring", "space-carving", "refine"})
+    EXPECT_THAT(
+        succeed(reconstruct({"--method", method, "--resolution", "40", "--export", "glb"}), debug)
+            .err,
+        testing::Not(HasSubstr("OpenGL: ")))
+        << method;
+  EXPECT_THAT(succeed({"render", path("out"), "--picture", path("still.png")}, debug).err,
+              testing::Not(HasSubstr("OpenGL: ")));
+}
+
 TEST_F(DeviceLimits, WhatCannotBeSplitIsRefusedInASentence) {
   fail(1, reconstruct(), {"3 images at once", "16 were given", "--views"}, limited("layers=3"));
   fail(1, reconstruct(), {"no images of", "--image-scale"}, limited("size=40"));

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "gpu/buffer.h"
+#include "gpu/program_resources.h"
 #include "gpu/shader_source.h"
 #include "support/gl_context.h"
 
@@ -22,6 +23,21 @@ TEST(Program, EveryEmbeddedComputeShaderCompilesOnTheDevice) {
     ++count;
   }
   EXPECT_GT(count, 0);
+}
+
+TEST(Program, WhatItTakesOfTheDeviceIsKnown) {
+  const ProgramResources sweep =
+      resources_of(Program::compute(test::gl_context(), "carving_update_columns.comp.glsl")->id());
+  EXPECT_EQ(sweep.compute.storage_blocks, 10);
+  EXPECT_EQ(sweep.highest_storage_binding, 12);
+  EXPECT_GT(sweep.uniform_block_bytes, 0);
+  EXPECT_GT(sweep.group[0] * sweep.group[1] * sweep.group[2], 1);
+  const ProgramResources bake =
+      resources_of(Program::compute(test::gl_context(), "render_bake_vertices.comp.glsl")->id());
+  EXPECT_EQ(bake.compute.textures, 1);
+  const ProgramResources march =
+      resources_of(Program::compute(test::gl_context(), "visibility_march_bricks.comp.glsl")->id());
+  EXPECT_EQ(march.compute.images, 2);
 }
 
 TEST(Program, CompileErrorsNameTheShaderFile) {
