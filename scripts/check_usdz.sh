@@ -35,7 +35,7 @@ import fs from 'fs';
 
 // Textures are taken as they are, for there is no browser that shows them.
 const images = [];
-globalThis.document = {createElementNS: () => ({addEventListener() {}, removeEventListener() {}, set src(url) { images.push(url); }})};
+globalThis.document = {createElementNS: () => ({addEventListener() {}, removeEventListener() {}, set src(url) { images.push(String(url)); }})};
 globalThis.self = globalThis;
 const {USDLoader} = await import('three/examples/jsm/loaders/USDLoader.js');
 let failed = false;
@@ -48,7 +48,7 @@ for (const file of process.argv.slice(2)) {
     triangles += (geometry.index ?? geometry.attributes.position).count / 3;
     whole &&= Boolean(geometry.attributes.normal && geometry.attributes.uv && material.map);
   });
-  const sizes = await Promise.all(images.map(async (url) => url ? (await (await fetch(url)).arrayBuffer()).byteLength : 0));
+  const sizes = await Promise.all(images.map(async (url) => url.startsWith('blob:') ? (await (await fetch(url)).arrayBuffer()).byteLength : 0));
   console.log(`${file}: ${triangles} triangles, textures of ${sizes.join(', ')} bytes`);
   if (!triangles || !whole || !sizes.length || sizes.includes(0)) {
     console.log('  something is missing');
