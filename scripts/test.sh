@@ -150,6 +150,7 @@ if [ $with_all = yes ]; then
   check "citations" citations
   check "links in the docs" scripts/check_links.py
   check "glTF files" scripts/check_glb.sh
+  check "USDZ files" scripts/check_usdz.sh
   check "cmake --install" installation
   check "cpack -G DEB" debian_package
   check_aloud "build with sanitizers" scripts/setup.sh --preset asan --target unit_tests
