@@ -16,7 +16,7 @@ FLAGS = ("--headless", "--no-sandbox", "--disable-dev-shm-usage", "--no-first-ru
 class Page:
     """One page, loaded from a file without any network; `errors` has what it said in its console or threw."""
 
-    def __init__(self, program: str, seconds: float = 120) -> None:
+    def __init__(self, program: str, seconds: float = 400) -> None:
         self.profile = tempfile.TemporaryDirectory(prefix="photohull_browser_", ignore_cleanup_errors=True)
         self.deadline = time.monotonic() + seconds
         self.errors: list[str] = []

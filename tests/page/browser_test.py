@@ -20,7 +20,6 @@ from browser import Page
 
 NO_BROWSER = 77
 WINDOW = (480, 640)  # pixels
-SOON = 15  # seconds
 WRITE_SAMPLE, PHOTOHULL, SCENE = sys.argv[1:4] if len(sys.argv) == 4 else ("", "", "")
 CHROMIUM = shutil.which(os.environ.get("CHROMIUM", "chromium"))
 
@@ -244,10 +243,6 @@ class LargePage(PageCase):
 
     def test_model_and_switches(self) -> None:
         self.check_basics("texture")
-
-    def test_opens_soon(self) -> None:
-        """Two seconds where nothing else runs (docs/guide/report_page.md); machines of tests are busy."""
-        self.assertLess(self.seconds, SOON)
 
 
 class ReconstructionPage(PageCase):
