@@ -14,6 +14,7 @@
 #include "io/photo_lens.h"
 #include "io/write_scene.h"
 #include "option_flags.h"
+#include "pose_colmap.h"
 #include "pose_json.h"
 #include "pose_masks.h"
 #include "scene_arguments.h"
@@ -26,10 +27,27 @@ namespace fs = std::filesystem;
 
 struct Arguments {
   std::vector<std::string> images;
-  std::string board, out;
+  std::string board, out, with, masks;
   PoseOptions pose;
-  bool no_masks = false, json = false;
+  bool no_masks = false, json = false, ordered = false;
+  std::vector<CLI::Option*> of_the_board, of_colmap;  ///< that say nothing to the other way
 };
+
+constexpr const char* kColmap = "colmap";
+
+/// Throws UsageError where options are given that belong to the other way.
+void check(const Arguments& a) {
+  if (a.out.empty()) throw UsageError("--out is empty: give a folder for the scene");
+  const bool colmap = a.with == kColmap;
+  if (!colmap && a.board.empty())
+    throw UsageError(
+        "say how the cameras are found: --board FILE for an object on a printed sheet, or --with "
+        "colmap for photographs without one");
+  for (const CLI::Option* option : colmap ? a.of_the_board : a.of_colmap)
+    if (option->count() > 0)
+      throw UsageError(concat(option->get_name(), " does not go together with ",
+                              colmap ? "--with colmap" : "--board", ": leave one of them out"));
+}
 
 /// Names that tell the photographs apart: file names, or paths where two would be alike.
 std::vector<std::string> names_of(const std::vector<fs::path>& images) {
@@ -93,10 +111,28 @@ Scene scene_of(const Arguments& a, const std::vector<fs::path>& images,
   return scene;
 }
 
-void run(const Arguments& a) {
-  if (a.out.empty()) throw UsageError("--out is empty: give a folder for the scene");
+void name_unreadable(const std::vector<std::string>& given) {
+  for (const fs::path& file : io::list_unreadable(given))
+    std::fprintf(stderr,
+                 "warning: %s is left out, for files of its kind cannot be read: convert it to "
+                 "JPEG, or set the camera to write JPEG\n",
+                 file.c_str());
+}
+
+void run_colmap(const Arguments& a, const std::vector<fs::path>& images) {
+  const ColmapPoseJob job{images, names_of(images), a.masks, fs::absolute(a.out).lexically_normal(),
+                          a.ordered};
+  TerminalProgress progress(1);
+  const ColmapPose pose = pose_with_colmap(job, progress);
+  progress.finish();
+  if (a.json)
+    std::fputs(pose.report.c_str(), stdout);
+  else
+    print_colmap_pose(job, pose);
+}
+
+void run_board(const Arguments& a, const std::vector<fs::path>& images) {
   const Sheet sheet = read_sheet(a.board);
-  const std::vector<fs::path> images = io::list_images(a.images);
   const std::vector<std::string> names = names_of(images);
   TerminalProgress progress(1);
   const ReadPhotos read = find_all_tags(images, names, sheet, progress);
@@ -124,27 +160,47 @@ void run(const Arguments& a) {
   if (!a.json) std::printf("  %s\n", a.out.c_str());
 }
 
+void run(const Arguments& a) {
+  check(a);
+  name_unreadable(a.images);
+  const std::vector<fs::path> images = io::list_images(a.images);
+  if (a.with == kColmap)
+    run_colmap(a, images);
+  else
+    run_board(a, images);
+}
+
 }  // namespace
 
 void add_pose(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
   CLI::App* c = add_command(app, "pose");
-  c->add_option("images", a->images, "photographs of the object on the sheet, or folders of them")
-      ->required();
-  c->add_option("--board", a->board, "JSON file that photohull board wrote beside the sheet")
-      ->required();
+  c->add_option("images", a->images, "photographs of the object, or folders of them")->required();
+  a->of_the_board = {c->add_option(
+      "--board", a->board, "JSON file that photohull board wrote beside the sheet it printed")};
+  c->add_option("--with", a->with, "colmap: without a sheet, by the program COLMAP")
+      ->check(CLI::IsMember({kColmap}));
   c->add_option("--out", a->out, "folder for the scene: transforms.json, pose.json and masks/")
       ->required();
-  add_flags_of(*c, a->pose);
-  c->add_flag("--no-masks", a->no_masks, "make no masks of what differs from the sheet's picture");
+  for (CLI::Option* option : add_flags_of(*c, a->pose)) a->of_the_board.push_back(option);
+  a->of_the_board.push_back(c->add_flag("--no-masks", a->no_masks,
+                                        "make no masks of what differs from the sheet's picture"));
+  a->of_colmap = {
+      c->add_option("--masks", a->masks,
+                    "with COLMAP: folder of masks, NAME.png or NAME.EXT.png; features are looked "
+                    "for inside them, and the scene has them"),
+      c->add_flag("--ordered", a->ordered,
+                  "with COLMAP: each photograph was taken near the one before; only neighbours are "
+                  "matched, which is faster")};
   c->add_flag("--json", a->json, "print pose.json instead of a summary");
   c->footer(
-      "The world is the sheet's: z = 0 is the paper, z points up, lengths are millimetres unless "
-      "--unit says otherwise. Photographs are in any order; those that get no pose are named with "
-      "the reason.\n\n"
+      "With --board the world is the sheet's: z = 0 is the paper, z points up, lengths are "
+      "millimetres unless --unit says otherwise. With COLMAP its scale and directions are any. "
+      "Photographs are in any order; those that get no pose are named with the reason.\n\n"
       "Examples:\n"
       "  photohull board --out board.pdf\n"
       "  photohull pose photos/ --board board.json --out scene --bar 148.5\n"
+      "  photohull pose photos/ --with colmap --out scene\n"
       "  photohull reconstruct scene --out model");
   c->callback([a] { run(*a); });
 }

@@ -135,7 +135,7 @@ else
   scripts/setup.sh
 fi
 install_missing ffmpeg # films of tests and of the docs' commands
-[ $with_all = no ] || install_missing clang clang-format clang-tidy shellcheck dpkg-dev file python3 chromium opencv-doc
+[ $with_all = no ] || install_missing clang clang-format clang-tidy shellcheck dpkg-dev file python3 chromium opencv-doc colmap # 14 MB
 [ $with_all = no ] || command -v npm >/dev/null || install_missing npm
 started=$SECONDS
 
@@ -150,6 +150,7 @@ if [ $with_all = yes ]; then
   check "citations" citations
   check "links in the docs" scripts/check_links.py
   check "glTF files" scripts/check_glb.sh
+  check "USDZ files" scripts/check_usdz.sh
   check "cmake --install" installation
   check "cpack -G DEB" debian_package
   check_aloud "build with sanitizers" scripts/setup.sh --preset asan --target unit_tests

@@ -16,7 +16,7 @@ constexpr CommandEntry kCommands[] = {
     {"masks", "find the object in photographs, as reconstruct does", kMainProgram},
     {"convert", "write a scene's cameras for another program", kMainProgram},
     {"board", "make a sheet to print, on which the object stands", kMainProgram},
-    {"pose", "find the cameras of photographs of an object on that sheet", kMainProgram},
+    {"pose", "find the cameras of photographs, on that sheet or by COLMAP", kMainProgram},
     {"calibrate", "find cameras' lenses and poses from photographs of a board", kMainProgram},
     {"refine-cameras", "make cameras that are slightly wrong fit the photographs", kMainProgram},
     {"synthesize", "make calibrated photographs of a surface that is known exactly", kMainProgram},

@@ -1,6 +1,7 @@
 #include "io/board_images.h"
 
 #include <algorithm>
+#include <cctype>
 #include <map>
 #include <optional>
 #include <set>
@@ -72,7 +73,28 @@ void list_below(const fs::path& folder, int depth, std::vector<fs::path>& found)
   for (const fs::path& inner : folders) list_below(inner, depth - 1, found);
 }
 
+bool is_hidden(const fs::path& file) { return file.filename().string().starts_with('.'); }
+
+constexpr const char* kUnreadable[] = {".heic", ".heif", ".dng", ".cr2", ".cr3",
+                                       ".nef",  ".arw",  ".raf", ".orf", ".rw2"};
+
 }  // namespace
+
+std::vector<fs::path> list_unreadable(const std::vector<std::string>& given) {
+  std::vector<fs::path> found;
+  std::error_code failure;
+  for (const std::string& path : given)
+    for (fs::directory_iterator i(path, failure), end; !failure && i != end; i.increment(failure)) {
+      std::string extension = i->path().extension().string();
+      std::ranges::transform(extension, extension.begin(),
+                             [](unsigned char c) { return char(std::tolower(c)); });
+      if (!is_hidden(i->path()) &&
+          std::ranges::find(kUnreadable, extension) != std::end(kUnreadable))
+        found.push_back(i->path());
+    }
+  std::sort(found.begin(), found.end());
+  return found;
+}
 
 std::vector<fs::path> list_images(const std::vector<std::string>& given) {
   std::vector<fs::path> images;
@@ -83,7 +105,8 @@ std::vector<fs::path> list_images(const std::vector<std::string>& given) {
       images.emplace_back(path);
       continue;
     }
-    for (const fs::path& image : images_in(path)) images.push_back(image);
+    for (const fs::path& image : images_in(path))
+      if (!is_hidden(image)) images.push_back(image);
   }
   if (images.empty())
     throw Error("no picture was found; give images or the folder that holds them");

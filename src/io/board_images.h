@@ -7,9 +7,13 @@
 
 namespace photohull::io {
 
-/// The files given, and the pictures of the folders given in natural order (2 before 10). Throws
-/// Error naming a folder that cannot be listed, and when there is no picture at all.
+/// The files given, and the pictures of the folders given in natural order (2 before 10) but for
+/// hidden ones (._1.jpg). Throws Error naming a folder that cannot be listed, and when there is no
+/// picture at all.
 std::vector<std::filesystem::path> list_images(const std::vector<std::string>& given);
+
+/// The photographs in the folders given that no reader here knows: HEIC, and cameras' raw files.
+std::vector<std::filesystem::path> list_unreadable(const std::vector<std::string>& given);
 
 /// Pictures of several cameras at the same moments.
 struct RigImages {

@@ -30,25 +30,6 @@ fs::path find_suffixed(const fs::path& image) {
   return {};
 }
 
-/// The mask in a folder for an image listed as `listed` ("cam1/0001.jpg"); empty when there is
-/// none.
-fs::path find_mask(const fs::path& folder, const fs::path& image, const std::string& listed) {
-  for (const fs::path& name : {fs::path(listed).relative_path(), image.filename()}) {
-    fs::path whole = folder / name;
-    whole += ".png";
-    if (is_file(whole)) return whole;
-    for (const char* extension : kMaskEndings) {
-      const fs::path candidate = fs::path(folder / name).replace_extension(extension);
-      // A list of "images/0001.png" must not make the image its own mask.
-      std::error_code ignored;
-      if (is_file(candidate) && !fs::equivalent(candidate, image, ignored)) return candidate;
-    }
-    const fs::path suffixed = find_suffixed(folder / name);
-    if (!suffixed.empty()) return suffixed;
-  }
-  return {};
-}
-
 /// masks/ in the scene's folder, beside the image, or beside the images/ folder that holds it,
 /// if need be through subfolders such as images/left/.
 fs::path masks_folder(const fs::path& scene_folder, const fs::path& image) {
@@ -162,6 +143,23 @@ void attach_automatically(const LoadSceneOptions& options, const fs::path& scene
 }
 
 }  // namespace
+
+fs::path find_mask(const fs::path& folder, const fs::path& image, const std::string& listed) {
+  for (const fs::path& name : {fs::path(listed).relative_path(), image.filename()}) {
+    fs::path whole = folder / name;
+    whole += ".png";
+    if (is_file(whole)) return whole;
+    for (const char* extension : kMaskEndings) {
+      const fs::path candidate = fs::path(folder / name).replace_extension(extension);
+      // A list of "images/0001.png" must not make the image its own mask.
+      std::error_code ignored;
+      if (is_file(candidate) && !fs::equivalent(candidate, image, ignored)) return candidate;
+    }
+    const fs::path suffixed = find_suffixed(folder / name);
+    if (!suffixed.empty()) return suffixed;
+  }
+  return {};
+}
 
 void attach_masks(const LoadSceneOptions& options, const fs::path& scene_folder,
                   const std::vector<RawView>& raw, Scene& scene) {

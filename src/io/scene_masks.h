@@ -1,6 +1,7 @@
 // Pairs masks with images. Internal to io.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,11 @@
 #include "io/raw_scene.h"
 
 namespace photohull::io {
+
+/// The mask in a folder for an image listed as `listed` ("cam1/0001.jpg"); empty when there is
+/// none.
+std::filesystem::path find_mask(const std::filesystem::path& folder,
+                                const std::filesystem::path& image, const std::string& listed);
 
 /// Sets the mask of every view as the options ask; `raw[i]` is what the scene file said of
 /// `scene.views[i]`. Checks that each mask has its image's size. Views that a folder holds no mask

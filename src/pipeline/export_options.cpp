@@ -14,6 +14,8 @@
 namespace photohull::pipeline {
 namespace {
 
+constexpr double kMostTextureDetail = 4;
+
 Words texture_words(TextureChoice& texture) {
   return {[&texture] {
             if (texture.off) return std::string("off");
@@ -21,6 +23,7 @@ Words texture_words(TextureChoice& texture) {
           },
           [&texture](const std::string& text) {
             TextureChoice read;
+            read.detail = texture.detail;
             read.off = text == "off";
             if (!read.off && text != "auto") {
               char* end = nullptr;
@@ -54,6 +57,9 @@ void describe_exports(Described& to, ReconstructOptions& o) {
           "with edges of this many texels at most, or off: colours at vertices")
       .expects =
       concat("auto, off, or a power of two from ", kLeastTextureEdge, " to ", kMostTextureEdge);
+  to.number("texture_detail", &o.texture.detail, from_to(0, kMostTextureDetail), "",
+            "contrast of what is as fine as two texels, beside which 1 is the best photograph's: "
+            "more sharpens the texture, and its noise");
   describe(to, o.mesh_files);
 }
 
@@ -66,6 +72,8 @@ void check_exports(const ReconstructOptions& o) {
   };
   if (o.texture.edge && !makes_texture(o))
     fail(option_word("texture", o.texture.edge), "holds a texture", " or obj");
+  if (o.texture.detail != TextureChoice().detail && !makes_texture(o))
+    fail(option_word("texture_detail", o.texture.detail), "holds a texture", " or obj");
   if (files.texture_format != MeshFileOptions().texture_format && !makes_texture(o))
     fail(option_word("texture_format", to_string(files.texture_format)), "holds a texture",
          " or obj");

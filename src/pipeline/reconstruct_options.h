@@ -56,7 +56,8 @@ struct MeshError {
 /// The texture of files that hold one.
 struct TextureChoice {
   bool off = false;
-  int edge = 0;  ///< texels, a power of two; 0: as fine as the photographs are
+  int edge = 0;       ///< texels, a power of two; 0: as fine as the photographs are
+  double detail = 1;  ///< fine differences of colour are multiplied by it
 };
 
 /// What each is, with its unit and legal values, describe() tells.

@@ -55,7 +55,8 @@ TexturedMesh make_textured(const SurfaceJob& job, const TriMesh& uniform, const 
   job.progress.check_cancelled();
   const TextureOptions options{.edge = job.options.texture.edge,
                                .noise = job.subject.noise_sigma,
-                               .bytes = texture_bytes(memory_limit(job.options))};
+                               .bytes = texture_bytes(memory_limit(job.options)),
+                               .detail = job.options.texture.detail};
   TextureResult made = texture_mesh(out.mesh, uniform, job.subject.views, options, job.progress);
   findings = found(out.mesh, made.report);
   out.texture = std::move(made.texture);

@@ -48,6 +48,13 @@ struct WindowSums {
 };
 static_assert(sizeof(WindowSums) == 9 * sizeof(float));
 
+/// Sums of what is near, by how much of it is clear.
+struct CoarseSums {
+  glm::vec3 mean, fine;
+  float share;
+};
+static_assert(sizeof(CoarseSums) == 7 * sizeof(float));
+
 }  // namespace
 
 Canvas::Canvas(const TriMesh& mesh, const Planes& planes, const Chart& chart,
@@ -168,12 +175,8 @@ void Canvas::add(const CanvasView& view, double noise) {
     }
 }
 
-void Canvas::finish(const FillColour& fill,
-                    const std::function<void(const glm::ivec2&, const CanvasColour&)>& f) const {
-  cv::Mat apart(size_of(chart_), CV_32FC4), smooth;
-  apart.setTo(cv::Scalar(0, 0, 0, 0));
-  std::vector<glm::vec3> base(own_.size(), glm::vec3(0));
-  std::vector<std::uint8_t> filled(own_.size(), 0);
+std::vector<glm::vec3> Canvas::mean_of_all(const FillColour& fill) const {
+  std::vector<glm::vec3> mean(own_.size(), glm::vec3(0));
   std::uint32_t hint = 0;
   for (int y = 0; y < chart_.size.y; ++y)
     for (int x = 0; x < chart_.size.x; ++x) {
@@ -181,26 +184,42 @@ void Canvas::finish(const FillColour& fill,
       if (on == kNoFace) continue;
       const std::size_t i = index(x, y);
       const float known = std::min(1.0f, all_[i].w / kFullWeight);
-      if (known > 0) base[i] += known * glm::vec3(all_[i]) / all_[i].w;
+      if (known > 0) mean[i] += known * glm::vec3(all_[i]) / all_[i].w;
       if (known < 1)
-        base[i] += (1 - known) * fill.root(mesh_.origin + glm::dvec3(position(i, on)), hint);
-      filled[i] = all_[i].w == 0 && own_[i].w == 0;
-      if (own_[i].w == 0) continue;
-      const glm::vec3 detail = glm::vec3(fine_[i]) / fine_[i].w;
-      const glm::vec3 d = base[i] - detail;
-      apart.at<cv::Vec4f>(y, x) = cv::Vec4f(d.x, d.y, d.z, 1) * own_[i].w;
+        mean[i] += (1 - known) * fill.root(mesh_.origin + glm::dvec3(position(i, on)), hint);
     }
-  cv::GaussianBlur(apart, smooth, {0, 0}, kCoarse, kCoarse, cv::BORDER_CONSTANT);
+  return mean;
+}
+
+std::vector<Canvas::Bands> Canvas::split(const std::vector<glm::vec3>& mean) const {
+  cv::Mat values(size_of(chart_), CV_32FC(7)), smooth;
+  for (std::size_t i = 0; i < own_.size(); ++i) {
+    const float share = own_[i].w;
+    values.ptr<CoarseSums>()[i] =
+        share > 0 ? CoarseSums{share * mean[i], share * glm::vec3(fine_[i]) / fine_[i].w, share}
+                  : CoarseSums{};
+  }
+  cv::GaussianBlur(values, smooth, {0, 0}, kCoarse, kCoarse, cv::BORDER_CONSTANT);
+  std::vector<Bands> bands(own_.size());
+  for (std::size_t i = 0; i < own_.size(); ++i) {
+    if (own_[i].w == 0) continue;
+    const auto& s = smooth.ptr<CoarseSums>()[i];
+    bands[i] = {s.mean / s.share, glm::vec3(fine_[i]) / fine_[i].w - s.fine / s.share};
+  }
+  return bands;
+}
+
+void Canvas::finish(const FillColour& fill, double detail,
+                    const std::function<void(const glm::ivec2&, const CanvasColour&)>& f) const {
+  const std::vector<glm::vec3> mean = mean_of_all(fill);
+  const std::vector<Bands> bands = split(mean);
   for (int y = 0; y < chart_.size.y; ++y)
     for (int x = 0; x < chart_.size.x; ++x) {
       if (face(x, y) == kNoFace) continue;
       const std::size_t i = index(x, y);
-      CanvasColour colour{base[i], filled[i] != 0};
-      if (own_[i].w > 0) {
-        const cv::Vec4f& s = smooth.at<cv::Vec4f>(y, x);
-        const glm::vec3 level = glm::vec3(s[0], s[1], s[2]) / s[3];
-        colour.root = glm::mix(base[i], glm::vec3(fine_[i]) / fine_[i].w + level, own_[i].w);
-      }
+      CanvasColour colour{mean[i], all_[i].w == 0 && own_[i].w == 0};
+      if (own_[i].w > 0)
+        colour.root = glm::mix(mean[i], bands[i].coarse + float(detail) * bands[i].fine, own_[i].w);
       f({x, y}, colour);
     }
 }

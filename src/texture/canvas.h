@@ -44,12 +44,22 @@ class Canvas {
   /// all, and in the fine detail as far as it agrees with the own one to a part of a pixel.
   /// `noise`: standard deviation of photographs' pixels, roots of linear light.
   void add(const CanvasView& view, double noise);
-  /// The coarse part of the mean of all photographs and the fine part of those that agree; the
-  /// fill's colour where none is clear. Calls `f(texel, colour)` for each that shows the surface.
-  void finish(const FillColour& fill,
+  /// The coarse part of the mean of all photographs and the fine part of those that agree, times
+  /// `detail`; the fill's colour where none is clear. Calls `f(texel, colour)` for each that shows
+  /// the surface.
+  void finish(const FillColour& fill, double detail,
               const std::function<void(const glm::ivec2&, const CanvasColour&)>& f) const;
 
  private:
+  /// Two parts of a texel's colour that add up to it.
+  struct Bands {
+    glm::vec3 coarse{0}, fine{0};
+  };
+
+  /// Of all photographs; the fill's colour where none is clear.
+  std::vector<glm::vec3> mean_of_all(const FillColour& fill) const;
+  /// The coarse part of `mean`, and the fine part of the photographs that agree.
+  std::vector<Bands> split(const std::vector<glm::vec3>& mean) const;
   /// A photograph on the texels: colour, and how much of it is clear (w).
   std::vector<glm::vec4> resample(const CanvasView& view) const;
   std::size_t index(int x, int y) const { return std::size_t(y) * chart_.size.x + x; }

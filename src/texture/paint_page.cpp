@@ -115,14 +115,15 @@ class Painter {
 
   void finish(const Work& work) {
     std::int64_t texels = 0, filled = 0;
-    work.canvas.finish(paint_.fill, [&](const glm::ivec2& texel, const CanvasColour& colour) {
-      auto& root = roots_[plan_.index(work.canvas.chart().place + texel)];
-      for (int c = 0; c < 3; ++c)
-        root[std::size_t(c)] =
-            std::uint16_t(kCodes * std::clamp(colour.root[c], 0.0f, 1.0f) + 0.5f);
-      ++texels;
-      filled += colour.filled;
-    });
+    work.canvas.finish(
+        paint_.fill, paint_.detail, [&](const glm::ivec2& texel, const CanvasColour& colour) {
+          auto& root = roots_[plan_.index(work.canvas.chart().place + texel)];
+          for (int c = 0; c < 3; ++c)
+            root[std::size_t(c)] =
+                std::uint16_t(kCodes * std::clamp(colour.root[c], 0.0f, 1.0f) + 0.5f);
+          ++texels;
+          filled += colour.filled;
+        });
     texels_ += texels;
     filled_ += filled;
   }

@@ -28,7 +28,8 @@ struct Paint {
   const FaceViews& seen;
   std::span<const Chart> charts;
   const FillColour& fill;
-  double noise;  ///< standard deviation of the photographs' pixels, roots of linear light
+  double detail;  ///< by which the fine part is multiplied
+  double noise;   ///< standard deviation of the photographs' pixels, roots of linear light
   std::int64_t canvas_texels;  ///< of charts that are painted at a time; one chart in any case
 };
 

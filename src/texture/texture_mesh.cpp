@@ -211,9 +211,10 @@ TextureResult texture_mesh(const TriMesh& mesh, const TriMesh& coloured,
   for (std::uint32_t page = 0; page < atlas.pages; ++page) {
     progress.update(0.6 + 0.4 * page / atlas.pages);
     const PagePlan plan(mesh, atlas.planes, atlas.charts, seams, page, atlas.page);
-    PaintedPage painted = paint_page({mesh, *atlas.sources, atlas.planes, atlas.seen, atlas.charts,
-                                      fill, options.noise, shares_of(options).canvas_texels},
-                                     plan, progress);
+    PaintedPage painted =
+        paint_page({mesh, *atlas.sources, atlas.planes, atlas.seen, atlas.charts, fill,
+                    options.detail, options.noise, shares_of(options).canvas_texels},
+                   plan, progress);
     most_at_once = std::max(most_at_once, painted.most_at_once);
     out.report.texels += painted.texels;
     out.report.filled += painted.filled;

@@ -27,6 +27,7 @@ struct TextureOptions {
   /// photographs are kept, fewer charts are painted at a time, and pages are smaller (1024 texels
   /// along each side in any case).
   std::int64_t bytes = kMostTextureBytes;
+  double detail = 1;  ///< what is finer than about two texels is multiplied by it
 };
 
 struct TextureReport {

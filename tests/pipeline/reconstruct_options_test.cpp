@@ -67,6 +67,25 @@ TEST(ReconstructOptions, ATextureNeedsAFileThatHoldsIt) {
   options.validate();
 }
 
+TEST(ReconstructOptions, DetailNeedsATexture) {
+  ReconstructOptions options;
+  options.texture.detail = 1.5;
+  EXPECT_THROW(options.validate(), UsageError);
+  options.exports = {"obj"};
+  options.validate();
+  options.texture.off = true;
+  EXPECT_THROW(options.validate(), UsageError);
+}
+
+TEST_F(OptionText, DetailAndEdgeOfATextureStandBesideEachOther) {
+  read("texture_detail", "1.25");
+  read("texture", "2048");
+  EXPECT_EQ(options_.texture.detail, 1.25);
+  EXPECT_EQ(options_.texture.edge, 2048);
+  EXPECT_NE(refusal("texture_detail", "-0.1"), "");
+  EXPECT_NE(refusal("texture_detail", "4.1"), "");
+}
+
 TEST_F(OptionText, ScalesAreFractionsOrNumbers) {
   read("image_scale", "1/4");
   EXPECT_EQ(options_.image_scale, 0.25);

@@ -27,12 +27,13 @@ constexpr int kReach = 3;                // of windows of 7 x 7 pixels
 constexpr double kLeastVariance = 4e-4;  // of roots of linear light: what is plainer is not judged
 
 struct Sums {
-  double squared = 0, score = 0;
+  double squared = 0, score = 0, contrast = 0;
   std::int64_t values = 0, windows = 0;
 
   void print(const std::string& name) const {
-    std::printf("%-24s PSNR %.2f dB, ZNCC %.4f\n", name.c_str(),
-                -10 * std::log10(squared / double(values)), score / double(windows));
+    std::printf("%-24s PSNR %.2f dB, ZNCC %.4f, contrast %.3f\n", name.c_str(),
+                -10 * std::log10(squared / double(values)), score / double(windows),
+                contrast / double(windows));
   }
 };
 
@@ -49,9 +50,13 @@ struct Pair {
   }
 };
 
-/// Normalised cross-correlation around a pixel; nothing where the photograph is plain, or the mesh
-/// not all around.
-std::optional<double> zncc(const Pair& pair, int x, int y) {
+struct Likeness {
+  double zncc;      ///< normalised cross-correlation
+  double contrast;  ///< standard deviation of the mesh's, beside which 1 is the photograph's
+};
+
+/// Of the window around a pixel; nothing where the photograph is plain, or the mesh not all around.
+std::optional<Likeness> likeness(const Pair& pair, int x, int y) {
   double a = 0, b = 0, aa = 0, bb = 0, ab = 0, n = 0;
   for (int j = y - kReach; j <= y + kReach; ++j)
     for (int i = x - kReach; i <= x + kReach; ++i, ++n) {
@@ -65,7 +70,8 @@ std::optional<double> zncc(const Pair& pair, int x, int y) {
     }
   const double va = aa - a * a / n, vb = bb - b * b / n;
   if (va < n * kLeastVariance) return std::nullopt;
-  return (ab - a * b / n) / std::sqrt(va * std::max(vb, 1e-6 * n));
+  return Likeness{(ab - a * b / n) / std::sqrt(va * std::max(vb, 1e-6 * n)),
+                  std::sqrt(std::max(vb, 0.0) / va)};
 }
 
 glm::vec3 colour_of(const TexturedMesh& mesh, const Hit& hit) {
@@ -106,8 +112,9 @@ Sums compare(const Pair& pair) {
       for (std::size_t c = 3 * i; c < 3 * i + 3; ++c)
         sums.squared += std::pow((pair.photograph[c] - pair.mesh[c]) / 255.0, 2);
       sums.values += 3;
-      if (const auto score = zncc(pair, x, y)) {
-        sums.score += *score;
+      if (const auto like = likeness(pair, x, y)) {
+        sums.score += like->zncc;
+        sums.contrast += like->contrast;
         ++sums.windows;
       }
     }
@@ -144,6 +151,7 @@ std::vector<std::uint8_t> compare_mesh(const Scene& scene, const std::string& in
     all.squared += sums.squared;
     all.values += sums.values;
     all.score += sums.score;
+    all.contrast += sums.contrast;
     all.windows += sums.windows;
     width = 2 * pair.width;
     add_picture(pair, width, picture);

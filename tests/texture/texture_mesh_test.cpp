@@ -144,6 +144,34 @@ TEST(TextureMesh, StepsAcrossSeamsAreThoseBesideThem) {
   RecordProperty("beside", std::to_string(beside));
 }
 
+/// Sum of squared differences between texels side by side, codes.
+double sharpness(const MeshTexture& texture) {
+  double sum = 0;
+  for (const RgbImage& page : texture.pages)
+    for (std::size_t i = 3; i < page.rgb.size(); ++i)
+      if (i % (3 * std::size_t(page.width)) >= 3)
+        sum += std::pow(double(page.rgb[i]) - page.rgb[i - 3], 2);
+  return sum;
+}
+
+Sphere fine_noise() {
+  return {{0, 0, 0}, 1, [](const glm::dvec3& p) { return 0.6 * test::noise_colour(p, 0.04); }};
+}
+
+TEST(TextureMesh, DetailIsMultiplied) {
+  const Sphere sphere = fine_noise();
+  const TriMesh mesh = mesh_of(sphere, 4);
+  const auto views = photographs({sphere}, cameras(8, 120));
+  const auto sharpness_at = [&](double detail) {
+    Progress progress;
+    return sharpness(texture_mesh(mesh, mesh, views, {.detail = detail}, progress).texture);
+  };
+  const double none = sharpness_at(0), plain = sharpness_at(1), more = sharpness_at(1.5);
+  EXPECT_LT(none, 0.5 * plain);
+  EXPECT_GT(more, 1.5 * plain);
+  EXPECT_LT(more, 2.25 * plain);
+}
+
 TEST(TextureMesh, TheSameBytesFromAnyNumberOfThreads) {
   const Sphere sphere = noisy();
   const TriMesh mesh = mesh_of(sphere, 3);

@@ -6,12 +6,12 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "io/mesh/gltf_file.h"
 
 namespace photohull {
 namespace {
 
 enum Target { kVertices = 34962, kIndices = 34963 };
-constexpr const char* kCompression = "EXT_meshopt_compression";
 
 }  // namespace
 
@@ -38,7 +38,7 @@ GlbBuffers::Json GlbBuffers::compressed(const std::vector<std::uint8_t>& code, s
                                         std::size_t stride, const char* mode) {
   const std::size_t begin = append(code.data(), code.size());
   Json view = {{"buffer", 1}, {"byteOffset", plain_size_}, {"byteLength", count * stride}};
-  view["extensions"][kCompression] = {
+  view["extensions"][kMeshoptCompression] = {
       {"buffer", 0},          {"byteOffset", begin}, {"byteLength", code.size()},
       {"byteStride", stride}, {"count", count},      {"mode", mode}};
   plain_size_ += (count * stride + 3) / 4 * 4;
@@ -88,9 +88,9 @@ void GlbBuffers::finish(Json& root) {
   root["buffers"] = {{{"byteLength", bytes_.size()}}};
   if (!compress_) return;
   root["buffers"].push_back({{"byteLength", plain_size_}});
-  root["buffers"][1]["extensions"][kCompression] = {{"fallback", true}};
+  root["buffers"][1]["extensions"][kMeshoptCompression] = {{"fallback", true}};
   for (const char* list : {"extensionsUsed", "extensionsRequired"})
-    root[list] = {kCompression, "KHR_mesh_quantization"};
+    root[list] = {kMeshoptCompression, "KHR_mesh_quantization"};
 }
 
 }  // namespace photohull

@@ -1,9 +1,15 @@
 // Format: glTF 2.0 Specification, Khronos Group 2021, chapters 3.6 (buffers, accessors) and 4
-// (GLB).
+// (GLB); KHR_mesh_quantization and EXT_meshopt_compression.
 #include "io/mesh/gltf_file.h"
 
+#include <meshoptimizer.h>
+
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
+#include <limits>
+#include <type_traits>
 
 #include "core/error.h"
 #include "core/json_levels.h"
@@ -17,6 +23,33 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 static_assert(std::endian::native == std::endian::little, "numbers are read as they lie");
+
+constexpr std::array kExtensions{std::string_view(kMeshoptCompression),
+                                 std::string_view("KHR_mesh_quantization")};
+/// Bytes of vertices that a byte of their code stands for at most, as codes of vertices have 2 bits
+/// for each 16. More than that is a claim that only takes memory.
+constexpr std::uint64_t kMostExpansion = 64;
+
+/// A number as it is stored; whole numbers that are normalised lie from -1 or 0 to 1.
+template <typename T>
+float number_at(const char* at, bool normalised) {
+  T value;
+  std::memcpy(&value, at, sizeof value);
+  if constexpr (std::is_integral_v<T>)
+    if (normalised) return std::max(-1.0f, float(value) / float(std::numeric_limits<T>::max()));
+  return float(value);
+}
+
+/// A type of numbers.
+struct NumberType {
+  std::uint64_t code, bytes;
+  float (*read)(const char* at, bool normalised);
+};
+constexpr std::array<NumberType, 5> kNumberTypes{{{5120, 1, number_at<std::int8_t>},
+                                                  {5121, 1, number_at<std::uint8_t>},
+                                                  {5122, 2, number_at<std::int16_t>},
+                                                  {5123, 2, number_at<std::uint16_t>},
+                                                  {5126, 4, number_at<float>}}};
 
 /// 0 to 63; -1 for what is no digit.
 int base64_digit(char c) {
@@ -46,14 +79,21 @@ GltfFile::GltfFile(fs::path path) : path_(std::move(path)) {
       !(*asset)["version"].is_string() ||
       !(*asset)["version"].get_ref<const std::string&>().starts_with("2."))
     fail("it is not glTF of version 2");
-  if (const auto needs = root_.find("extensionsRequired");
-      needs != root_.end() && needs->is_array() && !needs->empty())
-    fail(concat("it needs the extension ",
-                (*needs)[0].dump(-1, ' ', true, Json::error_handler_t::replace),
-                ", which is not supported"));
+  check_extensions();
   const auto buffers = root_.find("buffers");
   buffers_.resize(buffers != root_.end() && buffers->is_array() ? buffers->size() : 0);
   loaded_.resize(buffers_.size());
+}
+
+void GltfFile::check_extensions() const {
+  const auto needs = root_.find("extensionsRequired");
+  if (needs == root_.end() || !needs->is_array()) return;
+  for (const Json& name : *needs)
+    if (!name.is_string() ||
+        std::ranges::find(kExtensions, name.get_ref<const std::string&>()) == kExtensions.end())
+      fail(concat("it needs the extension ",
+                  name.dump(-1, ' ', true, Json::error_handler_t::replace),
+                  ", which is not supported"));
 }
 
 /// Keeps the binary chunk and returns the JSON.
@@ -167,32 +207,78 @@ const std::string& GltfFile::buffer(std::uint64_t index) {
 
 GltfFile::Span GltfFile::span(const Json& accessor, std::uint64_t element_bytes) {
   if (accessor.contains("sparse")) fail("sparse accessors are not supported");
-  const Json& view = element("bufferViews", index(accessor, "bufferView"));
-  const std::string& bytes = buffer(index(view, "buffer"));
-  const std::uint64_t begin = index(view, "byteOffset", 0), length = index(view, "byteLength");
-  if (begin + length > bytes.size()) fail("a buffer ends early");
+  const std::uint64_t view = index(accessor, "bufferView");
+  const std::string_view bytes = view_bytes(view);
   const std::uint64_t first = index(accessor, "byteOffset", 0);
   Span out;
   out.count = index(accessor, "count");
-  out.stride = index(view, "byteStride", element_bytes);
+  out.stride = index(element("bufferViews", view), "byteStride", element_bytes);
   if (out.stride < element_bytes) fail("a byteStride is too small");
-  if (out.count > 0 && first + (out.count - 1) * out.stride + element_bytes > length)
+  if (out.count > 0 && first + (out.count - 1) * out.stride + element_bytes > bytes.size())
     fail("an accessor reaches beyond its buffer");
-  out.first = bytes.data() + begin + first;
+  out.first = bytes.data() + first;
   return out;
+}
+
+std::string_view GltfFile::view_bytes(std::uint64_t view) {
+  const Json& object = element("bufferViews", view);
+  if (const auto extensions = object.find("extensions");
+      extensions != object.end() && extensions->is_object())
+    if (const auto code = extensions->find(kMeshoptCompression); code != extensions->end()) {
+      if (!code->is_object()) fail(concat(kMeshoptCompression, " of a buffer view is no object"));
+      return decompressed(view, *code);
+    }
+  return part_of_buffer(object);
+}
+
+/// What an object's buffer, byteOffset and byteLength mean.
+std::string_view GltfFile::part_of_buffer(const Json& object) {
+  const std::string& all = buffer(index(object, "buffer"));
+  const std::uint64_t begin = index(object, "byteOffset", 0), length = index(object, "byteLength");
+  if (begin + length > all.size()) fail("a buffer ends early");
+  return std::string_view(all).substr(begin, length);
+}
+
+const std::string& GltfFile::decompressed(std::uint64_t view, const Json& code) {
+  if (const auto known = decompressed_.find(view); known != decompressed_.end())
+    return known->second;
+  const std::string_view from = part_of_buffer(code);
+  const std::uint64_t count = index(code, "count"), stride = index(code, "byteStride");
+  const Json mode = code.value("mode", Json()), filter = code.value("filter", Json("NONE"));
+  if (filter != "NONE") fail("filters of EXT_meshopt_compression are not supported");
+  const bool vertices = mode == "ATTRIBUTES", triangles = mode == "TRIANGLES";
+  const bool indices = triangles || mode == "INDICES";
+  if (vertices ? stride == 0 || stride > 256 || stride % 4 != 0
+               : !indices || (stride != 2 && stride != 4) || (triangles && count % 3 != 0))
+    fail("a compressed buffer view is none of EXT_meshopt_compression");
+  if (count * (vertices ? stride : 1) > kMostExpansion * (from.size() + 1))
+    fail("a compressed buffer view is shorter than its count needs");
+  std::string plain(count * stride, '\0');
+  const auto* bytes = reinterpret_cast<const unsigned char*>(from.data());
+  const int failed =
+      vertices    ? meshopt_decodeVertexBuffer(plain.data(), count, stride, bytes, from.size())
+      : triangles ? meshopt_decodeIndexBuffer(plain.data(), count, stride, bytes, from.size())
+                  : meshopt_decodeIndexSequence(plain.data(), count, stride, bytes, from.size());
+  if (failed) fail("a compressed buffer view is damaged");
+  return decompressed_[view] = std::move(plain);
 }
 
 template <typename Vector>
 std::vector<Vector> GltfFile::floats(std::uint64_t accessor, const char* type) {
-  constexpr std::uint64_t kFloat = 5126;
   const Json& object = element("accessors", accessor);
-  if (index(object, "componentType") != kFloat || object.value("type", Json()) != type)
-    fail(concat(type[3] == '3' ? "positions must be vectors of three floats"
-                               : "places on textures must be vectors of two floats"));
-  const Span from = span(object, sizeof(Vector));
+  const auto component =
+      std::ranges::find(kNumberTypes, index(object, "componentType"), &NumberType::code);
+  if (component == kNumberTypes.end() || object.value("type", Json()) != type)
+    fail(concat(type[3] == '3' ? "positions must be vectors of three numbers"
+                               : "places on textures must be vectors of two numbers"));
+  const bool normalised = object.value("normalized", Json(false)) == Json(true);
+  constexpr int kNumbers = Vector::length();
+  const Span from = span(object, component->bytes * kNumbers);
   std::vector<Vector> values(from.count);
   for (std::uint64_t i = 0; i < from.count; ++i)
-    std::memcpy(&values[i], from.first + i * from.stride, sizeof(Vector));
+    for (int c = 0; c < kNumbers; ++c)
+      values[i][c] =
+          component->read(from.first + i * from.stride + component->bytes * c, normalised);
   return values;
 }
 
@@ -205,11 +291,8 @@ std::vector<glm::vec2> GltfFile::places(std::uint64_t accessor) {
 }
 
 std::span<const std::uint8_t> GltfFile::bytes(std::uint64_t buffer_view) {
-  const Json& view = element("bufferViews", buffer_view);
-  const std::string& all = buffer(index(view, "buffer"));
-  const std::uint64_t begin = index(view, "byteOffset", 0), length = index(view, "byteLength");
-  if (begin + length > all.size()) fail("a buffer ends early");
-  return {reinterpret_cast<const std::uint8_t*>(all.data()) + begin, length};
+  const std::string_view all = view_bytes(buffer_view);
+  return {reinterpret_cast<const std::uint8_t*>(all.data()), all.size()};
 }
 
 std::vector<std::uint32_t> GltfFile::integers(std::uint64_t accessor) {

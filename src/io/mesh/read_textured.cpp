@@ -74,6 +74,23 @@ void add_page(GltfFile& file, std::uint64_t image, MeshTexture& texture) {
   texture.pages.push_back({page.width, page.height, std::move(page.rgb)});
 }
 
+/// In metres.
+struct Lengths {
+  double unit = 1;  // of the scene
+  double step = 1;  // 1 as positions are stored
+};
+
+Lengths lengths_of(const GltfFile& file) {
+  const Json& node = file.element("nodes", 0);
+  Lengths out;
+  if (const auto s = file.numbers(node, "scale", 3); !s.empty()) out.unit = out.step = s[0];
+  if (const auto extras = node.find("extras"); extras != node.end() && extras->is_object())
+    if (const auto unit = extras->find(kSceneUnit); unit != extras->end() && unit->is_number())
+      out.unit = unit->get<double>();
+  if (!(out.step > 0 && out.unit > 0)) file.fail("a node's scale is none");
+  return out;
+}
+
 }  // namespace
 
 TexturedMesh read_textured_glb(const std::filesystem::path& path, const glm::dvec3& up) {
@@ -95,13 +112,11 @@ TexturedMesh read_textured_glb(const std::filesystem::path& path, const glm::dve
   }
   if (out.mesh.triangles.empty()) file.fail("it has no triangles");
   const glm::dmat3 turn = glm::transpose(y_up_from_world(up));
-  const Json& node = file.element("nodes", 0);
-  double metres = 1;  // a scene unit
-  if (const auto s = file.numbers(node, "scale", 3); !s.empty()) metres = s[0];
-  if (!(metres > 0)) file.fail("a node's scale is none");
-  if (const auto t = file.numbers(node, "translation", 3); !t.empty())
-    out.mesh.origin = turn * glm::dvec3(t[0], t[1], t[2]) / metres;
-  for (glm::vec3& p : out.mesh.positions) p = glm::mat3(turn) * p;
+  const Lengths lengths = lengths_of(file);
+  if (const auto t = file.numbers(file.element("nodes", 0), "translation", 3); !t.empty())
+    out.mesh.origin = turn * glm::dvec3(t[0], t[1], t[2]) / lengths.unit;
+  const float step = float(lengths.step / lengths.unit);
+  for (glm::vec3& p : out.mesh.positions) p = glm::mat3(turn) * (step * p);
   for (glm::vec3& n : out.mesh.normals) n = glm::mat3(turn) * n;
   return out;
 }

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "io/mesh/glb_buffers.h"
+#include "io/mesh/gltf_file.h"
 #include "io/mesh/mesh_writers.h"
 #include "io/mesh/split_mesh.h"
 
@@ -113,6 +114,7 @@ class GlbWriter {
         unit * (turn_ * mesh_.origin + (compress_ ? glm::dvec3(low_) : glm::dvec3(0)));
     root_["nodes"] = {{{"mesh", 0}, {"translation", {at.x, at.y, at.z}}}};
     if (scale != 1) root_["nodes"][0]["scale"] = {scale, scale, scale};
+    if (compress_) root_["nodes"][0]["extras"] = {{kSceneUnit, unit}};
   }
 
   glm::vec3 turned(const glm::vec3& v) const { return glm::mat3(turn_) * v; }

@@ -2,7 +2,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
-#include "lab/chart/child_process.h"
+#include "core/child_process.h"
 #include "lab/chart/figures.h"
 #include "lab/chart/identity.h"
 #include "lab/chart/statistics.h"

@@ -17,6 +17,7 @@
 #include "io/image_file.h"
 #include "io/mesh/mesh_writers.h"
 #include "io/mesh/read_mesh.h"
+#include "io/mesh/read_textured.h"
 #include "io/mesh/split_mesh.h"
 #include "support/scratch_folder.h"
 #include "written_mesh.h"
@@ -161,8 +162,96 @@ TEST(CompressedGlb, SaysWhatReadersNeedAndIsSmaller) {
     EXPECT_THAT(glb.root[list].get<std::vector<std::string>>(),
                 testing::ElementsAre("EXT_meshopt_compression", "KHR_mesh_quantization"));
   EXPECT_TRUE(glb.root["buffers"][1]["extensions"]["EXT_meshopt_compression"]["fallback"]);
-  EXPECT_THAT([&] { read_mesh(folder / "mesh.glb"); },
-              testing::ThrowsMessage<Error>(testing::HasSubstr("EXT_meshopt_compression")));
+}
+
+glm::dvec3 corner(const TriMesh& mesh, std::size_t triangle, std::size_t i) {
+  return mesh.world(mesh.triangles[triangle][i]);
+}
+
+/// The triangle of `mesh` that lies where one of `other` does, by the sum of its corners.
+std::size_t nearest_triangle(const TriMesh& mesh, const TriMesh& other, std::size_t triangle) {
+  const auto sum = [](const TriMesh& m, std::size_t t) {
+    return corner(m, t, 0) + corner(m, t, 1) + corner(m, t, 2);
+  };
+  std::size_t nearest = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    if (glm::distance(sum(mesh, t), sum(other, triangle)) <
+        glm::distance(sum(mesh, nearest), sum(other, triangle)))
+      nearest = t;
+  return nearest;
+}
+
+TEST(CompressedGlb, ReadsBackInSceneUnits) {
+  const ScratchFolder folder;
+  const TexturedMesh t = sheet();
+  for (const auto unit : {std::optional<LengthUnit>(), std::optional(LengthUnit::kMillimetre)}) {
+    MeshContents contents = compressed(t);
+    contents.options.unit = unit;
+    const std::filesystem::path path = write(folder, "glb", contents);
+    const TexturedMesh back = read_textured_glb(path, {0, 0, 1});
+    EXPECT_EQ(back.texture.pages[0].rgb, t.texture.pages[0].rgb);
+    ASSERT_EQ(back.mesh.triangles.size(), t.mesh.triangles.size());
+    const double step = 5.0 / 65535;
+    std::vector<int> found(t.mesh.triangles.size());
+    for (std::size_t f = 0; f < back.mesh.triangles.size(); ++f) {
+      const std::size_t given = nearest_triangle(t.mesh, back.mesh, f);
+      ++found[given];
+      std::size_t first = 0;  // codecs turn triangles
+      for (std::size_t i = 1; i < 3; ++i)
+        if (glm::distance(corner(t.mesh, given, i), corner(back.mesh, f, 0)) <
+            glm::distance(corner(t.mesh, given, first), corner(back.mesh, f, 0)))
+          first = i;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t j = (first + i) % 3;
+        EXPECT_LT(glm::distance(corner(t.mesh, given, j), corner(back.mesh, f, i)), step);
+        EXPECT_LT(glm::distance(t.texture.corners[given][j], back.texture.corners[f][i]), 2e-5f);
+        EXPECT_LT(glm::distance(t.mesh.normals[t.mesh.triangles[given][j]],
+                                back.mesh.normals[back.mesh.triangles[f][i]]),
+                  0.01f);
+      }
+    }
+    EXPECT_THAT(found, testing::Each(1));
+    // And as any file's triangles, in the file's metres with +Y up.
+    const TriMesh plain = read_mesh(path);
+    ASSERT_EQ(plain.triangles.size(), t.mesh.triangles.size());
+    const double metres = unit ? 0.001 : 1;
+    const glm::dmat3 turn = y_up_from_world({0, 0, 1});
+    for (std::size_t f = 0; f < plain.triangles.size(); f += 17)
+      EXPECT_LT(glm::distance(corner(plain, f, 0), metres * (turn * corner(back.mesh, f, 0))),
+                step * metres);
+  }
+}
+
+TEST(CompressedGlb, DamagedOnesAreRefusedByName) {
+  const ScratchFolder folder;
+  const TexturedMesh t = sheet();
+  const std::string whole = bytes_of(write(folder, "glb", compressed(t)));
+  const std::filesystem::path damaged = folder / "damaged.glb";
+  const auto refusal = [&](const std::string& bytes) -> std::string {
+    std::ofstream(damaged, std::ios::binary) << bytes;
+    try {
+      read_textured_glb(damaged, {0, 0, 1});
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  for (std::size_t at = 0; at < whole.size(); at += 13) {
+    std::string bytes = whole;
+    bytes[at] = char(bytes[at] ^ 0x15);
+    const std::string said = refusal(bytes);  // some damage cannot be seen
+    EXPECT_TRUE(said.empty() || said.find(damaged.string()) != std::string::npos) << said;
+    EXPECT_NE(refusal(whole.substr(0, at)), "") << at;
+  }
+  const auto changed = [&](const std::string& from, const std::string& to) {
+    std::string bytes = whole;
+    bytes.replace(bytes.find(from), from.size(), to);
+    return refusal(bytes);
+  };
+  EXPECT_THAT(changed("\"mode\":\"ATTRIBUTES\"", "\"mode\":\"TRIBUTES\"  "),
+              testing::HasSubstr("is none of EXT_meshopt_compression"));
+  EXPECT_THAT(changed("\"count\":651,\"mode\"", "\"count\":6510000,\"mod\""),
+              testing::HasSubstr("damaged.glb"));
 }
 
 /// The longest side of the bounds of what assimp reads.

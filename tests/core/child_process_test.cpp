@@ -1,4 +1,4 @@
-#include "lab/chart/child_process.h"
+#include "core/child_process.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,9 +8,10 @@
 #include <csignal>
 #include <thread>
 
-#include "fake_program.h"
+#include "core/error.h"
+#include "support/scratch_folder.h"
 
-namespace photohull::chart {
+namespace photohull {
 namespace {
 
 using testing::HasSubstr;
@@ -87,11 +88,31 @@ TEST(RunChild, KeepsTheEndOfManyErrors) {
   EXPECT_TRUE(f.err.ends_with("noise\nlast\n"));
 }
 
+TEST(RunChild, TellsWhatIsPrintedWhileItIs) {
+  std::string heard;
+  std::size_t pieces = 0;
+  const Finished f = run_child("sh", {"-c", "echo one; sleep 0.3; echo two >&2"}, 60, kSilent,
+                               [&](std::string_view text) { heard += text, ++pieces; });
+  EXPECT_TRUE(f.ok());
+  EXPECT_EQ(heard, "one\ntwo\n");
+  EXPECT_EQ(pieces, 2u);
+}
+
+TEST(RunChild, KnowsWhatIsOnThePath) {
+  EXPECT_TRUE(is_on_path("sh"));
+  EXPECT_FALSE(is_on_path("no_program_is_called_so"));
+}
+
 TEST(RunChild, NamesAProgramThatCannotBeStarted) {
-  const std::string message = test::error_of([] { run_child("/nowhere/program", {}, 1, kSilent); });
+  std::string message;
+  try {
+    run_child("/nowhere/program", {}, 1, kSilent);
+  } catch (const Error& failure) {
+    message = failure.what();
+  }
   EXPECT_THAT(message, HasSubstr("/nowhere/program"));
   EXPECT_THAT(message, HasSubstr("cannot be started"));
 }
 
 }  // namespace
-}  // namespace photohull::chart
+}  // namespace photohull

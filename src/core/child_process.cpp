@@ -1,4 +1,4 @@
-#include "lab/chart/child_process.h"
+#include "core/child_process.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -13,12 +13,14 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
+#include <sstream>
 #include <utility>
 
 #include "core/error.h"
 
-namespace photohull::chart {
+namespace photohull {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -104,7 +106,7 @@ class Child {
 };
 
 /// Appends what there is to read, without waiting; closes the stream at its end.
-void drain(Descriptor& from, std::string& text) {
+void drain(Descriptor& from, std::string& text, const Listener& listener) {
   std::array<char, 65536> block;
   while (from.get() >= 0) {
     const ssize_t count = ::read(from.get(), block.data(), block.size());
@@ -112,19 +114,20 @@ void drain(Descriptor& from, std::string& text) {
     if (count < 0 && errno == EAGAIN) return;
     if (count <= 0) return from.close();
     text.append(block.data(), std::size_t(count));
+    if (listener) listener({block.data(), std::size_t(count)});
   }
 }
 
 /// Reads both streams until the child has ended or the time is up; true when it is up.
 bool converse(const Child& child, Pipe& out, Pipe& err, Clock::time_point end, Finished& finished,
-              const Progress& progress) {
+              const Progress& progress, const Listener& listener) {
   for (;;) {
     progress.check_cancelled();
     std::array<pollfd, 3> ready{
         {{child.watch(), POLLIN, 0}, {out.read.get(), POLLIN, 0}, {err.read.get(), POLLIN, 0}}};
     ::poll(ready.data(), ready.size(), kCheckEveryMs);
-    drain(out.read, finished.out);
-    drain(err.read, finished.err);
+    drain(out.read, finished.out, listener);
+    drain(err.read, finished.err, listener);
     if (finished.err.size() > 16 * kKeptErrors)
       finished.err.erase(0, finished.err.size() - kKeptErrors);
     if (finished.out.size() > kMaxOutput)
@@ -149,10 +152,10 @@ void check_started(const std::filesystem::path& program, Pipe& failure) {
 }  // namespace
 
 Finished run_child(const std::filesystem::path& program, const std::vector<std::string>& arguments,
-                   double time_limit_seconds, const Progress& progress) {
+                   double time_limit_seconds, const Progress& progress, const Listener& listener) {
   Pipe out, err, failure;
   std::vector<char*> words;
-  std::string name = "photohull";
+  std::string name = program.string();
   words.push_back(name.data());
   for (const std::string& a : arguments) words.push_back(const_cast<char*>(a.c_str()));
   words.push_back(nullptr);
@@ -174,13 +177,13 @@ Finished run_child(const std::filesystem::path& program, const std::vector<std::
   const auto limit = std::chrono::duration<double>(std::min(time_limit_seconds, 1e8));
   finished.timed_out =
       converse(child, out, err, start + std::chrono::duration_cast<Clock::duration>(limit),
-               finished, progress);
+               finished, progress, listener);
   if (finished.timed_out) child.kill();
   rusage usage{};
   const int status = child.wait(usage);
   finished.wall_seconds = std::chrono::duration<double>(Clock::now() - start).count();
-  drain(out.read, finished.out);
-  drain(err.read, finished.err);
+  drain(out.read, finished.out, listener);
+  drain(err.read, finished.err, listener);
   if (finished.err.size() > kKeptErrors) finished.err.erase(0, finished.err.size() - kKeptErrors);
   if (WIFEXITED(status)) finished.exit_code = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) finished.signal = WTERMSIG(status);
@@ -190,4 +193,17 @@ Finished run_child(const std::filesystem::path& program, const std::vector<std::
   return finished;
 }
 
-}  // namespace photohull::chart
+bool is_on_path(const std::string& program) {
+  const char* stated = std::getenv("PATH");
+  std::istringstream folders(stated ? stated : "/usr/bin:/bin");
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const std::filesystem::path file =
+        std::filesystem::path(folder.empty() ? "." : folder) / program;
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(file, ignored) && ::access(file.c_str(), X_OK) == 0)
+      return true;
+  }
+  return false;
+}
+
+}  // namespace photohull

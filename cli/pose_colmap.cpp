@@ -1,0 +1,103 @@
+#include "pose_colmap.h"
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "io/photo_lens.h"
+#include "io/write_scene.h"
+#include "json_parts.h"
+#include "scene_arguments.h"
+
+namespace photohull::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+/// The photographs that can be read, and where each is in the list of all.
+struct Readable {
+  std::vector<io::ColmapPhoto> photos;
+  std::vector<std::size_t> index;
+};
+
+Readable read_lenses(const ColmapPoseJob& job, const std::vector<fs::path>& masks,
+                     std::vector<io::ColmapPhotoFound>& all) {
+  Readable readable;
+  for (std::size_t i = 0; i < job.images.size(); ++i) {
+    try {
+      const std::string lens = io::read_photo_lens(job.images[i]).name;
+      readable.photos.push_back(
+          {job.images[i], masks.empty() ? fs::path() : masks[i], job.names[i], lens});
+      readable.index.push_back(i);
+    } catch (const MemoryError&) {
+      throw;
+    } catch (const Error& failure) {
+      all[i].reason = concat("it cannot be read: ", failure.what());
+    }
+  }
+  return readable;
+}
+
+std::string report_of(const ColmapPoseJob& job, const io::ColmapFound& found) {
+  ordered_json j;
+  j["photohull_pose"] = 1;
+  j["with"] = "colmap";
+  j["model"] = found.model.lexically_relative(job.out).generic_string();
+  j["models"] = found.models;
+  j["points"] = found.scene.points.size();
+  j["photographs"] = ordered_json::array();
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < job.names.size(); ++i) {
+    const io::ColmapPhotoFound& photo = found.photos[i];
+    ordered_json one = {{"name", job.names[i]}, {"posed", photo.posed}};
+    if (photo.features >= 0) one["features"] = photo.features;
+    if (photo.posed) {
+      const SourceView& view = found.scene.views[next++];
+      one["focal_length"] = {view.camera.intrinsics.fx, view.camera.intrinsics.fy};
+      add_pose_json(view.camera.cam_from_world, one);
+    } else {
+      one["reason"] = photo.reason;
+    }
+    j["photographs"].push_back(std::move(one));
+  }
+  return j.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+ColmapPose pose_with_colmap(const ColmapPoseJob& job, Progress& progress) {
+  std::vector<fs::path> masks;
+  if (!job.masks.empty()) masks = io::find_masks(job.images, job.masks);
+  std::vector<io::ColmapPhotoFound> all(job.images.size());
+  const Readable readable = read_lenses(job, masks, all);
+  make_folder(job.out, "--out");
+  ColmapPose pose;
+  pose.found = io::run_colmap({readable.photos, job.out / "colmap", job.ordered}, progress);
+  for (std::size_t i = 0; i < readable.index.size(); ++i)
+    all[readable.index[i]] = pose.found.photos[i];
+  pose.found.photos = std::move(all);
+  Scene& scene = pose.found.scene;
+  scene.path = job.out;
+  scene.format = SceneFormat::kTransforms;
+  pose.report = report_of(job, pose.found);
+  write_atomically(job.out / "pose.json", pose.report);
+  io::write_transforms(scene, job.out);
+  return pose;
+}
+
+void print_colmap_pose(const ColmapPoseJob& job, const ColmapPose& pose) {
+  for (std::size_t i = 0; i < job.names.size(); ++i)
+    if (!pose.found.photos[i].posed)
+      std::printf("%-32s left out: %s\n", job.names[i].c_str(),
+                  pose.found.photos[i].reason.c_str());
+  std::printf("%zu of %zu photographs have a pose, from %zu points\n",
+              pose.found.scene.views.size(), job.names.size(), pose.found.scene.points.size());
+  if (pose.found.models > 1)
+    std::printf("COLMAP made %d models that are not connected; the largest is taken\n",
+                pose.found.models);
+  std::printf("  %s, and COLMAP's model in %s\n", job.out.c_str(), pose.found.model.c_str());
+}
+
+}  // namespace photohull::cli
