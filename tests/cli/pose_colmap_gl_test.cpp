@@ -149,7 +149,7 @@ TEST_F(PoseWithColmap, FindsTheCamerasOfATexturedObject) {
   write_atomically(folder_ / "folds.json", R"({"geometry": {"shape": "folds"},
     "material": {"contrast": 1}, "image": {"width": 640, "height": 480, "maps": false},
     "truth_samples": 2000,
-    "cameras": {"rings": [{"count": 12, "elevation": 35}], "fill": 0.8}})");
+    "cameras": {"rings": [{"count": 24, "elevation": 35}], "fill": 0.8}})");
   const Finished made = run_photohull({"synthesize", path("folds.json"), "--out", path("true")});
   ASSERT_EQ(made.code, 0) << made.err;
   fs::create_directories(folder_ / "my photos");
@@ -162,7 +162,7 @@ TEST_F(PoseWithColmap, FindsTheCamerasOfATexturedObject) {
   patient.timeout_seconds = 600;
   const Finished posed = pose(patient);
   ASSERT_EQ(posed.code, 0) << posed.err;
-  EXPECT_THAT(posed.out, HasSubstr("12 of 13 photographs have a pose"));
+  EXPECT_THAT(posed.out, HasSubstr("24 of 25 photographs have a pose"));
   EXPECT_THAT(posed.out, HasSubstr("torn.jpg"));
   EXPECT_THAT(posed.err, HasSubstr("IMG_1.HEIC"));
   const json report = json::parse(read_bytes(folder_ / "scan/pose.json"));
@@ -179,7 +179,7 @@ TEST_F(PoseWithColmap, FindsTheCamerasOfATexturedObject) {
     to.push_back(truth.views[i].camera.center());
   }
   const std::vector<Camera> moved = with_world_moved(cameras, from, to);
-  const double distance = glm::length(to[0] - to[6]) / 2;
+  const double distance = glm::length(to[0] - to[12]) / 2;
   for (std::size_t i = 0; i < moved.size(); ++i)
     EXPECT_LT(glm::length(moved[i].center() - to[i]), 0.01 * distance) << scene.views[i].name;
 }

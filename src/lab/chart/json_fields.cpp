@@ -10,7 +10,7 @@
 namespace photohull::chart {
 namespace {
 
-std::string shown(const Json& value) {
+std::string found_text(const Json& value) {
   std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
   if (text.size() > 40) text = text.substr(0, 37) + "...";
   return text;
@@ -43,7 +43,7 @@ Fields::Fields(const std::filesystem::path& file, std::string where, const Json&
     : file_(file), where_(std::move(where)), object_(object) {
   if (!object.is_object())
     throw Error(concat(file_.string(), ": ", where_.empty() ? "the file" : where_,
-                       ": expected an object, found ", shown(object)));
+                       ": expected an object, found ", found_text(object)));
 }
 
 std::string Fields::path(const std::string& name) const {
@@ -79,13 +79,13 @@ const Json& Fields::at(const std::string& name) const {
 std::string Fields::text(const std::string& name) const {
   const Json& value = at(name);
   if (!value.is_string() || value.get_ref<const std::string&>().empty())
-    fail(name, "expected a text, found " + shown(value));
+    fail(name, "expected a text, found " + found_text(value));
   return value.get<std::string>();
 }
 
 bool Fields::flag(const std::string& name, bool otherwise) const {
   if (!has(name)) return otherwise;
-  if (!at(name).is_boolean()) fail(name, "expected true or false, found " + shown(at(name)));
+  if (!at(name).is_boolean()) fail(name, "expected true or false, found " + found_text(at(name)));
   return at(name).get<bool>();
 }
 
@@ -93,7 +93,7 @@ double Fields::number(const std::string& name, double least, double greatest) co
   const Json& value = at(name);
   if (!value.is_number() || !(value.get<double>() >= least && value.get<double>() <= greatest))
     fail(name,
-         concat("expected a number from ", least, " to ", greatest, ", found ", shown(value)));
+         concat("expected a number from ", least, " to ", greatest, ", found ", found_text(value)));
   return value.get<double>();
 }
 
@@ -101,7 +101,7 @@ int Fields::integer(const std::string& name, int least, int greatest) const {
   const Json& value = at(name);
   if (!value.is_number_integer() || value.get<double>() < least || value.get<double>() > greatest)
     fail(name, concat("expected a whole number from ", least, " to ", greatest, ", found ",
-                      shown(value)));
+                      found_text(value)));
   return value.get<int>();
 }
 
@@ -109,7 +109,7 @@ std::vector<std::pair<std::string, const Json*>> Fields::elements(const std::str
   std::vector<std::pair<std::string, const Json*>> found;
   if (!has(name)) return found;
   const Json& value = at(name);
-  if (!value.is_array()) fail(name, "expected an array, found " + shown(value));
+  if (!value.is_array()) fail(name, "expected an array, found " + found_text(value));
   for (std::size_t i = 0; i < value.size(); ++i)
     found.emplace_back(concat(name, "[", i, "]"), &value[i]);
   return found;
@@ -119,7 +119,7 @@ std::vector<std::string> Fields::texts(const std::string& name) const {
   std::vector<std::string> found;
   for (const auto& [element, value] : elements(name)) {
     if (!value->is_string() || value->get_ref<const std::string&>().empty())
-      fail(element, "expected a text, found " + shown(*value));
+      fail(element, "expected a text, found " + found_text(*value));
     found.push_back(value->get<std::string>());
   }
   return found;
@@ -131,7 +131,7 @@ std::vector<int> Fields::integers(const std::string& name, int least, int greate
     if (!value->is_number_integer() || value->get<double>() < least ||
         value->get<double>() > greatest)
       fail(element, concat("expected a whole number from ", least, " to ", greatest, ", found ",
-                           shown(*value)));
+                           found_text(*value)));
     found.push_back(value->get<int>());
   }
   return found;
