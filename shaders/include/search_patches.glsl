@@ -1,6 +1,6 @@
-// r-consistency [Kutulakos00]: of the patches that a view shows within the search disc, the one that
-// correlates best with the mean of the other views' chosen patches; view after view, kSearchRounds
-// times. Patches are normalised first, so that no view dominates the mean.
+// r-consistency [Kutulakos00]: of the patches that a view shows within the search disc, it takes the
+// one that correlates best with the mean of the other views' chosen patches; view after view,
+// kSearchRounds times. Patches are normalised first, so that no view dominates the mean.
 // Reference: carving::reference::choose_shifts.
 struct SearchedPatch {
   float scale;        // 1 / norm of the centred patch, with the noise floor; 0: does not count

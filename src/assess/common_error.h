@@ -14,7 +14,7 @@ struct CommonError {
   glm::dvec2 shift{0.0};         ///< pixels
   double focal_factor = 1;       ///< on focal lengths
   double shift_sigma = 0;        ///< pixels, standard deviation, of the less certain of x and y
-  double focal_sigma = 0;        ///< likewise
+  double focal_sigma = 0;        ///< standard deviation of focal_factor
   double before = 0, after = 0;  ///< pixels, what tangents disagree by: median
   int tangents = 0;              ///< 0: nothing is known, and all else as it stands here
 

@@ -19,9 +19,9 @@ namespace photohull::assess {
 namespace {
 
 constexpr double kPlaces = 12000;         // over all views, about
-constexpr double kFewerPlaces = 4000;     // likewise, of the surface alone
+constexpr double kFewerPlaces = 4000;     // the same for the surface alone
 constexpr double kFewestPlaces = 100;     // a view
-constexpr double kFewestOnSurface = 150;  // likewise, of the surface alone
+constexpr double kFewestOnSurface = 150;  // the same for the surface alone
 constexpr int kReach = 2;                 // samples of a window to each side
 constexpr int kSamples = (2 * kReach + 1) * (2 * kReach + 1);
 constexpr double kWidestSpacing = 3;  // pixels between samples, which are smoothed by a pixel

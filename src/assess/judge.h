@@ -21,8 +21,9 @@ inline constexpr Limits kMissed{0.04, 0.3};         // of the silhouettes
 inline constexpr Limits kContradiction{0.02, 0.5};  // of the silhouettes' rays
 // Of the silhouettes, beyond the box, where they stay empty or the surface ends at the box's sides.
 inline constexpr double kBeyondCut = 0.005;
-inline constexpr double kCoarseVoxels = 2;        // times half a percent of the diagonal
-inline constexpr Limits kCutOff{0.12, INFINITY};  // of these and those just outside the box
+inline constexpr double kCoarseVoxels = 2;  // times half a percent of the diagonal
+// Of what silhouettes show in the box and just outside it.
+inline constexpr Limits kCutOff{0.12, INFINITY};
 inline constexpr double kLeastTexture = 0.1;  // of the surface, for shares of it to mean anything
 
 inline std::string percent(double share) { return concat(std::lround(100 * share), " %"); }
@@ -38,7 +39,7 @@ class Judge {
  private:
   /// Takes the reason where the value is beyond its limits.
   void weigh(double value, const Limits& limits, const std::string& reason);
-  /// Takes a reason of which others are consequences: it stays before them.
+  /// Takes a reason of which others follow: it stays before them.
   void name_cause(const std::string& reason);
   /// Is the surface cut off by the box's sides, and does it not only touch them?
   bool cut_by_box() const;
@@ -47,14 +48,13 @@ class Judge {
   /// Of what the photographs show in the box and just outside it: what is outside.
   double cut_share() const;
   std::string cut_off() const;
-  /// Stems that masks lack have the width that photographs suggest; those that voxels are too large
-  /// for have the voxels'.
+  /// Stems that are missing: masks lack them, or voxels are too large for them.
   void stems();
   /// Parts that silhouettes show and voxels are too large for.
   void thin_parts();
   /// What so few see is the cause of what is wrong there.
   void few_views();
-  /// The voxels, beside a diagonal that was spoken of.
+  /// Words about the voxels' size.
   std::string too_coarse() const;
   /// What outlines ask for is asked of all views alike, so that none stands out.
   void common_errors();

@@ -31,7 +31,7 @@ struct MatchEvidence {
   /// of which is too coarse there to tell do not count.
   double offset = 0, beyond_near = 0, beyond_far = 0;
   double residual = 0;    ///< pixels, median distance of all matches from their epipolar lines
-  double pixel_size = 0;  ///< likewise, as of a view
+  double pixel_size = 0;  ///< world units, median; as a view sees it
   std::vector<ViewResidual> views;
 };
 

@@ -28,8 +28,8 @@ struct Signals {
   double cameras_moved_alike = 0;  ///< pixels, of it what all views have in common
   double contradiction = 0;        ///< share of the silhouettes that no hull of all views fills
   double missed = 0, excess = 0;   ///< SilhouetteFit, means over the views
-  double missed_width = 0;         ///< likewise, pixels, of what is missed
-  double beyond_box = 0;           ///< likewise
+  double missed_width = 0;         ///< pixels, mean width of what is missed
+  double beyond_box = 0;           ///< SilhouetteFit, mean over the views
   double beyond_views = 0;         ///< share of the views that show something beyond the box
   double mean_confidence = 0;      ///< of the surface, the unseen with 0
   double unsure = 0;               ///< share of the surface with confidence below one half

@@ -83,8 +83,8 @@ struct PhotoReport {
 
 /// What is swept through. `images` and `cameras` are in the same order and outlive the object.
 struct SweptPhotographs {
-  /// With mip levels, of which each brick takes one, or made for one of the samplers; then what
-  /// they show as background does not count.
+  /// Photographs with mip levels, of which each brick takes one; or photographs made for one of the
+  /// samplers, in which pixels that show background do not count.
   std::variant<std::reference_wrapper<const projtex::ImageSet>,
                std::reference_wrapper<const projtex::SampleImages>>
       images;

@@ -10,8 +10,8 @@ namespace photohull::io {
 /// At a scale in (0, 1] (core/image_scale.h): means in linear light, of alpha too.
 ColourImage reduced(const ColourImage& image, double scale);
 
-/// Coverage in the mean over each of the result's pixels; of scales for x and y, above 0. An empty
-/// one stays empty.
+/// The mean of the coverage over each of the result's pixels, at a scale for x and one for y, both
+/// above 0. An empty mask stays empty.
 Mask reduced(const Mask& mask, const glm::dvec2& scale);
 
 }  // namespace photohull::io

@@ -16,8 +16,8 @@
 #include "masks/mask_bias.h"
 #include "masks/mask_lines.h"
 #include "masks/silhouette.h"
+#include "pipeline/rounded_pixels.h"
 #include "pipeline/subject.h"
-#include "pipeline/told_pixels.h"
 #include "projtex/gpu_views.h"
 
 namespace photohull::pipeline {

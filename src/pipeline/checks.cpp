@@ -116,7 +116,7 @@ std::size_t cameras_within(const Box& box, std::span<const SourceView> views) {
   }));
 }
 
-std::string told_of_cameras_within(const Box& box, const std::string& source,
+std::string sentence_about_cameras(const Box& box, const std::string& source,
                                    std::span<const SourceView> views) {
   const std::size_t within = cameras_within(box, views);
   if (within == 0) return "";

@@ -28,7 +28,7 @@ std::size_t cameras_within(const Box& box, std::span<const SourceView> views);
 
 /// "; N of M cameras stand inside the box", with what to do: the end of a sentence that says that
 /// nothing was found. Empty where none does.
-std::string told_of_cameras_within(const Box& box, const std::string& source,
+std::string sentence_about_cameras(const Box& box, const std::string& source,
                                    std::span<const SourceView> views);
 
 /// Throws Error when a camera stands inside the box.

@@ -132,7 +132,7 @@ struct RefineLevelFindings {
   double evidence = 0;   ///< share of its surfels that the photographs say a place for
 };
 
-/// One pass of the photometric refinement.
+/// One fit pass of the refinement.
 struct RefineFitFindings {
   double wall_seconds = 0;
   double held_out = 0, held_out_fitted = 0;  ///< mean scores of the views that were held out
@@ -159,14 +159,27 @@ struct MeshErrorFindings {
   double mean = 0, p95 = 0, p999 = 0, max = 0;
 };
 
-struct MeshFindings {
-  std::int64_t vertices = 0, triangles = 0;
-  std::int64_t uniform_triangles = 0;   ///< before simplification
+struct ExtractFindings {
   std::int64_t sharpened_vertices = 0;  ///< moved onto sharp edges, or onto what meets there
   std::int64_t stem_vertices = 0;       ///< put to where lines say (carving/fit_stems.h)
-  double unseen_share = 0;              ///< of the vertices
-  std::int64_t islands = 0;             ///< pieces that too few photographs support, which went
-  double islands_area_share = 0;        ///< of the open mesh's area
+};
+
+struct ColourFindings {
+  double unseen_share = 0;  ///< of the vertices
+};
+
+/// Pieces of an open mesh that too few photographs support, which went.
+struct IslandFindings {
+  std::int64_t pieces = 0;
+  double area_share = 0;  ///< of the open mesh's area
+};
+
+struct MeshFindings {
+  std::int64_t vertices = 0, triangles = 0;
+  std::int64_t uniform_triangles = 0;  ///< before simplification
+  ExtractFindings extract;
+  ColourFindings colour;
+  IslandFindings islands;
   std::optional<MeshErrorFindings> error;
 };
 

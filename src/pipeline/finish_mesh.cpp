@@ -40,25 +40,25 @@ SeenVertices seen_vertices(const std::vector<render::PooledEvidence>& evidence) 
   return seen;
 }
 
-void remove_dust(const SurfaceJob& job, SparseVolume& volume) {
+SparseVolume remove_dust(const SurfaceJob& job, SparseVolume volume) {
   remove_small_components(volume, kDebrisFraction, [&](auto pieces) {
     return refine::are_asked_for(job.context, volume, pieces,
                                  projtex::cameras_of(job.subject.views),
                                  silhouettes_of(job.subject.views), {});
   });
+  return volume;
 }
 
-TriMesh extract_surface(const SurfaceJob& job, const SparseVolume& volume, MeshFindings& findings) {
-  TriMesh mesh = extract_mesh(volume);
+ExtractedSurface extract_surface(const SurfaceJob& job, const SparseVolume& volume) {
+  ExtractedSurface out{extract_mesh(volume), {}};
   if (const auto sharpen = method_of(job.options).sharpen)
-    findings.sharpened_vertices = sharpen(job, mesh);
-  findings.stem_vertices = fit_stems(job, mesh);
+    out.findings.sharpened_vertices = sharpen(job, out.mesh);
+  out.findings.stem_vertices = fit_stems(job, out.mesh);
   job.context.release_deleted();  // stages to come need large pieces, and this one left small ones
-  return mesh;
+  return out;
 }
 
-std::vector<render::PooledEvidence> colour_surface(const SurfaceJob& job, TriMesh& mesh,
-                                                   MeshFindings& findings) {
+ColouredSurface colour_surface(const SurfaceJob& job, TriMesh mesh) {
   if (mesh.triangles.empty())
     throw Error(concat("the volume holds no surface: every part is thinner than a voxel; raise ",
                        option_word("resolution")));
@@ -70,11 +70,11 @@ std::vector<render::PooledEvidence> colour_surface(const SurfaceJob& job, TriMes
       bake_colour(job.context, job.subject.grid, {*job.images, cameras, job.subject.noise_sigma},
                   shaping, mesh, job.progress);
   const auto unseen = std::count(mesh.confidence.begin(), mesh.confidence.end(), 0.0f);
-  findings.unseen_share = double(unseen) / double(mesh.confidence.size());
-  if (findings.unseen_share > 0.5)
-    job.progress.warn(concat(std::lround(100 * findings.unseen_share),
+  const double share = double(unseen) / double(mesh.confidence.size());
+  if (share > 0.5)
+    job.progress.warn(concat(std::lround(100 * share),
                              " % of the surface is seen by no camera: it is the hull's guess"));
-  return std::move(baked.evidence);
+  return {std::move(mesh), std::move(baked.evidence), {share}};
 }
 
 bool leaves_open(const ReconstructOptions& options, bool bounded) {
@@ -82,38 +82,36 @@ bool leaves_open(const ReconstructOptions& options, bool bounded) {
   return !bounded && method_of(options).needs_no_silhouettes;
 }
 
-TriMesh open_unseen(const SurfaceJob& job, const TriMesh& mesh, SeenVertices& seen,
-                    MeshFindings& findings) {
+OpenSurface open_unseen(const SurfaceJob& job, const TriMesh& mesh, SeenVertices seen) {
   const Subject& subject = job.subject;
   const bool by_photographs = !job.bounded;
+  IslandFindings islands;
   TriMesh open =
       remove_unseen(mesh, by_photographs ? kMoreLikelyRight : 0, {&seen.views, &seen.disagreement});
   if (by_photographs) {
     const RemovedIslands gone =
         remove_islands(open, seen.views, {.voxel_size = subject.grid.voxel_size},
                        {&seen.views, &seen.disagreement});
-    findings.islands = std::int64_t(gone.pieces);
-    findings.islands_area_share = gone.area_share;
+    islands = {std::int64_t(gone.pieces), gone.area_share};
   }
   if (open.triangles.empty())
     throw Error(concat(
         "no surface was found that a camera sees and that is more likely right than wrong; check "
         "the cameras (photohull info), or look at all of it with ",
         option_word("unseen", "closed"),
-        told_of_cameras_within(subject.box, subject.box_source, sources_of(subject.views))));
-  return open;
+        sentence_about_cameras(subject.box, subject.box_source, sources_of(subject.views))));
+  return {std::move(open), std::move(seen), islands};
 }
 
-TriMesh simplify(const SurfaceJob& job, const TriMesh& mesh, MeshFindings& findings) {
+SimplifiedSurface simplify(const SurfaceJob& job, const TriMesh& mesh) {
   const double voxel = job.subject.grid.voxel_size;
   const MeshError& asked = job.options.mesh_error;
   const double error = asked.value * (asked.world_units ? 1 : voxel);
   TriMesh simple = simplify_mesh(mesh, error);
   job.progress.check_cancelled();
   const MeshDistance d = measure_distance(mesh, simple, mean_edge(mesh));
-  findings.error = MeshErrorFindings{error / voxel, d.mean / voxel, d.p95 / voxel, d.p999 / voxel,
-                                     d.max / voxel};
-  return simple;
+  return {std::move(simple),
+          {error / voxel, d.mean / voxel, d.p95 / voxel, d.p999 / voxel, d.max / voxel}};
 }
 
 }  // namespace photohull::pipeline

@@ -20,28 +20,48 @@ struct SeenVertices {
 
 SeenVertices seen_vertices(const std::vector<render::PooledEvidence>& evidence);
 
-/// Small pieces go, but for those that masks ask for.
-void remove_dust(const SurfaceJob& job, SparseVolume& volume);
+/// The volume without small pieces, but for those that masks ask for.
+SparseVolume remove_dust(const SurfaceJob& job, SparseVolume volume);
+
+struct ExtractedSurface {
+  TriMesh mesh;
+  ExtractFindings findings;
+};
 
 /// The zero level set, with edges sharp that the method rounded, and with stems that are thinner
 /// than voxels as wide as the masks say.
-TriMesh extract_surface(const SurfaceJob& job, const SparseVolume& volume, MeshFindings& findings);
+ExtractedSurface extract_surface(const SurfaceJob& job, const SparseVolume& volume);
 
-/// Colours and confidence; what the confidence of each vertex rests on. Warns where most is unseen.
-/// Throws Error where the mesh is empty.
-std::vector<render::PooledEvidence> colour_surface(const SurfaceJob& job, TriMesh& mesh,
-                                                   MeshFindings& findings);
+struct ColouredSurface {
+  TriMesh mesh;
+  std::vector<render::PooledEvidence> evidence;  ///< that the confidence of each vertex rests on
+  ColourFindings findings;
+};
+
+/// The mesh with colours and confidence. Warns where most of it is unseen. Throws Error where it is
+/// empty.
+ColouredSurface colour_surface(const SurfaceJob& job, TriMesh mesh);
 
 /// Without silhouettes knowledge ends where the photographs do.
 bool leaves_open(const ReconstructOptions& options, bool bounded);
 
-/// Leaves out what no camera sees, and without silhouettes what is more likely wrong than right.
-/// After colouring, which tells what is seen, and before simplification, which keeps the border.
-/// `seen` loses what is known of the vertices that go. Throws Error where nothing remains.
-TriMesh open_unseen(const SurfaceJob& job, const TriMesh& mesh, SeenVertices& seen,
-                    MeshFindings& findings);
+struct OpenSurface {
+  TriMesh mesh;
+  SeenVertices seen;  ///< of the vertices that remain
+  IslandFindings findings;
+};
+
+/// The mesh without what no camera sees, and without silhouettes also without what is more likely
+/// wrong than right. After colouring, which tells what is seen, and before simplification, which
+/// keeps the border. Throws Error where nothing remains.
+OpenSurface open_unseen(const SurfaceJob& job, const TriMesh& mesh, SeenVertices seen);
+
+struct SimplifiedSurface {
+  TriMesh mesh;
+  MeshErrorFindings findings;
+};
 
 /// Fewer triangles, as far from the uniform mesh as the options allow.
-TriMesh simplify(const SurfaceJob& job, const TriMesh& mesh, MeshFindings& findings);
+SimplifiedSurface simplify(const SurfaceJob& job, const TriMesh& mesh);
 
 }  // namespace photohull::pipeline

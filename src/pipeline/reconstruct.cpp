@@ -14,6 +14,7 @@
 #include "photo/opencv_threads.h"
 #include "pipeline/agree_cameras.h"
 #include "pipeline/camera_cache.h"
+#include "pipeline/device_work.h"
 #include "pipeline/find_silhouettes.h"
 #include "pipeline/finish_mesh.h"
 #include "pipeline/given_words.h"
@@ -137,6 +138,11 @@ Evidence keep_evidence(const TriMesh& mesh, const std::vector<render::PooledEvid
   return out;
 }
 
+TriMesh joined(TriMesh mesh, const TriMesh& other) {
+  append_mesh(other, mesh);
+  return mesh;
+}
+
 /// The other photographs' pixels have done their work; memory peaks in the stages to come.
 void keep_only_photograph(int kept, std::vector<PreparedView>& views) {
   for (int i = 0; i < int(views.size()); ++i)
@@ -158,22 +164,27 @@ class Carver {
   Reconstruction carve() {
     StageClock& clock = run_.clock;
     Reconstruction out;
-    out.volume = carve_surface();
-    clock.run("clean", Weights::kClean, [&] { remove_dust(job(), out.volume); });
-    out.mesh = clock.run("mesh", Weights::kMesh,
-                         [&] { return extract_surface(job(), out.volume, mesh_findings_); });
-    make_alike_on_mesh(out.mesh);
-    SeenVertices seen = colour(out);
+    SparseVolume carved = carve_surface();
+    out.volume =
+        clock.run("clean", Weights::kClean, [&] { return remove_dust(job(), std::move(carved)); });
+    ExtractedSurface extracted =
+        clock.run("mesh", Weights::kMesh, [&] { return extract_surface(job(), out.volume); });
+    make_alike_on_mesh(extracted.mesh);
+    ColouredSurface coloured = colour(std::move(extracted.mesh), out);
+    OpenSurface surface{std::move(coloured.mesh), seen_vertices(coloured.evidence), {}};
     // What silhouettes bound is judged by them as a whole; else what is delivered is.
     const bool open = leaves_open(run_.options, bounded_);
-    if (open && !bounded_) out.mesh = open_unseen(job(), out.mesh, seen, mesh_findings_);
-    const Around around = surround(out.mesh, open);
+    if (open && !bounded_) surface = open_unseen(job(), surface.mesh, std::move(surface.seen));
+    const Around around = surround(surface.mesh, open);
     images_.reset();
     run_.context->release_deleted();
-    judge(around, out);
-    if (open && bounded_) out.mesh = open_unseen(job(), out.mesh, seen, mesh_findings_);
-    append_mesh(around.mesh, out.mesh);
-    deliver(out, seen);
+    judge(surface.mesh, extracted.findings, around, out.evidence);
+    if (open && bounded_) surface = open_unseen(job(), surface.mesh, std::move(surface.seen));
+    run_.report.mesh = {.extract = extracted.findings,
+                        .colour = coloured.findings,
+                        .islands = surface.findings,
+                        .error = {}};
+    deliver(joined(std::move(surface.mesh), around.mesh), surface.seen, out);
     return out;
   }
 
@@ -249,12 +260,13 @@ class Carver {
     upload();
   }
 
-  SeenVertices colour(Reconstruction& out) {
+  /// The volume gets its attributes from the mesh.
+  ColouredSurface colour(TriMesh mesh, Reconstruction& out) {
     return run_.clock.run("colour", Weights::kColour, [&] {
-      const auto evidence = colour_surface(job(), out.mesh, mesh_findings_);
-      if (run_.options.evidence) out.evidence = keep_evidence(out.mesh, evidence);
-      out.attributes = attributes_from_mesh(out.volume, out.mesh);
-      return seen_vertices(evidence);
+      ColouredSurface coloured = colour_surface(job(), std::move(mesh));
+      if (run_.options.evidence) out.evidence = keep_evidence(coloured.mesh, coloured.evidence);
+      out.attributes = attributes_from_mesh(out.volume, coloured.mesh);
+      return coloured;
     });
   }
 
@@ -267,38 +279,47 @@ class Carver {
     return around;
   }
 
-  void judge(const Around& around, Reconstruction& out) {
+  void judge(const TriMesh& mesh, const ExtractFindings& extracted, const Around& around,
+             std::optional<Evidence>& evidence) {
     Judgement judgement = run_.clock.run("verdict", Weights::kVerdict, [&] {
-      return judge_result(job(),
-                          {out.mesh, around, cameras_, silhouettes_, mesh_findings_.stem_vertices},
-                          out.evidence.has_value());
+      return judge_result(job(), {mesh, around, cameras_, silhouettes_, extracted.stem_vertices},
+                          evidence.has_value());
     });
     run_.report.verdict = std::move(judgement.findings);
-    if (!out.evidence) return;
-    out.evidence->missing = std::move(judgement.missing);
-    out.evidence->explained = std::move(judgement.explained);
+    if (!evidence) return;
+    evidence->missing = std::move(judgement.missing);
+    evidence->explained = std::move(judgement.explained);
   }
 
-  void deliver(Reconstruction& out, const SeenVertices& seen) {
-    MeshFindings& found = mesh_findings_;
-    found.uniform_triangles = std::int64_t(out.mesh.triangles.size());
+  /// The meshes of the files, and what is shown of them: `uniform` is the whole surface, of which
+  /// `seen` tells.
+  void deliver(TriMesh uniform, const SeenVertices& seen, Reconstruction& out) {
+    MeshFindings& found = run_.report.mesh;
+    found.uniform_triangles = std::int64_t(uniform.triangles.size());
     const bool textured = makes_texture(run_.options);
     const bool page = run_.options.report_page == ReportPage::kOn;
-    const TriMesh uniform = textured ? out.mesh : TriMesh();
     if (page && !textured)
       out.shown = run_.clock.run("page", Weights::kPage,
-                                 [&] { return show_result(out.mesh, seen, subject_.views); });
-    if (run_.options.mesh_error.value > 0)
-      out.mesh = run_.clock.run("simplify", Weights::kSimplify,
-                                [&] { return simplify(job(), out.mesh, found); });
+                                 [&] { return show_result(uniform, seen, subject_.views); });
+    if (run_.options.mesh_error.value > 0) {
+      SimplifiedSurface simple =
+          run_.clock.run("simplify", Weights::kSimplify, [&] { return simplify(job(), uniform); });
+      found.error = simple.findings;
+      out.mesh = std::move(simple.mesh);
+    } else if (textured) {
+      out.mesh = uniform;
+    } else {
+      out.mesh = std::move(uniform);
+    }
     found.vertices = std::int64_t(out.mesh.positions.size());
     found.triangles = std::int64_t(out.mesh.triangles.size());
-    run_.report.mesh = found;
     out.up = upward_axis(subject_.views);
-    if (textured)
-      out.textured = run_.clock.run("texture", Weights::kTexture, [&] {
-        return make_textured(job(), uniform, out.mesh, run_.report.texture.emplace());
-      });
+    if (textured) {
+      MadeTexture made = run_.clock.run("texture", Weights::kTexture,
+                                        [&] { return make_textured(job(), uniform, out.mesh); });
+      run_.report.texture = made.findings;
+      out.textured = std::move(made.mesh);
+    }
     if (page && textured)
       out.shown = run_.clock.run("page", Weights::kPage, [&] {
         return show_textured(*out.textured, uniform, seen, subject_.views);
@@ -307,6 +328,10 @@ class Carver {
     run_.report.bricks_stored = std::int64_t(out.volume.bricks.size());
     run_.report.hull = hull_.findings();
     run_.clock.count_samples("hull", hull_.findings().samples);  // later stages carve hulls, too
+    draw(out);
+  }
+
+  void draw(Reconstruction& out) {
     // The preview chooses its view by the mesh that it draws, and no other photograph is kept.
     const TriMesh& drawn = out.textured ? out.textured->mesh : out.mesh;
     const int main = render::choose_main_view(drawn, subject_.views);
@@ -331,16 +356,7 @@ class Carver {
   Hull hull_;
   std::unique_ptr<projtex::ImageSet> images_;
   bool alike_ = false;  // were the photographs' gains looked at on the hull?
-  MeshFindings mesh_findings_;
 };
-
-DeviceFindings device_work(gpu::Context& context) {
-  const gpu::Traffic& traffic = context.traffic();
-  DeviceFindings work{{}, traffic.uploads, traffic.bytes_up, traffic.downloads, traffic.bytes_down};
-  for (const auto& [name, s] : context.statistics())
-    work.kernels.push_back({name, s.launches, s.groups, s.seconds, s.cpu_seconds});
-  return work;
-}
 
 std::unique_ptr<tbb::global_control> limit_threads(int threads) {
   if (threads == 0) return nullptr;

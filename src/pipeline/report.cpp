@@ -58,7 +58,7 @@ void add_thin_parts(const Report& r, ordered_json& j) {
   j["thin_parts"] = {
       {"line_pixels", thin.line_pixels},         {"looked_at", thin.looked_at},
       {"unexplained", thin.unexplained},         {"placed", thin.placed},
-      {"restored_pixels", thin.restored_pixels}, {"stem_vertices", r.mesh.stem_vertices}};
+      {"restored_pixels", thin.restored_pixels}, {"stem_vertices", r.mesh.extract.stem_vertices}};
   if (!r.verdict.missing_view.empty())
     j["thin_parts"]["missing_png_shows"] = r.verdict.missing_view;
   if (!thin.worst_view.empty()) j["thin_parts"]["worst_view"] = thin.worst_view;
@@ -143,10 +143,10 @@ void add_mesh(const Report& r, ordered_json& j) {
   j["mesh"] = {{"vertices", r.mesh.vertices},
                {"triangles", r.mesh.triangles},
                {"uniform_triangles", r.mesh.uniform_triangles},
-               {"sharpened_vertices", r.mesh.sharpened_vertices},
-               {"unseen_share", r.mesh.unseen_share},
-               {"islands_removed", r.mesh.islands},
-               {"islands_area_share", r.mesh.islands_area_share}};
+               {"sharpened_vertices", r.mesh.extract.sharpened_vertices},
+               {"unseen_share", r.mesh.colour.unseen_share},
+               {"islands_removed", r.mesh.islands.pieces},
+               {"islands_area_share", r.mesh.islands.area_share}};
   if (const auto& error = r.mesh.error)
     j["mesh"]["error_voxels"] = {{"limit", error->limit},
                                  {"mean", error->mean},

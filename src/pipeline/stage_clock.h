@@ -37,7 +37,7 @@ class StageClock {
   }
 
   const std::vector<StageTime>& stages() const { return stages_; }
-  /// Of a stage that has ended.
+  /// Notes the texture samples that a stage took, after it has ended.
   void count_samples(const std::string& name, std::int64_t samples) {
     for (StageTime& stage : stages_)
       if (stage.name == name) stage.samples = samples;

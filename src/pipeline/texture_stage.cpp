@@ -46,21 +46,18 @@ std::int64_t texture_bytes(std::int64_t limit) {
   return std::clamp(limit / kShareOfMemory, kLeastBytes, kMostTextureBytes);
 }
 
-TexturedMesh make_textured(const SurfaceJob& job, const TriMesh& uniform, const TriMesh& delivered,
-                           TextureFindings& findings) {
-  TexturedMesh out;
-  out.mesh = job.options.mesh_error.value > 0
-                 ? delivered
-                 : simplify_mesh(delivered, kTexturedError * job.subject.grid.voxel_size);
+MadeTexture make_textured(const SurfaceJob& job, const TriMesh& uniform, const TriMesh& delivered) {
+  TriMesh mesh = job.options.mesh_error.value > 0
+                     ? delivered
+                     : simplify_mesh(delivered, kTexturedError * job.subject.grid.voxel_size);
   job.progress.check_cancelled();
   const TextureOptions options{.edge = job.options.texture.edge,
                                .noise = job.subject.noise_sigma,
                                .bytes = texture_bytes(memory_limit(job.options)),
                                .detail = job.options.texture.detail};
-  TextureResult made = texture_mesh(out.mesh, uniform, job.subject.views, options, job.progress);
-  findings = found(out.mesh, made.report);
-  out.texture = std::move(made.texture);
-  return out;
+  TextureResult made = texture_mesh(mesh, uniform, job.subject.views, options, job.progress);
+  const TextureFindings findings = found(mesh, made.report);
+  return {{std::move(mesh), std::move(made.texture)}, findings};
 }
 
 glm::dvec3 upward_axis(std::span<const PreparedView> views) {

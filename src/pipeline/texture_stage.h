@@ -14,12 +14,16 @@ bool makes_texture(const ReconstructOptions& options);
 /// `limit`.
 std::int64_t texture_bytes(std::int64_t limit);
 
+struct MadeTexture {
+  TexturedMesh mesh;
+  TextureFindings findings;
+};
+
 /// The mesh for such files, with its texture. `uniform` has the colours of all voxels, `delivered`
 /// is mesh.ply's: the mesh itself where fewer triangles were asked for. Else triangles are merged
 /// here within a quarter of a voxel, for colours need no vertices any more. The photographs must
 /// still have their pixels.
-TexturedMesh make_textured(const SurfaceJob& job, const TriMesh& uniform, const TriMesh& delivered,
-                           TextureFindings& findings);
+MadeTexture make_textured(const SurfaceJob& job, const TriMesh& uniform, const TriMesh& delivered);
 
 /// The world axis, or the opposite of one, that the upper sides of most photographs point to; +z
 /// where they point everywhere.

@@ -14,7 +14,7 @@ constexpr int kRounds = 10;  // of averaging with the neighbours: three or four 
 constexpr float kFullWeight = 1,
                 kEvidenceAround = 0.7f;  // weights of peaks that the hull is measured by
 constexpr double kReach = 1;             // voxels under the hull: it has lost its say there
-constexpr double kAssumed = 100;         // of them that lie on it, where none are known
+constexpr double kPriorCount = 100;      // of them that lie on it, where none are known
 
 /// Weights of the peaks, none counted for more than 1, averaged over the surface around.
 std::vector<float> evidence_around(const VertexGraph& graph, const std::vector<Peak>& peaks) {
@@ -35,7 +35,7 @@ std::vector<float> evidence_around(const VertexGraph& graph, const std::vector<P
 /// photographs tell surely that lies on it.
 double tightness(const SparseVolume& hull, std::span<const glm::vec3> positions,
                  const std::vector<Peak>& peaks, const std::vector<float>& evidence) {
-  double sure = kAssumed, on_hull = kAssumed;
+  double sure = kPriorCount, on_hull = kPriorCount;
   for (std::size_t i = 0; i < peaks.size(); ++i) {
     if (!(peaks[i].weight >= kFullWeight && evidence[i] >= kEvidenceAround)) continue;
     sure += 1;

@@ -24,9 +24,9 @@ struct RayMap {
 std::vector<RayMap> match_rays(gpu::Context& context, const SparseVolume& hull,
                                const projtex::Photographs& photographs, const VoteOptions& options);
 
-/// Likewise, with `surface` (on the same grid) known: depths of the surface where it explains what
-/// the photographs show, and of what is found elsewhere along the ray where it does not. Rays that
-/// do not meet the surface say nothing.
+/// The same where a `surface` on the same grid is known: depths of the surface where it explains
+/// what the photographs show, and of what is found elsewhere along the ray where it does not. Rays
+/// that do not meet the surface say nothing.
 std::vector<RayMap> match_rays_again(gpu::Context& context, const SparseVolume& hull,
                                      const SparseVolume& surface,
                                      const projtex::Photographs& photographs,

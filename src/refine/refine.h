@@ -139,7 +139,7 @@ struct LevelReport {
   double evidence = 0;   ///< share of its surfels that the photographs say a place for
 };
 
-/// One pass of the photometric refinement.
+/// One fit pass of the refinement.
 struct FitReport {
   double seconds = 0;                      ///< wall
   double held_before = 0, held_after = 0;  ///< mean score of the held-out views

@@ -41,12 +41,12 @@ struct SeatBeliefs {
 /// grid, such that the moved surface touches the rays through the
 /// silhouettes' outlines: least squares of what photographs tell (the moves as they come, by
 /// `information`, see information_around) and of what silhouettes tell. Each ray touches the
-/// object: the part of the surface that comes nearest to it is to, with such a standard deviation.
-/// Another part next to the ray may, the less the farther it stands behind the nearest, and the
-/// more the hull can be believed: `tight` in [0, 1] is the chance that surface lies on it, by
-/// vertex (pull_to_hull gives it; less at thin parts, which hulls make too thick). Surface that
-/// ends closer under the hull than photographs can tell, and than the hull's distances are exact,
-/// is moved on beyond the hull: the caller intersects both.
+/// object: the part of the surface that comes nearest to it has to, within the standard deviation
+/// of the outline. Another part next to the ray may touch it, too, the less the farther it stands
+/// behind the nearest, and the more the hull can be believed: `tight` in [0, 1] is the chance that
+/// surface lies on it, by vertex (pull_to_hull gives it; less at thin parts, which hulls make too
+/// thick). Surface that ends closer under the hull than photographs can tell, and than the hull's
+/// distances are exact, is moved on beyond the hull: the caller intersects both.
 void seat_outlines(const SparseVolume& hull, const SilhouetteCones& cones,
                    const MeshSurfels& surfels, const SeatBeliefs& beliefs,
                    const SeatOptions& options, std::vector<float>& moves);

@@ -59,7 +59,7 @@ class SettledBricks {
   SettledBricks(const GridSpec& grid, const MatchedSurfels& surfels,
                 std::span<const Camera> cameras, const SettleOptions& options);
 
-  /// As grid() and kinds() gave it.
+  /// Makes it of what grid() and kinds() of another one gave, as a checkpoint keeps them.
   SettledBricks(const GridSpec& grid, std::vector<std::uint8_t> kinds)
       : grid_(grid), kinds_(std::move(kinds)) {}
 

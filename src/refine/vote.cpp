@@ -13,7 +13,8 @@
 namespace photohull::refine {
 namespace {
 
-constexpr float kNews = 1;  // voxels: a voxel's distance that votes change by less stays as it is
+constexpr float kLeastChange =
+    1;  // voxels: a voxel's distance that votes change by less stays as it is
 
 constexpr float kCertain = 1000;  // evidence where the hull is not
 constexpr float kBesides = 0.3f;  // voxels: distance where the rays say the opposite of the label
@@ -34,14 +35,14 @@ class Voter {
     for_votes(&RayMap::before, volume.grid, options_.least_weight, SparseVolume::kBand,
               [&](const glm::ivec3& voxel, float value) {
                 const float old = volume.at(voxel);
-                if (value > old - kNews) return;
+                if (value > old - kLeastChange) return;
                 out.added += value < 0 && old >= 0;
                 stored(voxel, volume) = value;
               });
     for_votes(&RayMap::through, volume.grid, options_.freeing_weight, -SparseVolume::kBand,
               [&](const glm::ivec3& voxel, float value) {
                 const float old = volume.at(voxel);
-                if (value < old + kNews || value < 0) return;
+                if (value < old + kLeastChange || value < 0) return;
                 out.freed += old < 0;
                 stored(voxel, volume) = value;
               });

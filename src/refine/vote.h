@@ -14,8 +14,8 @@ namespace photohull::refine {
 struct VoteOptions {
   double ray_spacing = 1, again_spacing = 1.5, last_spacing = 2.5, again_score = 0.7;
   double tap_spacing = 0.7, best_pairs = 0.5, least_score = 0.5;
-  /// Degrees, the least between a view and those that its rays are matched with. No choice of a
-  /// user: surroundings have their own.
+  /// The least angle, in degrees, between a view and those that its rays are matched with. It is no
+  /// option: the surroundings of a box set it by themselves.
   double nearest_partner = 4;
   double distinct_by = 0.25, band = 1.5;
   double least_weight = 1.5, again_weight = 2, freeing_weight = 3;

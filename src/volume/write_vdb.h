@@ -21,7 +21,7 @@ double vdb_unit(double voxel_size);
 /// Writes an OpenVDB file with the grids
 ///   surface     float level set in units of vdb_unit, inside negative; active within 3 voxels
 ///   Cd          linear RGB (half), active where nearer than 1.5 voxels and known
-///   confidence  [0, 1] (half), active likewise: the mean of the vertices nearby
+///   confidence  [0, 1] (half), active where Cd is: the mean of the vertices nearby
 /// the last two only where `attributes` has them. Index (i, j, k) of every grid is the voxel of
 /// that index, whose centre is at grid.world({i, j, k}). `metadata` becomes string metadata of the
 /// file and of every grid, beside voxel_size, scene_unit and photohull_version. Equal contents give

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "calib/calibrate_board.h"
+#include "calib/pose_photographs.h"
 #include "calib/turntable_angles.h"
 #include "cameras/refine_cameras.h"
 #include "cli/front/flag_words.h"
@@ -17,6 +18,8 @@
 #include "lab/sampling/sampling_study.h"
 #include "lab/visibility/study.h"
 #include "pipeline/tuning.h"
+#include "render/turntable.h"
+#include "sheet/sheet.h"
 #include "views/prepare_views.h"
 
 namespace photohull::pipeline {
@@ -72,6 +75,9 @@ void write_commands(std::ostream& out) {
                                     {"least_angle", "window"}, out);
   write_command<PrepareOptions>("`photohull masks`", {"grabcut"}, out);
   write_command<RefineCamerasOptions>("`photohull refine-cameras`", {}, out);
+  write_command<SheetOptions>("`photohull board`", {}, out);
+  write_command<PoseOptions>("`photohull pose`", {}, out);
+  write_command<render::TurntableOptions>("`photohull render`", {}, out);
   write_command<BoardSpec>("`photohull calibrate`: the board", {}, out);
   write_command<CalibrateOptions>("`photohull calibrate`: the camera", {}, out);
   write_command<TurntableAngles>("`photohull calibrate` and `convert`: turntables", {}, out);

@@ -1,8 +1,9 @@
-// compare_with_photographs SCENE VIEWS MESH... [PICTURE.png]: how much meshes' own colours, on
-// their textures (.glb) or at their vertices (.ply), look like photographs, best such as they were
-// not made from (docs/guide/textures.md). Views are indices with commas between them. Where
-// photographs differ in size from those that a mesh was made from, they are compared at their own.
-// The picture has the photographs on the left and the last mesh on the right.
+// compare_with_photographs SCENE VIEWS [--like REFERENCE] MESH... [PICTURE.png]: how much meshes'
+// own colours, on their textures (.glb) or at their vertices (.ply), look like photographs, best
+// such as they were not made from (docs/measurements/textures.md), or like pictures of a reference
+// mesh from the same cameras. Views are indices with commas between them. Where photographs differ
+// in size from those that a mesh was made from, they are compared at their own. The picture has the
+// photographs on the left and the last mesh on the right.
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -15,9 +16,9 @@
 #include "io/image_file.h"
 #include "io/load_scene.h"
 #include "io/mesh/read_mesh.h"
+#include "io/mesh/read_textured.h"
 #include "pipeline/texture_stage.h"
 #include "raycast/ray_scene.h"
-#include "read_textured.h"
 #include "scenes.h"
 
 namespace photohull::texture {
@@ -83,23 +84,61 @@ glm::vec3 colour_of(const TexturedMesh& mesh, const Hit& hit) {
   return colour;
 }
 
-Pair draw(const TexturedMesh& mesh, const RayScene& rays, const SourceView& view) {
-  const ColourImage image = io::read_image(view.image);
-  const std::size_t pixels = std::size_t(image.width) * image.height;
-  Pair out{image.width, image.height, std::vector<std::uint8_t>(3 * pixels),
-           std::vector<std::uint8_t>(3 * pixels), std::vector<std::uint8_t>(pixels)};
-  tbb::parallel_for(0, image.height, [&](int y) {
-    for (int x = 0; x < image.width; ++x) {
-      const std::size_t i = std::size_t(y) * image.width + x;
-      std::copy_n(&image.bytes[4 * i], 3, &out.photograph[3 * i]);
-      const auto hit = rays.closest(view.camera.center(), view.camera.ray({double(x), double(y)}));
+/// A mesh file that pictures are drawn of.
+struct Drawable {
+  Drawable(const Scene& scene, const std::string& path)
+      : mesh(read(scene, path)), rays(mesh.mesh) {}
+
+  TexturedMesh mesh;
+  RayScene rays;
+
+ private:
+  static TexturedMesh read(const Scene& scene, const std::string& path) {
+    std::vector<PreparedView> cameras;
+    for (const SourceView& view : scene.views) cameras.push_back({view.name, view.camera, {}, {}});
+    if (path.ends_with(".glb")) return read_textured_glb(path, pipeline::upward_axis(cameras));
+    TexturedMesh out;
+    out.mesh = read_mesh(path);
+    return out;
+  }
+};
+
+/// Pixels in sRGB, three bytes each, and which of them show the mesh.
+struct Drawn {
+  std::vector<std::uint8_t> rgb, shown;
+};
+
+Drawn draw(const Drawable& drawable, const Camera& camera, int width, int height) {
+  const std::size_t pixels = std::size_t(width) * height;
+  Drawn out{std::vector<std::uint8_t>(3 * pixels), std::vector<std::uint8_t>(pixels)};
+  tbb::parallel_for(0, height, [&](int y) {
+    for (int x = 0; x < width; ++x) {
+      const std::size_t i = std::size_t(y) * width + x;
+      const auto hit = drawable.rays.closest(camera.center(), camera.ray({double(x), double(y)}));
       out.shown[i] = hit.has_value();
-      const glm::vec3 colour = hit ? colour_of(mesh, *hit) : glm::vec3(0);
+      const glm::vec3 colour = hit ? colour_of(drawable.mesh, *hit) : glm::vec3(0);
       for (int c = 0; c < 3; ++c)
-        out.mesh[3 * i + std::size_t(c)] = std::uint8_t(
+        out.rgb[3 * i + std::size_t(c)] = std::uint8_t(
             std::lround(255 * srgb_from_linear(std::clamp(double(colour[c]), 0.0, 1.0))));
     }
   });
+  return out;
+}
+
+/// The mesh beside the photograph, or beside the reference where there is one.
+Pair draw_pair(const Drawable& mesh, const Drawable* reference, const SourceView& view) {
+  const ColourImage image = io::read_image(view.image);
+  Drawn drawn = draw(mesh, view.camera, image.width, image.height);
+  Pair out{image.width, image.height, {}, std::move(drawn.rgb), std::move(drawn.shown)};
+  if (reference) {
+    Drawn like = draw(*reference, view.camera, image.width, image.height);
+    for (std::size_t i = 0; i < out.shown.size(); ++i) out.shown[i] &= like.shown[i];
+    out.photograph = std::move(like.rgb);
+    return out;
+  }
+  out.photograph.resize(out.mesh.size());
+  for (std::size_t i = 0; i < out.shown.size(); ++i)
+    std::copy_n(&image.bytes[4 * i], 3, &out.photograph[3 * i]);
   return out;
 }
 
@@ -132,20 +171,14 @@ void add_picture(const Pair& pair, int width, std::vector<std::uint8_t>& rgb) {
 
 /// The picture, rows of `width` pixels.
 std::vector<std::uint8_t> compare_mesh(const Scene& scene, const std::string& indices,
-                                       const std::string& path, int& width) {
-  std::vector<PreparedView> cameras;
-  for (const SourceView& view : scene.views) cameras.push_back({view.name, view.camera, {}, {}});
-  TexturedMesh mesh;
-  if (path.ends_with(".glb"))
-    mesh = read_textured(path, pipeline::upward_axis(cameras));
-  else
-    mesh.mesh = read_mesh(path);
-  const RayScene rays(mesh.mesh);
+                                       const std::string& path, const Drawable* reference,
+                                       int& width) {
+  const Drawable mesh(scene, path);
   Sums all;
   std::vector<std::uint8_t> picture;
   std::stringstream views(indices);
   for (std::string index; std::getline(views, index, ',');) {
-    const Pair pair = draw(mesh, rays, scene.views.at(std::size_t(std::stoi(index))));
+    const Pair pair = draw_pair(mesh, reference, scene.views.at(std::size_t(std::stoi(index))));
     const Sums sums = compare(pair);
     sums.print("  view " + index);
     all.squared += sums.squared;
@@ -161,17 +194,25 @@ std::vector<std::uint8_t> compare_mesh(const Scene& scene, const std::string& in
 }
 
 int run(std::vector<std::string> arguments) {
-  std::string file;
+  std::string file, like;
   if (!arguments.empty() && arguments.back().ends_with(".png")) {
     file = arguments.back();
     arguments.pop_back();
   }
-  if (arguments.size() < 3) throw UsageError("usage: SCENE VIEWS MESH... [PICTURE.png]");
+  if (arguments.size() > 4 && arguments[2] == "--like") {
+    like = arguments[3];
+    arguments.erase(arguments.begin() + 2, arguments.begin() + 4);
+  }
+  if (arguments.size() < 3)
+    throw UsageError("usage: SCENE VIEWS [--like REFERENCE] MESH... [PICTURE.png]");
   const Scene scene = io::load_scene(arguments[0], {});
+  std::optional<Drawable> reference;
+  if (!like.empty()) reference.emplace(scene, like);
   std::vector<std::uint8_t> picture;
   int width = 0;
   for (std::size_t i = 2; i < arguments.size(); ++i)
-    picture = compare_mesh(scene, arguments[1], arguments[i], width);
+    picture =
+        compare_mesh(scene, arguments[1], arguments[i], reference ? &*reference : nullptr, width);
   if (!file.empty())
     io::write_png(file, width, int(picture.size() / 3 / std::size_t(width)), 3, picture);
   return 0;

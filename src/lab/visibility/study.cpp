@@ -185,10 +185,11 @@ void describe(Described& to, StudyOptions& o) {
           "texels along a map's side");
   to.list("techniques", &o.techniques, {}, "names", "some of the techniques (default: all)");
   to.number("repeats", &o.repeats, from_to(1, 100), "",
-            "of each timing, of which the quickest counts");
-  to.number("width", &o.width, from_to(16, 4096), "pixels", "of the receivers' picture");
-  to.number("height", &o.height, from_to(16, 4096), "pixels", "of the receivers' picture");
-  to.number("silhouettes", &o.silhouettes, from_to(10, 100000), "", "places on silhouettes");
+            "times that each timing is taken; the quickest counts");
+  to.number("width", &o.width, from_to(16, 4096), "pixels", "width of the receivers' picture");
+  to.number("height", &o.height, from_to(16, 4096), "pixels", "height of the receivers' picture");
+  to.number("silhouettes", &o.silhouettes, from_to(10, 100000), "",
+            "places on silhouettes that are compared");
 }
 
 void StudyOptions::validate() const {

@@ -72,7 +72,7 @@ void check_found(const SurfaceJob& job, const SparseVolume& volume,
         "no surface was found: without masks the photographs must show texture that several of "
         "them agree on; give masks (",
         option_word("masks"), "), more views, or check the cameras (photohull info)",
-        told_of_cameras_within(subject.box, subject.box_source, sources_of(subject.views))));
+        sentence_about_cameras(subject.box, subject.box_source, sources_of(subject.views))));
   if (volume.inside_voxels() == 0)
     throw Error(
         concat("refinement left nothing: the photographs disagree everywhere; check the "

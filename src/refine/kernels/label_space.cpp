@@ -51,12 +51,12 @@ std::vector<float> label_space(gpu::Context& context, std::span<const glm::ivec3
                  [](float e) { return glm::vec2(e < 0 ? 1 : 0); });
   const shaders::LabelParameters p{{int(evidence.size()), 0, 0, 0}, {kRate, 0, 0, 0}};
   const Buffer uniforms(sizeof p, &p), neighbours = Buffer::of(neighbours_of(bricks)),
-                                       told = Buffer::of(evidence), labels = Buffer::of(start);
+                                       claims = Buffer::of(evidence), labels = Buffer::of(start);
   Buffer flow(evidence.size() * sizeof(glm::vec4));
   flow.fill(0);
   uniforms.bind_uniform(shaders::kLabelParametersBinding);
   neighbours.bind_storage(shaders::kLabelNeighboursBinding);
-  told.bind_storage(shaders::kLabelEvidenceBinding);
+  claims.bind_storage(shaders::kLabelEvidenceBinding);
   labels.bind_storage(shaders::kLabelsBinding);
   flow.bind_storage(shaders::kLabelFlowBinding);
   const std::size_t groups = gpu::group_count(evidence.size(), kGroup);

@@ -1,4 +1,4 @@
-// Pixels as messages tell them.
+// Pixels, rounded for messages.
 #pragma once
 
 #include <cmath>
