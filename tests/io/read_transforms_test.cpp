@@ -237,7 +237,7 @@ TEST_F(ReadTransforms, ScenesDoWithoutPointsThatCannotBeRead) {
   EXPECT_THAT(warned(), AllOf(HasSubstr("ply_file_path"), HasSubstr("is not there")));
   put("pc.ply", concat(kPoints, "1 2 3 200\n"));
   EXPECT_THAT(warned(), AllOf(HasSubstr("pc.ply"), HasSubstr("too short")));
-  put("pc.ply", "no points");
+  put("pc.ply", "no points\n");
   EXPECT_THAT(warned(), HasSubstr("not a PLY file"));
   root_["ply_file_path"] = 7;
   EXPECT_THAT(error(), HasSubstr("ply_file_path must be a string"));

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "calib/calibrate_board.h"
+#include "calib/pose_photographs.h"
 #include "calib/turntable_angles.h"
 #include "cameras/refine_cameras.h"
 #include "cli/front/flag_words.h"
@@ -12,6 +13,7 @@
 #include "eval/evaluate.h"
 #include "eval/photo_agreement.h"
 #include "gpu/device_options.h"
+#include "io/film_frames.h"
 #include "lab/chart/chart_job.h"
 #include "lab/chart/stress_job.h"
 #include "lab/sampling/sampling_study.h"
@@ -74,6 +76,8 @@ void write_commands(std::ostream& out) {
   write_command<RefineCamerasOptions>("`photohull refine-cameras`", {}, out);
   write_command<BoardSpec>("`photohull calibrate`: the board", {}, out);
   write_command<CalibrateOptions>("`photohull calibrate`: the camera", {}, out);
+  write_command<PoseOptions>("`photohull pose` and `scan`: the printed sheet", {}, out);
+  write_command<io::FrameOptions>("`photohull pose` and `scan`: films", {}, out);
   write_command<TurntableAngles>("`photohull calibrate` and `convert`: turntables", {}, out);
   write_command<gpu::DeviceOptions>(
       "`photohull synthesize`, `bench sampling` and `bench visibility`: the device", {}, out);
