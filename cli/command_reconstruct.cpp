@@ -1,17 +1,12 @@
-#include <cstdio>
 #include <memory>
 
 #include "cli/front/command_table.h"
 #include "cli/front/parse_faults.h"
 #include "commands.h"
 #include "core/error.h"
-#include "core/parse_name.h"
 #include "option_flags.h"
-#include "pipeline/image_scale.h"
-#include "pipeline/stage_weights.h"
-#include "pipeline/write_results.h"
+#include "reconstruct_scene.h"
 #include "scene_arguments.h"
-#include "terminal_progress.h"
 
 namespace photohull::cli {
 namespace {
@@ -30,50 +25,10 @@ void check(const Arguments& a) {
   if (a.out.empty()) throw UsageError("--out is empty: give a folder for the results");
 }
 
-void print_summary(const pipeline::Report& report, const std::string& out) {
-  const glm::ivec3 n = report.grid.voxels();
-  std::printf("%d views, %d x %d x %d voxels of %g, %lld triangles\n", report.photographs.views,
-              n.x, n.y, n.z, report.grid.voxel_size, static_cast<long long>(report.mesh.triangles));
-  if (report.photographs.smallest_scale < 1)
-    std::printf("photographs read at %s of their size\n",
-                pipeline::image_scale_text(report.photographs.smallest_scale).c_str());
-  if (const pipeline::SweepFindings& sweep = report.surface.sweep; sweep.voxels_judged > 0)
-    std::printf("judged %lld voxels in %d sweeps, carved %lld\n",
-                static_cast<long long>(sweep.voxels_judged), sweep.sweeps,
-                static_cast<long long>(sweep.voxels_carved));
-  if (!report.photometric.line.empty()) std::printf("%s\n", report.photometric.line.c_str());
-  std::printf("%.2f s (%.2f CPU s), peak memory %lld MiB, on %s\n", report.wall_seconds,
-              report.cpu_seconds, static_cast<long long>(report.peak_memory_bytes >> 20),
-              report.device.c_str());
-  for (const std::string& file : report.files) std::printf("  %s/%s\n", out.c_str(), file.c_str());
-  const assess::Verdict& verdict = report.verdict.verdict;
-  std::printf("verdict: %s\n", assess::to_string(verdict.level));
-  for (const std::string& reason : verdict.reasons) std::printf("  %s\n", reason.c_str());
-  for (const std::string& note : verdict.notes) std::printf("  %s\n", note.c_str());
-  std::printf("coverage: %s\n", verdict.coverage.c_str());
-}
-
-/// The files are there all the same, to look at.
-void throw_if_failed(const assess::Verdict& verdict) {
-  if (verdict.level != assess::Level::kFailed) return;
-  throw Error("the result failed its own checks: " + verdict.reasons.front(), ErrorKind::kDoubted);
-}
-
 void run(const Arguments& a) {
   check(a);
   check_output(a.scene, a.load, a.out);
-  TerminalProgress progress(pipeline::total_weight(a.job));
-  progress.stage("scene", 0);
-  io::LoadSceneOptions load = a.load;
-  load.most_views = io::kEnoughViews;
-  const pipeline::Report report = pipeline::reconstruct_to_folder(
-      a.job, pipeline::load_photographs(a.scene, load), a.out, progress);
-  progress.finish();
-  if (a.json)
-    std::fputs(report.to_json().c_str(), stdout);
-  else
-    print_summary(report, a.out);
-  throw_if_failed(report.verdict.verdict);
+  reconstruct_scene(a.job, a.load, a.scene, a.out, a.json);
 }
 
 void add_options(CLI::App& c, Arguments& a) {

@@ -6,6 +6,7 @@ namespace photohull::cli {
 namespace {
 
 void add_all(CLI::App& app) {
+  add_scan(app);
   add_reconstruct(app);
   add_view(app);
   add_render(app);

@@ -28,6 +28,7 @@ void add_refine_cameras(CLI::App& app);
 void add_calibrate(CLI::App& app);
 void add_board(CLI::App& app);
 void add_pose(CLI::App& app);
+void add_scan(CLI::App& app);
 void add_masks(CLI::App& app);
 void add_info(CLI::App& app);
 void add_synthesize(CLI::App& app);

@@ -5,9 +5,14 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/median.h"
+#include "io/image_file.h"
 #include "io/photo_lens.h"
 #include "io/write_scene.h"
 #include "json_parts.h"
+#include "photo/fine_detail.h"
+#include "photo/grey_image.h"
+#include "pipeline/check_photographs.h"
 #include "scene_arguments.h"
 
 namespace photohull::cli {
@@ -20,17 +25,23 @@ using nlohmann::ordered_json;
 struct Readable {
   std::vector<io::ColmapPhoto> photos;
   std::vector<std::size_t> index;
+  std::vector<pipeline::PhotoLook> looks;  ///< of these
 };
 
-Readable read_lenses(const ColmapPoseJob& job, const std::vector<fs::path>& masks,
-                     std::vector<io::ColmapPhotoFound>& all) {
+Readable look_at_photographs(const PoseJob& job, const std::vector<fs::path>& masks,
+                             std::vector<io::ColmapPhotoFound>& all, Progress& progress) {
   Readable readable;
+  progress.stage("photographs", 0.1);
   for (std::size_t i = 0; i < job.images.size(); ++i) {
+    progress.check_cancelled();
+    progress.update(double(i) / double(job.images.size()));
     try {
-      const std::string lens = io::read_photo_lens(job.images[i]).name;
+      const io::PhotoLens lens = io::read_photo_lens(job.images[i]);
+      const double sharpness = fine_detail(grey_image(io::read_image(job.images[i])));
       readable.photos.push_back(
-          {job.images[i], masks.empty() ? fs::path() : masks[i], job.names[i], lens});
+          {job.images[i], masks.empty() ? fs::path() : masks[i], job.names[i], lens.name});
       readable.index.push_back(i);
+      readable.looks.push_back({job.names[i], sharpness, lens.exposure});
     } catch (const MemoryError&) {
       throw;
     } catch (const Error& failure) {
@@ -40,13 +51,27 @@ Readable read_lenses(const ColmapPoseJob& job, const std::vector<fs::path>& mask
   return readable;
 }
 
-std::string report_of(const ColmapPoseJob& job, const io::ColmapFound& found) {
+/// About which the photographs were taken: the middle of the sparse points.
+glm::dvec3 middle_of(const std::vector<glm::dvec3>& points) {
+  glm::dvec3 middle(0);
+  if (points.empty()) return middle;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> values;
+    for (const glm::dvec3& p : points) values.push_back(p[axis]);
+    middle[axis] = median(values);
+  }
+  return middle;
+}
+
+std::string report_of(const PoseJob& job, const ColmapPose& pose) {
+  const io::ColmapFound& found = pose.found;
   ordered_json j;
   j["photohull_pose"] = 1;
   j["with"] = "colmap";
   j["model"] = found.model.lexically_relative(job.out).generic_string();
   j["models"] = found.models;
   j["points"] = found.scene.points.size();
+  j["warnings"] = pose.warnings;
   j["photographs"] = ordered_json::array();
   std::size_t next = 0;
   for (std::size_t i = 0; i < job.names.size(); ++i) {
@@ -67,11 +92,11 @@ std::string report_of(const ColmapPoseJob& job, const io::ColmapFound& found) {
 
 }  // namespace
 
-ColmapPose pose_with_colmap(const ColmapPoseJob& job, Progress& progress) {
+ColmapPose pose_with_colmap(const PoseJob& job, Progress& progress) {
   std::vector<fs::path> masks;
   if (!job.masks.empty()) masks = io::find_masks(job.images, job.masks);
   std::vector<io::ColmapPhotoFound> all(job.images.size());
-  const Readable readable = read_lenses(job, masks, all);
+  const Readable readable = look_at_photographs(job, masks, all, progress);
   make_folder(job.out, "--out");
   ColmapPose pose;
   pose.found = io::run_colmap({readable.photos, job.out / "colmap", job.ordered}, progress);
@@ -81,13 +106,15 @@ ColmapPose pose_with_colmap(const ColmapPoseJob& job, Progress& progress) {
   Scene& scene = pose.found.scene;
   scene.path = job.out;
   scene.format = SceneFormat::kTransforms;
-  pose.report = report_of(job, pose.found);
+  pose.warnings = pipeline::check_photographs(readable.looks, scene.views, middle_of(scene.points),
+                                              std::nullopt);
+  pose.report = report_of(job, pose);
   write_atomically(job.out / "pose.json", pose.report);
   io::write_transforms(scene, job.out);
   return pose;
 }
 
-void print_colmap_pose(const ColmapPoseJob& job, const ColmapPose& pose) {
+void print_colmap_pose(const PoseJob& job, const ColmapPose& pose) {
   for (std::size_t i = 0; i < job.names.size(); ++i)
     if (!pose.found.photos[i].posed)
       std::printf("%-32s left out: %s\n", job.names[i].c_str(),

@@ -78,8 +78,6 @@ void print_pose(const std::vector<std::string>& names, const PoseResult& result)
   if (result.bend.found)
     std::printf("the sheet is bent: it rises or falls by %.3g +- %.2g units at its rim\n",
                 result.bend.height, result.bend.height_sigma);
-  for (const std::string& text : result.warnings)
-    std::fprintf(stderr, "warning: %s\n", text.c_str());
 }
 
 }  // namespace photohull::cli

@@ -9,6 +9,7 @@ namespace photohull::cli {
 namespace {
 
 constexpr CommandEntry kCommands[] = {
+    {"scan", "photographs to a textured model: pose and reconstruct in one", kMainProgram},
     {"reconstruct", "carve a volume and a mesh from photographs", kMainProgram},
     {"view", "open the page that reconstruct wrote in a browser", kMainProgram},
     {"render", "draw a result: a film of it turning, or stills", kMainProgram},

@@ -19,6 +19,16 @@ double sensor_resolution(const OIIO::ImageSpec& spec) {
   return taken > 0 ? pixels / millimetres * spec.width / taken : 0;
 }
 
+double exposure_of(const OIIO::ImageSpec& spec) {
+  const double seconds = double(spec.get_float_attribute("ExposureTime", 0)),
+               stop = double(spec.get_float_attribute("FNumber", 0)),
+               speed = double(
+                   spec.get_int_attribute("Exif:PhotographicSensitivity",
+                                          spec.get_int_attribute("Exif:ISOSpeedRatings", 0)));
+  const double exposure = seconds / (stop * stop) * speed / 100;
+  return seconds > 0 && stop > 0 && speed > 0 && std::isfinite(exposure) ? exposure : 0;
+}
+
 }  // namespace
 
 PhotoLens read_photo_lens(const std::filesystem::path& path) {
@@ -33,6 +43,7 @@ PhotoLens read_photo_lens(const std::filesystem::path& path) {
   else if (focal > 0 && std::isfinite(focal))
     lens.focal = focal * sensor_resolution(spec);
   if (!(lens.focal > 0.1 * diagonal && lens.focal < 100 * diagonal)) lens.focal = 0;
+  lens.exposure = exposure_of(spec);
   for (const char* field : {"Make", "Model"})
     if (const std::string word = one_line(std::string(spec.get_string_attribute(field)));
         !word.empty())

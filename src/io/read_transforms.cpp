@@ -9,12 +9,16 @@
 #include "io/camera_checks.h"
 #include "io/json_file.h"
 #include "io/raw_scene.h"
+#include "io/read_ply.h"
+#include "io/text_file.h"
 
 namespace photohull::io {
 namespace fs = std::filesystem;
 namespace {
 
 using nlohmann::json;
+
+constexpr const char* kPointsField = "ply_file_path";
 
 /// One frame's fields with those of the whole file behind them.
 class Fields {
@@ -192,6 +196,33 @@ void read_aabb(const json& root, RawScene& scene) {
   scene.box_source = concat("aabb of ", scene.file.filename().string());
 }
 
+/// The sparse points in the PLY file that nerfstudio's field names. They help and are not needed:
+/// where they cannot be had, a warning says why.
+void read_points(const json& root, RawScene& scene) {
+  const auto found = root.find(kPointsField);
+  if (found == root.end() || found->is_null()) return;
+  if (!found->is_string())
+    throw Error(concat(scene.file.string(), ": ", kPointsField, " must be a string"));
+  const fs::path file = scene.file.parent_path() / found->get<std::string>();
+  const auto go_without = [&](const std::string& reason) {
+    scene.warnings.push_back(concat(scene.file.string(), ": the sparse points that ", kPointsField,
+                                    " names are done without: ", reason));
+  };
+  std::error_code failure;
+  if (!is_file(file)) return go_without(concat(file.string(), " is not there"));
+  if (fs::file_size(file, failure) > kMaxTextFileBytes)
+    return go_without(concat(file.string(), " is larger than ", kMaxTextFileBytes >> 20, " MiB"));
+  try {
+    const TriMesh cloud = read_ply(file);
+    scene.points.reserve(cloud.positions.size());
+    for (std::size_t i = 0; i < cloud.positions.size(); ++i) scene.points.push_back(cloud.world(i));
+  } catch (const MemoryError&) {
+    throw;
+  } catch (const Error& unreadable) {
+    go_without(unreadable.what());
+  }
+}
+
 }  // namespace
 
 RawScene read_transforms(const fs::path& json_file) {
@@ -221,6 +252,7 @@ RawScene read_transforms(const fs::path& json_file) {
     scene.views.push_back(std::move(view));
   }
   read_aabb(root, scene);
+  read_points(root, scene);
   return scene;
 }
 

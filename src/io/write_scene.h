@@ -30,7 +30,8 @@ void write_middlebury(const Scene& scene, const std::filesystem::path& folder);
 void write_colmap_text(const Scene& scene, const std::filesystem::path& folder);
 void write_colmap_binary(const Scene& scene, const std::filesystem::path& folder);
 
-/// transforms.json with masks. No skew; No distortion of measured points.
+/// transforms.json with masks, and beside it points.ply where the scene has points. No skew; no
+/// distortion of measured points.
 void write_transforms(const Scene& scene, const std::filesystem::path& folder);
 
 }  // namespace photohull::io

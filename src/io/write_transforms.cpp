@@ -1,3 +1,4 @@
+#include <bit>
 #include <nlohmann/json.hpp>
 
 #include "core/atomic_file.h"
@@ -9,6 +10,8 @@ namespace photohull::io {
 namespace {
 
 using nlohmann::ordered_json;
+
+constexpr const char* kPointsFile = "points.ply";
 
 ordered_json triple(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
@@ -68,12 +71,26 @@ ordered_json frame_of(const SourceView& view, const std::filesystem::path& folde
   return frame;
 }
 
+/// Little-endian, in doubles, as the world has them.
+void write_points(const std::vector<glm::dvec3>& points, const std::filesystem::path& file) {
+  static_assert(std::endian::native == std::endian::little);
+  std::string bytes =
+      concat("ply\nformat binary_little_endian 1.0\nelement vertex ", points.size(),
+             "\nproperty double x\nproperty double y\nproperty double z\nend_header\n");
+  bytes.append(reinterpret_cast<const char*>(points.data()), points.size() * sizeof(glm::dvec3));
+  write_atomically(file, bytes);
+}
+
 }  // namespace
 
 void write_transforms(const Scene& scene, const std::filesystem::path& folder) {
   make_folder(folder);
   ordered_json root;
   if (scene.box) root["aabb"] = {triple(scene.box->min), triple(scene.box->max)};
+  if (!scene.points.empty()) {
+    write_points(scene.points, folder / kPointsFile);
+    root["ply_file_path"] = kPointsFile;
+  }
   root["frames"] = ordered_json::array();
   for (const SourceView& view : scene.views) root["frames"].push_back(frame_of(view, folder));
   write_atomically(folder / "transforms.json", json_text(root));

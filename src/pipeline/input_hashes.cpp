@@ -79,6 +79,11 @@ std::string digest_of(std::span<const std::uint8_t> bytes) {
   return digits_of(XXH3_128bits(bytes.data(), bytes.size()));
 }
 
+std::string digest_of_file(const fs::path& path) {
+  InputFile file{"", path, 0, ""};
+  return hash(file) ? file.xxh3_128 : "";
+}
+
 std::vector<InputFile> hash_inputs(const Scene& scene) {
   std::vector<InputFile> files;
   const auto add = [&](const char* kind, const fs::path& path) {

@@ -21,6 +21,9 @@ struct InputFile {
 /// XXH3 of 128 bits as 32 hexadecimal digits.
 std::string digest_of(std::span<const std::uint8_t> bytes);
 
+/// The same of a file's bytes; empty where it cannot be read.
+std::string digest_of_file(const std::filesystem::path& path);
+
 /// The scene's files (cameras, and the box where a file beside them has it), then each view's
 /// photograph, mask and photograph of the background. Files that cannot be read are left out: the
 /// job itself says what it needs of them.

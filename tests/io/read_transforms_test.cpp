@@ -208,5 +208,40 @@ TEST_F(ReadTransforms, StatedMasksAreUsed) {
   EXPECT_TRUE(load(options).views[0].mask.empty());
 }
 
+constexpr const char* kPoints =
+    "ply\nformat ascii 1.0\nelement vertex 12\nproperty float x\nproperty float y\nproperty float "
+    "z\nproperty uchar red\nend_header\n";
+
+TEST_F(ReadTransforms, SparsePointsOfNerfstudioAreReadAndGiveABox) {
+  root_["ply_file_path"] = "sparse/pc.ply";
+  std::string text = kPoints;
+  for (int i = 0; i < 12; ++i) text += concat(i, " ", 2 * i, " ", -i, " 200\n");
+  put("sparse/pc.ply", text);
+  const Scene scene = load();
+  ASSERT_EQ(scene.points.size(), 12u);
+  EXPECT_LT(glm::length(scene.points[3] - glm::dvec3(3, 6, -3)), 1e-5);
+  EXPECT_TRUE(scene.warnings.empty());
+  ASSERT_TRUE(scene.box);
+  EXPECT_EQ(scene.box_source, "sparse points");
+  root_["aabb"] = {{0, 0, 0}, {1, 1, 1}};
+  EXPECT_EQ(load().box->max, glm::dvec3(1));
+}
+
+TEST_F(ReadTransforms, ScenesDoWithoutPointsThatCannotBeRead) {
+  root_["ply_file_path"] = "pc.ply";
+  const auto warned = [&] {
+    const Scene scene = load();
+    EXPECT_TRUE(scene.points.empty());
+    return scene.warnings.empty() ? "" : scene.warnings.front();
+  };
+  EXPECT_THAT(warned(), AllOf(HasSubstr("ply_file_path"), HasSubstr("is not there")));
+  put("pc.ply", concat(kPoints, "1 2 3 200\n"));
+  EXPECT_THAT(warned(), AllOf(HasSubstr("pc.ply"), HasSubstr("too short")));
+  put("pc.ply", "no points\n");
+  EXPECT_THAT(warned(), HasSubstr("not a PLY file"));
+  root_["ply_file_path"] = 7;
+  EXPECT_THAT(error(), HasSubstr("ply_file_path must be a string"));
+}
+
 }  // namespace
 }  // namespace photohull::io

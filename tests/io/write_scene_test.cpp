@@ -69,6 +69,19 @@ TEST_F(WriteScene, MasksSurviveInTransforms) {
   EXPECT_TRUE(fs::equivalent(back.views[1].mask, scene_.views[1].mask));
 }
 
+TEST_F(WriteScene, SparsePointsLieBesideTransforms) {
+  ASSERT_FALSE(scene_.points.empty());
+  const Scene back = round_trip(write_transforms, "t");
+  EXPECT_TRUE(fs::exists(folder_ / "t/points.ply"));
+  ASSERT_EQ(back.points.size(), scene_.points.size());
+  for (std::size_t i = 0; i < back.points.size(); ++i)
+    EXPECT_LT(glm::length(back.points[i] - scene_.points[i]), 1e-6);
+  EXPECT_TRUE(back.warnings.empty());
+  scene_.points.clear();
+  EXPECT_TRUE(round_trip(write_transforms, "none").points.empty());
+  EXPECT_FALSE(fs::exists(folder_ / "none/points.ply"));
+}
+
 TEST_F(WriteScene, SkewSurvivesInMiddleburyOnly) {
   scene_.views[1].camera.intrinsics.skew = 0.75;
   EXPECT_LT(largest_shift(scene_, round_trip(write_middlebury, "m")), kTolerance);

@@ -1,5 +1,7 @@
 // Reads PLY files, trusting nothing in them: counts are checked against the bytes that are there
 // before memory is asked for.
+#include "io/read_ply.h"
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -13,7 +15,6 @@
 #include "core/error.h"
 #include "core/image.h"
 #include "core/read_file.h"
-#include "io/mesh/write_mesh.h"
 
 namespace photohull {
 namespace {

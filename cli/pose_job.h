@@ -1,0 +1,26 @@
+// Photographs whose cameras are to be found: what all ways of it start from.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "calib/pose_photographs.h"
+
+namespace photohull::cli {
+
+struct PoseJob {
+  std::vector<std::filesystem::path> images;
+  std::vector<std::string> names;  ///< of each image, as names_of gives them
+  std::filesystem::path out;       ///< folder for the scene, absolute
+  std::filesystem::path board;     ///< description of the printed sheet; empty: by COLMAP
+  PoseOptions sheet;               ///< with a sheet
+  bool make_masks = true;          ///< with a sheet: of what differs from the sheet's picture
+  std::filesystem::path masks;     ///< with COLMAP: folder of masks; empty: none
+  bool ordered = false;            ///< with COLMAP: each was taken near the one before
+};
+
+/// Names that tell the photographs apart: file names, or paths where two would be alike.
+std::vector<std::string> names_of(const std::vector<std::filesystem::path>& images);
+
+}  // namespace photohull::cli

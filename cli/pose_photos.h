@@ -1,0 +1,39 @@
+// What pose and scan do alike: photographs or a film, and the way in which cameras are found.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "io/film_frames.h"
+#include "pose_job.h"
+
+namespace photohull::cli {
+
+/// Arguments that both commands have.
+struct PoseArguments {
+  std::vector<std::string> images;  ///< files, or folders of them
+  std::string video;                ///< a film in the place of images; empty: none
+  io::FrameOptions frames;
+  std::string board;
+  PoseOptions sheet;
+  bool ordered = false;
+  std::vector<CLI::Option*> of_film, of_the_board, of_colmap;  ///< that say nothing otherwise
+
+  /// `but`: options of the sheet that the command has none of.
+  void add_to(CLI::App& command, const std::vector<std::string>& but = {});
+  /// Throws UsageError unless there is one of photographs and film, and for options of the other.
+  void check() const;
+};
+
+/// Throws UsageError where one of the options was given; `instead` is what it does not go with.
+void refuse_given(const std::vector<CLI::Option*>& options, const std::string& instead);
+
+/// Prints a warning for each photograph in the folders given that cannot be read.
+void name_unreadable(const std::vector<std::string>& given);
+
+/// Finds the cameras and writes the scene into the job's folder (pose_sheet.h, pose_colmap.h).
+/// Prints warnings, and a summary if `tell`. Returns pose.json.
+std::string pose_photos(const PoseJob& job, bool tell);
+
+}  // namespace photohull::cli

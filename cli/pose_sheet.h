@@ -1,0 +1,23 @@
+// Cameras of photographs of an object on a printed sheet.
+#pragma once
+
+#include <string>
+
+#include "calib/pose_photographs.h"
+#include "core/progress.h"
+#include "pose_job.h"
+
+namespace photohull::cli {
+
+/// What was found, with an entry for each image of the job.
+struct SheetPose {
+  PoseResult result;
+  std::string report;  ///< pose.json
+};
+
+/// Writes transforms.json, pose.json and, where the job wants them, masks/ into the job's folder.
+/// Photographs that cannot be read or posed are left out. Throws as pose_photographs does, and
+/// Error for a board's description or a folder that is not usable.
+SheetPose pose_on_sheet(const PoseJob& job, Progress& progress);
+
+}  // namespace photohull::cli

@@ -1,0 +1,100 @@
+#include "reconstruct_scene.h"
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "core/read_file.h"
+#include "pipeline/image_scale.h"
+#include "pipeline/stage_weights.h"
+#include "pipeline/write_results.h"
+#include "terminal_progress.h"
+
+namespace photohull::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+void print_summary(const pipeline::Report& report, const std::string& out) {
+  const glm::ivec3 n = report.grid.voxels();
+  std::printf("%d views, %d x %d x %d voxels of %g, %lld triangles\n", report.photographs.views,
+              n.x, n.y, n.z, report.grid.voxel_size, static_cast<long long>(report.mesh.triangles));
+  if (report.photographs.smallest_scale < 1)
+    std::printf("photographs read at %s of their size\n",
+                pipeline::image_scale_text(report.photographs.smallest_scale).c_str());
+  if (const pipeline::SweepFindings& sweep = report.surface.sweep; sweep.voxels_judged > 0)
+    std::printf("judged %lld voxels in %d sweeps, carved %lld\n",
+                static_cast<long long>(sweep.voxels_judged), sweep.sweeps,
+                static_cast<long long>(sweep.voxels_carved));
+  if (!report.photometric.line.empty()) std::printf("%s\n", report.photometric.line.c_str());
+  std::printf("%.2f s (%.2f CPU s), peak memory %lld MiB, on %s\n", report.wall_seconds,
+              report.cpu_seconds, static_cast<long long>(report.peak_memory_bytes >> 20),
+              report.device.c_str());
+  for (const std::string& file : report.files) std::printf("  %s/%s\n", out.c_str(), file.c_str());
+  const assess::Verdict& verdict = report.verdict.verdict;
+  std::printf("verdict: %s\n", assess::to_string(verdict.level));
+  for (const std::string& reason : verdict.reasons) std::printf("  %s\n", reason.c_str());
+  for (const std::string& note : verdict.notes) std::printf("  %s\n", note.c_str());
+  std::printf("coverage: %s\n", verdict.coverage.c_str());
+}
+
+void throw_failed(const std::string& reason) {
+  throw Error("the result failed its own checks: " + reason, ErrorKind::kDoubted);
+}
+
+json read_report(const fs::path& folder) {
+  return json::parse(read_whole_file(folder / "report.json"));
+}
+
+}  // namespace
+
+void reconstruct_scene(const pipeline::ReconstructOptions& job, const io::LoadSceneOptions& given,
+                       const fs::path& scene, const std::string& out, bool json) {
+  TerminalProgress progress(pipeline::total_weight(job));
+  progress.stage("scene", 0);
+  io::LoadSceneOptions load = given;
+  load.most_views = io::kEnoughViews;
+  const pipeline::Report report =
+      pipeline::reconstruct_to_folder(job, pipeline::load_photographs(scene, load), out, progress);
+  progress.finish();
+  if (json)
+    std::fputs(report.to_json().c_str(), stdout);
+  else
+    print_summary(report, out);
+  const assess::Verdict& verdict = report.verdict.verdict;
+  if (verdict.level == assess::Level::kFailed) throw_failed(verdict.reasons.front());
+}
+
+bool has_results(const fs::path& folder) {
+  try {
+    const json report = read_report(folder);
+    std::error_code ignored;
+    for (const json& file : report.at("files"))
+      if (!fs::is_regular_file(folder / file.get<std::string>(), ignored)) return false;
+    return report.at("verdict").at("level").is_string();
+  } catch (const json::exception&) {
+  } catch (const Error&) {
+  }
+  return false;
+}
+
+void tell_results(const std::string& out, bool as_json) {
+  const json report = read_report(out);
+  if (as_json) std::fputs(read_whole_file(fs::path(out) / "report.json").c_str(), stdout);
+  const auto say = [&](const std::string& line) {
+    if (!as_json) std::printf("%s\n", line.c_str());
+  };
+  for (const json& file : report.at("files")) say(concat("  ", out, "/", file.get<std::string>()));
+  const json& verdict = report.at("verdict");
+  const std::string level = verdict.at("level");
+  say("verdict: " + level);
+  const std::vector<std::string> reasons = verdict.at("reasons");
+  for (const std::string& reason : reasons) say("  " + reason);
+  for (const json& note : verdict.at("notes")) say("  " + note.get<std::string>());
+  say("coverage: " + verdict.at("coverage").get<std::string>());
+  if (level == assess::to_string(assess::Level::kFailed))
+    throw_failed(reasons.empty() ? "" : reasons.front());
+}
+
+}  // namespace photohull::cli
