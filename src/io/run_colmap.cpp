@@ -1,6 +1,7 @@
 #include "io/run_colmap.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <map>
@@ -47,9 +48,6 @@ class Links {
   Links(const ColmapJob& job, Progress& progress) {
     std::map<std::string, std::size_t> lenses;
     for (const ColmapPhoto& photo : job.photos) lenses.emplace(photo.lens, lenses.size());
-    std::map<std::string, std::size_t> counts;
-    for (const ColmapPhoto& photo : job.photos) ++counts[photo.lens];
-    for (const auto& [lens, count] : counts) fewest_ = std::min(fewest_, count);
     for (std::size_t i = 0; i < job.photos.size(); ++i) {
       progress.check_cancelled();
       const ColmapPhoto& photo = job.photos[i];
@@ -68,7 +66,6 @@ class Links {
     }
   }
   const std::vector<std::string>& names() const { return names_; }
-  std::size_t fewest_of_a_lens() const { return fewest_; }
 
  private:
   static void write_mask(const ColmapPhoto& photo, const fs::path& file) {
@@ -84,7 +81,6 @@ class Links {
   }
 
   std::vector<std::string> names_;
-  std::size_t fewest_ = std::numeric_limits<std::size_t>::max();
 };
 
 /// COLMAP's commands, one after the other.
@@ -146,21 +142,20 @@ OptionNames option_names(const Progress& progress) {
   return names;
 }
 
-void find_features(const ColmapJob& job, const Links& links, const OptionNames& options,
-                   Runs& runs) {
-  constexpr std::size_t kManyOfALens = 8;  // that decide on a lens with two tangential terms
-  std::vector<std::string> words = {
-      "feature_extractor",
-      "--database_path",
-      (job.folder / "database.db").string(),
-      "--image_path",
-      (job.folder / "images").string(),
-      "--ImageReader.single_camera_per_folder",
-      "1",
-      "--ImageReader.camera_model",
-      links.fewest_of_a_lens() >= kManyOfALens ? "OPENCV" : "SIMPLE_RADIAL",
-      options.extraction,
-      "0"};
+/// One lens a folder of photographs, with one radial term: with more terms, wrong focal lengths fit
+/// the first few views that the mapper has as well as the right one.
+void find_features(const ColmapJob& job, const OptionNames& options, Runs& runs) {
+  std::vector<std::string> words = {"feature_extractor",
+                                    "--database_path",
+                                    (job.folder / "database.db").string(),
+                                    "--image_path",
+                                    (job.folder / "images").string(),
+                                    "--ImageReader.single_camera_per_folder",
+                                    "1",
+                                    "--ImageReader.camera_model",
+                                    "SIMPLE_RADIAL",
+                                    options.extraction,
+                                    "0"};
   if (std::ranges::any_of(job.photos, [](const ColmapPhoto& p) { return !p.mask.empty(); })) {
     words.push_back("--ImageReader.mask_path");
     words.push_back((job.folder / "masks").string());
@@ -179,6 +174,49 @@ void match_features(const ColmapJob& job, const OptionNames& options, Runs& runs
   runs.must_run(words);
 }
 
+Scene read_model(const ColmapJob& job, const fs::path& folder) {
+  LoadSceneOptions options;
+  options.format = SceneFormat::kColmapBinary;
+  options.images = job.folder / "images";
+  options.masks = MaskSource::kNone;
+  options.box = Box{glm::dvec3(-1), glm::dvec3(1)};  // none is looked for
+  return load_scene(folder, options);
+}
+
+/// Has each lens of the model so many photographs that they say where its principal point is?
+bool tells_principal_points(const Scene& model) {
+  constexpr std::size_t kManyOfALens = 10;
+  std::map<fs::path, std::size_t> counts;
+  for (const SourceView& view : model.views) ++counts[view.image.parent_path()];
+  return std::ranges::all_of(counts, [](const auto& of) { return of.second >= kManyOfALens; });
+}
+
+/// Are the lenses such as are built, with principal points near the middle?
+bool has_plausible_lenses(const Scene& model) {
+  constexpr double kFarthest = 0.1;  // of the picture's longer side
+  return std::ranges::all_of(model.views, [](const SourceView& view) {
+    const Intrinsics& k = view.camera.intrinsics;
+    const double far = kFarthest * std::max(k.width, k.height);
+    return k.fx > 0 && std::abs(k.cx - 0.5 * (k.width - 1)) < far &&
+           std::abs(k.cy - 0.5 * (k.height - 1)) < far;
+  });
+}
+
+/// The model adjusted once more with free principal points, which the mapper has in the middle;
+/// the model itself where it does not tell them, or what comes out is no lens.
+Scene with_principal_points(const ColmapJob& job, Scene model, Runs& runs) {
+  if (!tells_principal_points(model)) return model;
+  const fs::path folder = job.folder / "sparse" / "adjusted";
+  std::error_code failure;
+  fs::create_directories(folder, failure);
+  if (!runs.run({"bundle_adjuster", "--input_path", model.path.string(), "--output_path",
+                 folder.string(), "--BundleAdjustment.refine_principal_point", "1"}) ||
+      !is_file(folder / "images.bin"))
+    return model;
+  Scene adjusted = read_model(job, folder);
+  return has_plausible_lenses(adjusted) ? adjusted : model;
+}
+
 /// Makes the models, and reads them, the one with the most photographs first.
 std::vector<Scene> make_models(const ColmapJob& job, Runs& runs) {
   const fs::path sparse = job.folder / "sparse";
@@ -195,16 +233,10 @@ std::vector<Scene> make_models(const ColmapJob& job, Runs& runs) {
       !(folders.empty() && (runs.said("failed to create") || runs.said("No good initial"))))
     runs.fail("mapper");
   std::vector<Scene> models;
-  for (const fs::path& folder : folders) {
-    LoadSceneOptions options;
-    options.format = SceneFormat::kColmapBinary;
-    options.images = job.folder / "images";
-    options.masks = MaskSource::kNone;
-    options.box = Box{glm::dvec3(-1), glm::dvec3(1)};  // none is looked for
-    models.push_back(load_scene(folder, options));
-  }
+  for (const fs::path& folder : folders) models.push_back(read_model(job, folder));
   std::stable_sort(models.begin(), models.end(),
                    [](const Scene& a, const Scene& b) { return a.views.size() > b.views.size(); });
+  if (!models.empty()) models.front() = with_principal_points(job, std::move(models.front()), runs);
   return models;
 }
 
@@ -271,7 +303,7 @@ ColmapFound run_colmap(const ColmapJob& job, Progress& progress) {
   const Links links(job, progress);
   Runs runs(job, progress);
   progress.stage("features", 0.3);
-  find_features(job, links, options, runs);
+  find_features(job, options, runs);
   progress.stage("matches", 0.4);
   match_features(job, options, runs);
   progress.stage("cameras", 0.3);

@@ -23,7 +23,8 @@ std::string name_in(const std::string& assignment) {
 
 std::string known_names(const Described& parameters) {
   std::vector<std::string> names;
-  for (const Option& option : parameters.options()) names.push_back(option.name);
+  for (const Option& option : parameters.options())
+    if (option_that_sets(option.name).empty()) names.push_back(option.name);
   std::sort(names.begin(), names.end());
   std::string all;
   for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
@@ -57,6 +58,12 @@ void assign(const std::string& assignment, const Option& option) {
 
 }  // namespace
 
+std::string option_that_sets(const std::string& parameter) {
+  if (parameter == "noise_sigma") return "noise";
+  if (parameter == "search_radius") return "r_consistency";
+  return parameter == "supersample" ? parameter : "";
+}
+
 void describe(Described& to, Method method, Parameters& parameters) {
   to.group("missing", parameters.missing);
   to.group("stems", parameters.stems);
@@ -68,6 +75,8 @@ void tune(const std::vector<std::string>& assignments, Method method, Parameters
   describe(known, method, parameters);
   for (const std::string& assignment : assignments) {
     const std::string name = name_in(assignment);
+    if (const std::string option = option_that_sets(name); !option.empty())
+      refuse(assignment, concat("this is an option of its own: ", option_word(option)));
     if (const Option* option = known.find(name))
       assign(assignment, *option);
     else

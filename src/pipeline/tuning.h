@@ -26,9 +26,13 @@ struct Parameters {
 /// the mesh that all end with.
 void describe(Described& to, Method method, Parameters& parameters);
 
+/// The option of a reconstruction that sets this parameter, which tune() therefore refuses; empty
+/// where there is none.
+std::string option_that_sets(const std::string& parameter);
+
 /// Each assignment is NAME=VALUE with a parameter's name and a finite number, whole where the
 /// parameter is (0 or 1 for what is on or off). Throws UsageError naming what is wrong, with the
-/// known names, or what is out of its range.
+/// known names or the option that sets it, or what is out of its range.
 void tune(const std::vector<std::string>& assignments, Method method, Parameters& parameters);
 
 /// The parameters as such a job begins with them.

@@ -44,9 +44,10 @@ void write_table(const Described& described, bool flags, std::ostream& out) {
                 : "| parameter | default | values | changes from | what it is |\n")
       << "|---|---|---|---|---|\n";
   for (const Option& option : described.options())
-    out << "| " << code(flags ? cli::flag_of(option.name) : option.name) << " | "
-        << code(default_of(option)) << " | " << legal_of(option) << " | " << to_string(option.from)
-        << " | " << option.help << " |\n";
+    if (flags || option_that_sets(option.name).empty())
+      out << "| " << code(flags ? cli::flag_of(option.name) : option.name) << " | "
+          << code(default_of(option)) << " | " << legal_of(option) << " | "
+          << to_string(option.from) << " | " << option.help << " |\n";
 }
 
 /// Options of a command that the main job's stages do not follow from: those of a struct that have

@@ -64,6 +64,13 @@ TEST(Tune, NamesWhatIsWrong) {
     EXPECT_NE(refusal(text).find("expected a whole number"), std::string::npos) << text;
 }
 
+TEST(Tune, LeavesToOptionsWhatIsTheirs) {
+  for (const char* text : {"noise_sigma=0.02", "supersample=2", "search_radius=1"})
+    EXPECT_NE(refusal(text, Method::kSpaceCarving).find("this is an option of its own: "),
+              std::string::npos)
+        << text;
+}
+
 TEST(Tune, RefusesWhatIsOutOfRange) {
   EXPECT_EQ(refusal("levels=9"), "levels must be 0 (automatic) to 8");
   EXPECT_EQ(refusal("restore.least_inside=-1"),
@@ -81,6 +88,7 @@ TEST(Tune, SetsEveryParameterOfEachMethod) {
     Described all;
     describe(all, method, usual);
     for (const Option& option : all.options()) {
+      if (!option_that_sets(option.name).empty()) continue;
       Parameters parameters;
       tune({assignment_of(option)}, method, parameters);
       Described changed;
