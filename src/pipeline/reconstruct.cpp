@@ -291,25 +291,23 @@ class Carver {
     evidence->explained = std::move(judgement.explained);
   }
 
-  /// The meshes of the files, and what is shown of them: `uniform` is the whole surface, of which
+  /// The meshes of the files, and what is shown of them: `whole` is all of the surface, of which
   /// `seen` tells.
-  void deliver(TriMesh uniform, const SeenVertices& seen, Reconstruction& out) {
+  void deliver(TriMesh whole, const SeenVertices& seen, Reconstruction& out) {
     MeshFindings& found = run_.report.mesh;
-    found.uniform_triangles = std::int64_t(uniform.triangles.size());
+    found.uniform_triangles = std::int64_t(whole.triangles.size());
+    out.mesh = std::move(whole);
     const bool textured = makes_texture(run_.options);
     const bool page = run_.options.report_page == ReportPage::kOn;
+    const TriMesh uniform = textured ? out.mesh : TriMesh();
     if (page && !textured)
       out.shown = run_.clock.run("page", Weights::kPage,
-                                 [&] { return show_result(uniform, seen, subject_.views); });
+                                 [&] { return show_result(out.mesh, seen, subject_.views); });
     if (run_.options.mesh_error.value > 0) {
       SimplifiedSurface simple =
-          run_.clock.run("simplify", Weights::kSimplify, [&] { return simplify(job(), uniform); });
+          run_.clock.run("simplify", Weights::kSimplify, [&] { return simplify(job(), out.mesh); });
       found.error = simple.findings;
       out.mesh = std::move(simple.mesh);
-    } else if (textured) {
-      out.mesh = uniform;
-    } else {
-      out.mesh = std::move(uniform);
     }
     found.vertices = std::int64_t(out.mesh.positions.size());
     found.triangles = std::int64_t(out.mesh.triangles.size());
