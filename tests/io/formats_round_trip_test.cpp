@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <fstream>
 #include <random>
+#include <set>
 
 #include "io/find_files.h"
 #include "io/load_scene.h"
@@ -170,8 +171,9 @@ TEST_P(EveryFormat, DistortionIsKeptOrRefused) {
 
 TEST_P(EveryFormat, FilesGivenByPathAreRecognised) {
   round_trip();
+  const std::set<std::string> beside = {"bbox.txt", "list.txt", "points.ply"};  // tell no cameras
   for (const fs::path& file : written_files()) {
-    if (file.filename() == "bbox.txt" || file.filename() == "list.txt") continue;
+    if (beside.contains(file.filename().string())) continue;
     EXPECT_EQ(load_scene(file).format, GetParam()) << file;
   }
 }
