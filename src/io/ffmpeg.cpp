@@ -4,6 +4,7 @@
 #include <poll.h>
 #include <spawn.h>
 #include <sys/mman.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -44,7 +45,8 @@ Ffmpeg::Ffmpeg(std::filesystem::path target, const std::vector<std::string>& wor
     : target_(std::move(target)), progress_(progress) {
   std::array<int, 2> ends{-1, -1};
   messages_ = ::memfd_create("ffmpeg", MFD_CLOEXEC);
-  if (messages_ < 0 || ::pipe2(ends.data(), O_CLOEXEC) != 0) {
+  // A socket and no pipe: a program that has ended must not end this one by SIGPIPE.
+  if (messages_ < 0 || ::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     const int reason = errno;
     if (messages_ >= 0) ::close(messages_);
     throw Error(concat(kProgram, " cannot be started: ", std::strerror(reason)));
@@ -125,7 +127,7 @@ int Ffmpeg::wait() {
 void Ffmpeg::write(std::span<const std::uint8_t> bytes) {
   while (!bytes.empty()) {
     progress_.check_cancelled();
-    const ssize_t written = ::write(input_, bytes.data(), bytes.size());
+    const ssize_t written = ::send(input_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
     if (written > 0) {
       bytes = bytes.subspan(std::size_t(written));
     } else if (written < 0 && errno == EAGAIN) {
