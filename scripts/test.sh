@@ -134,8 +134,8 @@ if [ $with_all = yes ]; then
 else
   scripts/setup.sh
 fi
-install_missing ffmpeg # films of tests and of the docs' commands
-[ $with_all = no ] || install_missing clang clang-format clang-tidy shellcheck dpkg-dev file python3 chromium opencv-doc colmap # 14 MB
+install_missing ffmpeg colmap # films, and cameras without a sheet: 14 MB
+[ $with_all = no ] || install_missing clang clang-format clang-tidy shellcheck dpkg-dev file python3 chromium opencv-doc
 [ $with_all = no ] || command -v npm >/dev/null || install_missing npm
 started=$SECONDS
 

@@ -50,8 +50,8 @@ class Calibrator {
     for (const std::size_t i : c_.used) c_.poses[i] = found.poses[i];
   }
 
-  /// Leaves out views that are three times as far off as the median one, and calibrates again, until
-  /// there are no more of them.
+  /// Leaves out views that are three times as far off as the median one, and calibrates again,
+  /// until there are no more of them.
   void drop_outliers() {
     for (;;) {
       const std::vector<double> all = c_.rms();

@@ -101,7 +101,8 @@ void describe(Described& to, BoardSpec& o) {
             "what is printed on the board");
   to.number("columns", &o.columns, from_to(3, kMostRows), "",
             "inner corners in a row; charuco: squares, circles: dots");
-  to.number("rows", &o.rows, from_to(3, kMostRows), "", "inner corners in a column; charuco: squares, circles: dots");
+  to.number("rows", &o.rows, from_to(3, kMostRows), "",
+            "inner corners in a column; charuco: squares, circles: dots");
   to.number("square", &o.square, above(0, kLargestSquare), "world units",
             "distance of neighbouring corners or dots")
       .expects = "a positive length";

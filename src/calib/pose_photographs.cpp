@@ -295,7 +295,8 @@ void describe(Described& to, PoseOptions& o) {
       .zero = "as the board says";
   to.number("height", &o.height, from_to(0, kLargest), "mm", "height of the box above the sheet")
       .zero = "the longer side of the free space";
-  to.number("margin", &o.margin, from_to(0, kLargest), "mm", "height of the box's lower side above the sheet");
+  to.number("margin", &o.margin, from_to(0, kLargest), "mm",
+            "height of the box's lower side above the sheet");
   to.number("unit", &o.unit, above(0, kLargest), "mm", "unit of the scene's world").expects =
       "a length above 0: 1 for millimetres, 1000 for metres";
   to.flag("flat", &o.flat, "take the sheet for flat, and do not find out whether it is bent");

@@ -36,8 +36,9 @@ struct HullOptions {
   int views_may_miss = 0;
   static constexpr int kMostMissing = 16;
   /// Pixels outside its outline at which one view's evidence against a point is full; for
-  /// points nearer to the outline it rises with the distance. A point goes when the evidence of all views sums to one. 0:
-  /// any view rejects a point at once. By what outlines disagree; not together with views_may_miss.
+  /// points nearer to the outline it rises with the distance. A point goes when the evidence of all
+  /// views sums to one. 0: any view rejects a point at once. By what outlines disagree; not
+  /// together with views_may_miss.
   double full_evidence = 0;
 };
 

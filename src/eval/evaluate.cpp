@@ -257,9 +257,11 @@ void check_volume(const TriMesh& result, const Truth& truth, Evaluation& e) {
 void describe(Described& to, EvaluateOptions& o) {
   to.list("thresholds", &o.thresholds, above(0, 1), "fractions above 0 and up to 1",
           "distances to count within, fractions of the truth's diagonal");
-  to.list("absolute", &o.absolute, above(0), "distances above 0", "further distances to count within, in world units");
+  to.list("absolute", &o.absolute, above(0), "distances above 0",
+          "further distances to count within, in world units");
   to.number("samples", &o.samples, from_to(1000, 20000000), "", "points to measure the result at");
-  to.number("seed", &o.seed, at_least(0), "", "seed of the random numbers that choose these points");
+  to.number("seed", &o.seed, at_least(0), "",
+            "seed of the random numbers that choose these points");
   to.number("min_views", &o.min_views, from_to(1, 255), "",
             "cameras that must see a part of the truth for it to count");
   to.number("columns", &o.columns, from_to(16, 4096), "",

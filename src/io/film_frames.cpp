@@ -31,6 +31,13 @@ struct FilmLength {
 /// ffmpeg takes names for addresses of the network where they look so.
 std::string as_file(const fs::path& film) { return "file:" + fs::absolute(film).string(); }
 
+/// ffmpeg's pattern for pictures in a folder, in which a percent sign stands for a number.
+std::string pictures_in(const fs::path& folder) {
+  std::string pattern;
+  for (const char c : folder.string()) pattern += c == '%' ? "%%" : std::string(1, c);
+  return pattern + "/picture_%06d.jpg";
+}
+
 /// The last line that says something, without the program's own place in it.
 std::string last_line(const std::string& text) {
   const std::size_t end = text.find_last_not_of("\r\n \t");
@@ -114,7 +121,7 @@ std::vector<std::vector<fs::path>> extract_stretches(const fs::path& film, const
                                     "1",
                                     "-q:v",
                                     "1",
-                                    (folder / "picture_%06d.jpg").string()};
+                                    pictures_in(folder)};
   std::error_code failure;
   fs::create_directories(folder, failure);
   if (failure) throw Error(concat(folder.string(), ": cannot be made (", failure.message(), ")"));

@@ -8,6 +8,7 @@
 #include "child_process.h"
 #include "core/atomic_file.h"
 #include "core/child_process.h"
+#include "fake_colmap.h"
 #include "io/image_file.h"
 #include "sphere_scene.h"
 #include "support/scratch_folder.h"
@@ -47,16 +48,6 @@ class ScanCommand : public testing::Test {
     const std::vector<std::uint8_t> grey(std::size_t(64) * 48 * 3, 90);
     for (int i = 0; i < count; ++i)
       io::write_png(folder_ / "photos" / (std::to_string(i) + ".png"), 64, 48, 3, grey);
-  }
-  /// A script in the place of COLMAP: `body` sees the command as $1.
-  RunOptions with_colmap(const std::string& body) const {
-    fs::create_directories(folder_ / "bin");
-    write_atomically(folder_ / "bin/colmap",
-                     "#!/bin/sh\n[ \"$2\" = --help ] && exit 0\n" + body + "\n");
-    fs::permissions(folder_ / "bin/colmap", fs::perms::owner_all);
-    RunOptions options;
-    options.environment = {"PATH=" + path("bin") + ":/usr/bin:/bin"};
-    return options;
   }
   /// A quick model.
   Finished scan(const Arguments& more = {}, const RunOptions& options = {}) const {
@@ -109,7 +100,8 @@ TEST_F(ScanCommand, WithoutTheSheetsFileItsTagsAreNoticed) {
   photograph_table();
   fs::remove(folder_ / "photos/board.json");
   const Finished posed = scan(
-      {}, with_colmap("case $1 in mapper) echo 'failed to create sparse model'; exit 1;; esac"));
+      {}, with_colmap(folder_,
+                      "case $1 in mapper) echo 'failed to create sparse model'; exit 1;; esac"));
   EXPECT_EQ(posed.code, 1);
   EXPECT_THAT(posed.err, HasSubstr("shows tags of a printed sheet"));
   EXPECT_THAT(posed.err, HasSubstr("--board"));
@@ -124,8 +116,10 @@ TEST_F(ScanCommand, MistakesAreNamed) {
   RunOptions nowhere;
   nowhere.environment = {"PATH=" + path("nowhere")};
   expect(1, scan({}, nowhere), "COLMAP, which is not installed");
-  expect(1, scan({}, with_colmap("case $1 in mapper) echo 'failed to create'; exit 1;; esac")),
-         "cameras of 0 of 4 photographs, and three are needed");
+  expect(
+      1,
+      scan({}, with_colmap(folder_, "case $1 in mapper) echo 'failed to create'; exit 1;; esac")),
+      "cameras of 0 of 4 photographs, and three are needed");
   expect(2, scan({"--bar", "149"}), "--bar is for photographs on a printed sheet");
   expect(2, scan({"--frames", "9"}), "--frames is for films");
   expect(2, scan({"--video", "a.mp4"}), "photographs and --video exclude each other");
@@ -146,7 +140,7 @@ TEST_F(ScanCommand, MistakesAreNamed) {
 
 TEST_F(ScanCommand, CtrlCLeavesNoStepThatIsTakenForDone) {
   write_photos(4);
-  RunOptions options = with_colmap("case $1 in exhaustive_matcher) sleep 100;; esac");
+  RunOptions options = with_colmap(folder_, "case $1 in exhaustive_matcher) sleep 100;; esac");
   options.signal_after = " matches\n";
   options.signal_delay_seconds = 1;
   options.signal = SIGINT;

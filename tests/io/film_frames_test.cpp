@@ -20,7 +20,7 @@ class FilmFrames : public TemporaryFolder {
   std::vector<std::vector<fs::path>> extract(const std::string& name, int frames) const {
     FrameOptions options;
     options.frames = frames;
-    return extract_stretches(folder_ / name, folder_ / "frames", options, progress_);
+    return extract_stretches(folder_ / name, folder_ / "100% frames", options, progress_);
   }
   /// 40 pictures, of which each is lighter than the one before.
   void make_film(const std::string& name) const {

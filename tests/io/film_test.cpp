@@ -130,6 +130,13 @@ TEST_F(FilmTest, TellsWhatFfmpegSaysWhereItFails) {
   EXPECT_TRUE(files().empty());
 }
 
+TEST_F(FilmTest, AProgramThatEndsEarlyIsAnErrorAndNoSignal) {
+  set_ffmpeg("exit 7");
+  const auto film = open_film(name("film.mp4"), {640, 480, 20, 10}, progress_);
+  const RgbImage large{640, 480, std::vector<std::uint8_t>(640 * 480 * 3)};
+  EXPECT_THROW(for (int i = 0; i < 20; ++i) film->add(large), Error);
+}
+
 TEST_F(FilmTest, OfRealFfmpegAreTheSameEveryTime) {
   if (std::system("ffmpeg -version > /dev/null 2>&1") != 0)
     GTEST_SKIP() << "ffmpeg is not installed";

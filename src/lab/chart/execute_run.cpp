@@ -1,8 +1,8 @@
 #include "lab/chart/execute_run.h"
 
 #include "core/atomic_file.h"
-#include "core/error.h"
 #include "core/child_process.h"
+#include "core/error.h"
 #include "lab/chart/figures.h"
 #include "lab/chart/identity.h"
 #include "lab/chart/statistics.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "core/atomic_file.h"
-#include "core/error.h"
 #include "core/child_process.h"
+#include "core/error.h"
 #include "lab/chart/figures.h"
 #include "lab/chart/identity.h"
 #include "lab/chart/run_record.h"
