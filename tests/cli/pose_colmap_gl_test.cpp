@@ -55,7 +55,7 @@ TEST_F(PoseWithColmap, SaysThatColmapIsNotInstalled) {
 TEST_F(PoseWithColmap, RepeatsTheLastLinesOfAFailure) {
   write_photos(4);
   const Finished posed = pose(with_colmap(
-      folder_,
+      folder_.path(),
       "case $1 in feature_extractor) echo begun; echo 'the disk is full' >&2; exit 7;; esac"));
   EXPECT_EQ(posed.code, 1);
   EXPECT_THAT(posed.err, HasSubstr("colmap feature_extractor failed (exit code 7)"));
@@ -66,7 +66,7 @@ TEST_F(PoseWithColmap, RepeatsTheLastLinesOfAFailure) {
 TEST_F(PoseWithColmap, SaysThatNoModelResultsAndWhy) {
   write_photos(4);
   const Finished posed = pose(with_colmap(
-      folder_,
+      folder_.path(),
       "case $1 in feature_extractor) echo 'Processed file [1/4]'; echo '  Name:       "
       "lens_1/00001_0.PNG'; echo '  Features:        17';; mapper) echo '=> No good initial image "
       "pair found.'; echo 'ERROR: failed to create sparse model' >&2; exit 1;; esac"));
@@ -82,9 +82,9 @@ TEST_F(PoseWithColmap, GivesMasksAndOrderToColmap) {
   io::write_png(folder_ / "masks/0.png", 64, 48, 1, white);
   io::write_png(folder_ / "masks/2.PNG.png", 64, 48, 1, white);
   const Finished posed =
-      pose(with_colmap(folder_, "echo \"$@\" >> '" + path("words") +
-                                    "'; case $1 in mapper) echo 'failed to create sparse "
-                                    "model'; exit 1;; esac"),
+      pose(with_colmap(folder_.path(), "echo \"$@\" >> '" + path("words") +
+                                           "'; case $1 in mapper) echo 'failed to create sparse "
+                                           "model'; exit 1;; esac"),
            {"--masks", path("masks"), "--ordered"});
   EXPECT_EQ(posed.code, 1);
   const std::string words = read_bytes(folder_ / "words");
@@ -104,8 +104,8 @@ TEST_F(PoseWithColmap, GivesMasksAndOrderToColmap) {
 TEST_F(PoseWithColmap, CtrlCEndsColmap) {
   write_photos(4);
   RunOptions options =
-      with_colmap(folder_, "case $1 in exhaustive_matcher) echo $$ > '" + path("pid") +
-                               "'; sleep 100; touch '" + path("went_on") + "';; esac");
+      with_colmap(folder_.path(), "case $1 in exhaustive_matcher) echo $$ > '" + path("pid") +
+                                      "'; sleep 100; touch '" + path("went_on") + "';; esac");
   options.signal_after = " matches\n";
   options.signal_delay_seconds = 1;
   options.signal = SIGINT;
@@ -133,7 +133,7 @@ TEST_F(PoseWithColmap, MistakesAreNamed) {
   write_photos(4);
   fs::create_directories(folder_ / "scan/colmap/images");
   write_atomically(folder_ / "scan/colmap/images/mine.txt", "mine");
-  const Finished foreign = pose(with_colmap(folder_, "true"));
+  const Finished foreign = pose(with_colmap(folder_.path(), "true"));
   EXPECT_EQ(foreign.code, 1);
   EXPECT_THAT(foreign.err, HasSubstr("did not make"));
   EXPECT_TRUE(fs::exists(folder_ / "scan/colmap/images/mine.txt"));

@@ -100,7 +100,7 @@ TEST_F(ScanCommand, WithoutTheSheetsFileItsTagsAreNoticed) {
   photograph_table();
   fs::remove(folder_ / "photos/board.json");
   const Finished posed = scan(
-      {}, with_colmap(folder_,
+      {}, with_colmap(folder_.path(),
                       "case $1 in mapper) echo 'failed to create sparse model'; exit 1;; esac"));
   EXPECT_EQ(posed.code, 1);
   EXPECT_THAT(posed.err, HasSubstr("shows tags of a printed sheet"));
@@ -116,10 +116,10 @@ TEST_F(ScanCommand, MistakesAreNamed) {
   RunOptions nowhere;
   nowhere.environment = {"PATH=" + path("nowhere")};
   expect(1, scan({}, nowhere), "COLMAP, which is not installed");
-  expect(
-      1,
-      scan({}, with_colmap(folder_, "case $1 in mapper) echo 'failed to create'; exit 1;; esac")),
-      "cameras of 0 of 4 photographs, and three are needed");
+  expect(1,
+         scan({}, with_colmap(folder_.path(),
+                              "case $1 in mapper) echo 'failed to create'; exit 1;; esac")),
+         "cameras of 0 of 4 photographs, and three are needed");
   expect(2, scan({"--bar", "149"}), "--bar is for photographs on a printed sheet");
   expect(2, scan({"--frames", "9"}), "--frames is for films");
   expect(2, scan({"--video", "a.mp4"}), "photographs and --video exclude each other");
@@ -140,7 +140,8 @@ TEST_F(ScanCommand, MistakesAreNamed) {
 
 TEST_F(ScanCommand, CtrlCLeavesNoStepThatIsTakenForDone) {
   write_photos(4);
-  RunOptions options = with_colmap(folder_, "case $1 in exhaustive_matcher) sleep 100;; esac");
+  RunOptions options =
+      with_colmap(folder_.path(), "case $1 in exhaustive_matcher) sleep 100;; esac");
   options.signal_after = " matches\n";
   options.signal_delay_seconds = 1;
   options.signal = SIGINT;

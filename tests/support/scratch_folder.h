@@ -21,6 +21,7 @@ class ScratchFolder {
     path_ = ::mkdtemp(name.data());
   }
   ~ScratchFolder() { std::filesystem::remove_all(path_); }
+  const std::filesystem::path& path() const { return path_; }
   std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
   std::size_t file_count() const {
     namespace fs = std::filesystem;
