@@ -28,10 +28,8 @@ float depth_at(int part, vec2 at, float w) {
 
 // The partition that serves a point.
 int part_of(vec4 p) {
-  float depth = dot(map_info.eye_row, p);
-  int part = 0;
-  while (part + 1 < map_info.size.z && depth > map_info.part_ends[part]) ++part;
-  return part;
+  bvec4 beyond = greaterThan(vec4(dot(map_info.eye_row, p)), map_info.part_ends);
+  return int(beyond.x) + int(beyond.y) + int(beyond.z);
 }
 
 MapPoint locate(int part, vec3 position) {

@@ -216,12 +216,13 @@ MapLayout lay_out(const Camera& viewpoint, const Box& bounds, const dvec3& origi
 shaders::MapInfo to_info(const MapLayout& layout, const Technique& technique,
                          std::size_t triangles) {
   shaders::MapInfo info{};
+  info.part_ends = glm::vec4(1e30f);
   for (std::size_t i = 0; i < layout.parts.size(); ++i) {
     const PartLayout& part = layout.parts[i];
     info.parts[i] = {glm::vec4(part.row_x), glm::vec4(part.row_y), glm::vec4(part.row_w),
                      glm::vec4(part.row_z),
                      glm::vec4(glm::vec3(part.depth_of_w), float(part.nearest_w))};
-    info.part_ends[int(i)] = float(std::min(part.end, 1e30));
+    if (i + 1 < layout.parts.size()) info.part_ends[int(i)] = float(part.end);
   }
   info.eye_row = glm::vec4(layout.eye_row);
   info.size = glm::ivec4(layout.size, int(layout.parts.size()), int(triangles));

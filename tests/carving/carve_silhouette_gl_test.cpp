@@ -7,6 +7,7 @@
 #include "carving/fit_grid.h"
 #include "carving/hull_kernels.h"
 #include "core/error.h"
+#include "support/filtering.h"
 #include "support/gl_context.h"
 
 namespace photohull::carving {
@@ -53,17 +54,18 @@ void for_each_voxel(const GridSpec& grid, F&& f) {
 /// matters to the surface. Deeper inside, views that cannot touch the surface are left out.
 void expect_equals_dense(const SparseVolume& volume, const HullScene& scene) {
   const std::vector<Silhouette> silhouettes = scene.silhouettes();
+  const double bound = 2e-3 + 2 * test::filtering_error();
   int wrong_sign = 0;
   double worst = 0;
   for_each_voxel(volume.grid, [&](const ivec3& voxel) {
     const double expected = reference::hull_distance(
         {scene.grid, scene.box}, {scene.cameras, silhouettes}, scene.options, voxel);
     const double found = volume.at(voxel);
-    if (std::abs(expected) > 2e-3) wrong_sign += (expected < 0) != (found < 0);
+    if (std::abs(expected) > bound) wrong_sign += (expected < 0) != (found < 0);
     if (std::abs(expected) < 0.9) worst = std::max(worst, std::abs(found - expected));
   });
   EXPECT_EQ(wrong_sign, 0);
-  EXPECT_LT(worst, 2e-3);
+  EXPECT_LT(worst, bound);
 }
 
 HullScene sphere_scene(int resolution, int cameras) {

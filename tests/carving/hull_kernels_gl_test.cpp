@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "support/filtering.h"
 #include "support/gl_context.h"
 
 namespace photohull::carving {
@@ -16,8 +17,9 @@ using reference::NodeClass;
 using test_kernels::HullKernels;
 using test_kernels::HullScene;
 
-/// Measured on llvmpipe: 1.3e-3 voxels, nearly all of it the half floats' rounding of distances.
-constexpr double kDistanceBound = 2e-3;
+/// Measured on llvmpipe: 1.3e-3 voxels, nearly all of it the half floats' rounding of distances;
+/// beyond that what the device rounds when it filters along two axes.
+double distance_bound() { return 2e-3 + 2 * test::filtering_error(); }
 
 HullScene empty_scene(const ivec3& bricks) {
   HullScene scene;
@@ -101,7 +103,7 @@ TEST_F(HullKernelTest, DistancesOfRandomSilhouettes) {
     HullScene scene = empty_scene({4, 3, 3});
     add_random(scene, rng_, 3 + trial);
     const Difference found = compare(scene);
-    EXPECT_LT(found.worst, kDistanceBound);
+    EXPECT_LT(found.worst, distance_bound());
     within_band += found.within_band;
   }
   EXPECT_GT(within_band, 10000);
@@ -111,9 +113,9 @@ TEST_F(HullKernelTest, DistancesWithViewsWithoutMask) {
   HullScene scene = empty_scene({4, 3, 3});
   add_random(scene, rng_, 4);
   scene.outlines[1] = scene.outlines[2] = {};
-  EXPECT_LT(compare(scene).worst, kDistanceBound);
+  EXPECT_LT(compare(scene).worst, distance_bound());
   for (test::Outline& outline : scene.outlines) outline = {};
-  EXPECT_LT(compare(scene).worst, kDistanceBound);
+  EXPECT_LT(compare(scene).worst, distance_bound());
 }
 
 TEST_F(HullKernelTest, DistancesOfVoxelsOffTheImages) {
@@ -123,7 +125,7 @@ TEST_F(HullKernelTest, DistancesOfVoxelsOffTheImages) {
     camera.intrinsics.fx *= 3;
     camera.intrinsics.fy *= 3;
   }
-  EXPECT_LT(compare(scene).worst, kDistanceBound);
+  EXPECT_LT(compare(scene).worst, distance_bound());
 }
 
 TEST_F(HullKernelTest, DistancesFromCamerasInsideTheBox) {
@@ -133,7 +135,7 @@ TEST_F(HullKernelTest, DistancesFromCamerasInsideTheBox) {
     const Camera camera = test::look_at(eye, eye + test::random_direction(rng_), 40, 80, 60);
     add(scene, camera, test::random_outline(rng_, 80, 60));
   }
-  EXPECT_LT(compare(scene).worst, kDistanceBound);
+  EXPECT_LT(compare(scene).worst, distance_bound());
 }
 
 TEST_F(HullKernelTest, DistancesFromWideAngleCameras) {
@@ -147,7 +149,7 @@ TEST_F(HullKernelTest, DistancesFromWideAngleCameras) {
       const Camera camera = test::look_at(eye, centre, 50, 120, 120);
       add(scene, camera, test::random_outline(rng_, 120, 120));
     }
-    EXPECT_LT(compare(scene).worst, kDistanceBound);
+    EXPECT_LT(compare(scene).worst, distance_bound());
   }
 }
 
@@ -157,7 +159,7 @@ TEST_F(HullKernelTest, DistancesWhereTwoOrMoreViewsMustSee) {
     add_random(scene, rng_, 5);
     for (Camera& camera : scene.cameras) camera.intrinsics.cx += 20;
     scene.options.min_views = min_views;
-    EXPECT_LT(compare(scene).worst, kDistanceBound);
+    EXPECT_LT(compare(scene).worst, distance_bound());
   }
 }
 
@@ -171,7 +173,7 @@ TEST_F(HullKernelTest, DistancesFromMoreViewsThanTheKernelLists) {
         }));
   }
   const Difference found = compare(scene);
-  EXPECT_LT(found.worst, kDistanceBound);
+  EXPECT_LT(found.worst, distance_bound());
   EXPECT_GT(found.within_band, 500);
 }
 
@@ -187,7 +189,7 @@ TEST_F(HullKernelTest, DistancesThatSomeViewsMayMiss) {
       scene.options.min_views = 1 + trial / 3;
       scene.options.views_may_miss = missing;
       const Difference found = compare(scene);
-      EXPECT_LT(found.worst, kDistanceBound) << missing << " may miss, trial " << trial;
+      EXPECT_LT(found.worst, distance_bound()) << missing << " may miss, trial " << trial;
       within_band += found.within_band;
     }
     EXPECT_GT(within_band, 5000) << missing;
@@ -200,7 +202,7 @@ TEST_F(HullKernelTest, DistancesWhereAllViewsMayMiss) {
     add_random(scene, rng_, 3);
     scene.options.views_may_miss = missing;
     const Difference found = compare(scene);
-    EXPECT_LT(found.worst, kDistanceBound) << missing;
+    EXPECT_LT(found.worst, distance_bound()) << missing;
     EXPECT_GT(found.within_band, 0) << missing;  // beside the box's faces
   }
 }
@@ -216,7 +218,7 @@ TEST_F(HullKernelTest, DistancesFromMoreViewsThanTheKernelListsThatSomeMayMiss) 
   for (const int missing : {3, HullOptions::kMostMissing}) {
     scene.options.views_may_miss = missing;
     const Difference found = compare(scene);
-    EXPECT_LT(found.worst, kDistanceBound) << missing;
+    EXPECT_LT(found.worst, distance_bound()) << missing;
     EXPECT_GT(found.within_band, 300) << missing;
   }
 }
@@ -230,7 +232,7 @@ TEST_F(HullKernelTest, DistancesFromCamerasInsideTheBoxThatSomeMayMiss) {
   }
   for (const int missing : {1, 2}) {
     scene.options.views_may_miss = missing;
-    EXPECT_LT(compare(scene).worst, kDistanceBound) << missing;
+    EXPECT_LT(compare(scene).worst, distance_bound()) << missing;
   }
 }
 
@@ -246,7 +248,8 @@ TEST_F(HullKernelTest, DistancesByTheEvidenceOfAllViews) {
       scene.options.full_evidence = full;
       const Difference found = compare(scene);
       // Half floats round the distances of views that are not beside a voxel more.
-      EXPECT_LT(found.worst, std::max(full / 2, 1.0) * kDistanceBound) << full << " px, " << trial;
+      EXPECT_LT(found.worst, std::max(full / 2, 1.0) * distance_bound())
+          << full << " px, " << trial;
       within_band += found.within_band;
     }
     EXPECT_GT(within_band, 5000) << full;
@@ -263,7 +266,7 @@ TEST_F(HullKernelTest, DistancesByTheEvidenceOfMoreViewsThanTheKernelLists) {
   }
   scene.options.full_evidence = 1.5;
   const Difference found = compare(scene);
-  EXPECT_LT(found.worst, kDistanceBound);
+  EXPECT_LT(found.worst, distance_bound());
   EXPECT_GT(found.within_band, 500);
 }
 

@@ -82,7 +82,6 @@ TEST_F(BlockScene, GivesTheSameFromFilesAndFromMemory) {
   for (const char* scale : {"", "1/2"}) {
     ReconstructOptions options;
     options.resolution = 24;
-    options.device = "software";
     if (*scale) options.image_scale = 0.5;
     const Reconstructor reconstructor(options);
     const Reconstruction a = reconstructor.run(files, silent_);
@@ -101,7 +100,6 @@ TEST_F(BlockScene, StopsByItsOwnToken) {
   token.cancel();
   Progress stopped(token);
   ReconstructOptions options;
-  options.device = "software";
   EXPECT_THROW(Reconstructor(options).run(load_photographs(folder_ / "scene"), stopped), Cancelled);
 }
 

@@ -6,6 +6,7 @@
 #include <glm/gtc/packing.hpp>
 
 #include "projtex/project_layer_reference.h"
+#include "support/filtering.h"
 #include "support/gl_context.h"
 #include "support/ray_cast.h"
 
@@ -76,9 +77,12 @@ TEST_F(ImageSetTest, MipLevelsOf8BitAreWithinRoundingOfLinearBoxMeans) {
                                         view_of(test::random_image(rng_, 50, 17))};
   const ImageSet set(views);
   ASSERT_EQ(set.texture().levels(), 7);
-  // Every level is rounded to 8 bits of sRGB: half a step of up to 1 / 255 in each.
+  // Every level is rounded to 8 bits of sRGB: half a step of up to 1 / 255 in each. Hardware, whose
+  // filters have rounded weights, averages linear light in 8 bits as well: half a step of it, of
+  // which the root is compared.
+  const double linear_step = test::filtering_error() < 1e-4 ? 0 : std::sqrt(0.5 / 255);
   for (int level = 1; level < 7; ++level)
-    EXPECT_LT(worst_difference(set, views, level, false), level * 1.0 / 255) << level;
+    EXPECT_LT(worst_difference(set, views, level, false), level * 1.0 / 255 + linear_step) << level;
 }
 
 TEST_F(ImageSetTest, OneHalfFloatImageMakesTheSetHalfFloat) {

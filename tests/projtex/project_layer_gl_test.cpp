@@ -9,6 +9,7 @@
 #include "gpu/texture.h"
 #include "projtex/project_layer_reference.h"
 #include "shared/sweep.h"
+#include "support/filtering.h"
 #include "support/gl_context.h"
 #include "support/ray_cast.h"
 
@@ -214,17 +215,20 @@ class ProjectLayer : public ::testing::Test {
   std::vector<std::vector<LinearImage>> mips_;
 };
 
+/// Beyond what a device without rounding of weights may be off by: square roots of linear light,
+/// which are compared, magnify what is rounded in the dark.
+double bound_beyond(double exact) { return exact + 12 * test::filtering_error(); }
 // Measured on llvmpipe: 5e-4 of full scale with half floats, whose levels are exact to 2^-11.
-constexpr double kBound = 1e-3;
+double bound() { return bound_beyond(1e-3); }
 // llvmpipe decodes 8-bit sRGB by a polynomial that is off by up to 1.2e-3.
-constexpr double kBound8Bit = 2e-3;
+double bound_8_bit() { return bound_beyond(2e-3); }
 // 8-bit images round every mip level to a step of sRGB, up to 3.9e-3; measured: 4.9e-3.
-constexpr double kBound8BitMips = 6e-3;
+double bound_8_bit_mips() { return bound_beyond(6e-3); }
 
 TEST_F(ProjectLayer, HalfFloatImagesNearestLevel) {
   load(as_half(random_images(8)), MipFilter::kNearest);
   const Outcome found = compare_random(12, MipFilter::kNearest, -3.5, 1.5);
-  EXPECT_LT(found.worst, kBound);
+  EXPECT_LT(found.worst, bound());
   EXPECT_EQ(found.disagreements, 0);
   EXPECT_GT(found.compared, 50000);
   EXPECT_GT(found.off_image, 1000);
@@ -233,14 +237,14 @@ TEST_F(ProjectLayer, HalfFloatImagesNearestLevel) {
 TEST_F(ProjectLayer, HalfFloatImagesTrilinear) {
   load(as_half(random_images(8)), MipFilter::kTrilinear);
   const Outcome found = compare_random(12, MipFilter::kTrilinear, -3.5, 1.5);
-  EXPECT_LT(found.worst, kBound);
+  EXPECT_LT(found.worst, bound());
   EXPECT_EQ(found.disagreements, 0);
 }
 
 TEST_F(ProjectLayer, EightBitImagesAtLevelZero) {
   load(random_images(8), MipFilter::kNearest);
   const Outcome found = compare_random(6, MipFilter::kNearest, -5, -3.5);
-  EXPECT_LT(found.worst, kBound8Bit);
+  EXPECT_LT(found.worst, bound_8_bit());
   EXPECT_EQ(found.disagreements, 0);
   EXPECT_GT(found.compared, 10000);
 }
@@ -248,7 +252,7 @@ TEST_F(ProjectLayer, EightBitImagesAtLevelZero) {
 TEST_F(ProjectLayer, EightBitImagesWithMipLevels) {
   load(random_images(8), MipFilter::kNearest);
   const Outcome found = compare_random(12, MipFilter::kNearest, -3.5, 1.5);
-  EXPECT_LT(found.worst, kBound8BitMips);
+  EXPECT_LT(found.worst, bound_8_bit_mips());
   EXPECT_EQ(found.disagreements, 0);
 }
 
@@ -264,7 +268,7 @@ TEST_F(ProjectLayer, PlanesEdgeOnToTheCamera) {
     for (const double focal : {100.0, 400.0})
       cameras.push_back(to_grid(test::look_at(eye, target, focal, kSize, kSize), grid));
     const Outcome found = compare(layer_case, cameras);
-    EXPECT_LT(found.worst, kBound);
+    EXPECT_LT(found.worst, bound());
     EXPECT_EQ(found.disagreements, 0);
     EXPECT_GT(found.compared, 100);
   }
@@ -281,7 +285,7 @@ TEST_F(ProjectLayer, CamerasWithinThePlane) {
     cameras.push_back(to_grid(test::look_at(eye, target, 40, kSize, kSize), layer_case.grid));
   }
   const Outcome found = compare(layer_case, cameras);
-  EXPECT_LT(found.worst, kBound);
+  EXPECT_LT(found.worst, bound());
   EXPECT_EQ(found.disagreements, 0);
   EXPECT_GT(found.compared, 100);
   EXPECT_GT(found.off_image, 100);
@@ -301,7 +305,7 @@ TEST_F(ProjectLayer, TheImageEndsAtItsBorder) {
   LayerCase layer_case;
   const Camera camera = test::look_at({0, 0, -40}, {12, 0, 0}, 300, kSize, kSize);
   const Outcome found = compare(layer_case, {to_grid(camera, layer_case.grid)});
-  EXPECT_LT(found.worst, kBound);
+  EXPECT_LT(found.worst, bound());
   EXPECT_EQ(found.disagreements, 0);
   EXPECT_GT(found.compared, 50);
   EXPECT_GT(found.off_image, 50);

@@ -6,6 +6,7 @@
 #include "projtex/sampler_reference.h"
 #include "shared/sampling.h"
 #include "shared/sweep.h"
+#include "support/filtering.h"
 #include "support/gl_context.h"
 #include "support/ray_cast.h"
 
@@ -112,7 +113,8 @@ class SampleLayer : public ::testing::Test {
           continue;
         }
         ++compared_;
-        EXPECT_LT(glm::length(sample - expected), 1e-3) << to_string(sampler) << ", " << place;
+        EXPECT_LT(glm::length(sample - expected), 1e-3 + 3 * test::filtering_error())
+            << to_string(sampler) << ", " << place;
       }
   }
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "map_cases.h"
+#include "support/filtering.h"
 #include "support/gl_context.h"
 #include "visibility/reference.h"
 
@@ -83,7 +84,7 @@ class EveryTechnique : public ::testing::TestWithParam<Technique> {
     int wrong = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const double e = expected.visible(samples[i]);
-      wrong += !(std::abs(found[i] - e) <= 2e-3);
+      wrong += !(std::abs(found[i] - e) <= 2e-3 + 4 * test::filtering_error());
       seen_ += e, ++asked_;
     }
     return double(wrong) / double(samples.size());
@@ -105,10 +106,11 @@ class EveryTechnique : public ::testing::TestWithParam<Technique> {
         continue;
       }
       const double slope = GetParam().bias == Bias::kSlope ? t.slope : 0;
-      EXPECT_NEAR(first[i], t.first + GetParam().slope_factor * slope,
-                  2e-4 * t.first + 0.5 * slope);
+      // Corners are rounded to a 256th of a texel, which hardware carries into depths.
+      const double rounding = 2e-4 * t.first + 0.02 * t.slope;
+      EXPECT_NEAR(first[i], t.first + GetParam().slope_factor * slope, rounding + 0.5 * slope);
       if (!second.empty() && std::isfinite(t.second)) {
-        EXPECT_NEAR(second[i], t.second, 2e-4 * t.first);
+        EXPECT_NEAR(second[i], t.second, rounding + 1e-3 * t.first);
       }
       if (!ids.empty()) {
         EXPECT_EQ(ids[i], t.id);
