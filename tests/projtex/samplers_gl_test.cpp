@@ -23,7 +23,7 @@ using reference::PlaneSquare;
 
 // Of full scale, in square roots of linear light; half floats alone account for 2.5e-4.
 /// Of samplers whose weights the device computes, more where it rounds them.
-double sample_bound() { return 1e-3 + 3 * test::filtering_error(); }
+double sample_bound() { return 1e-3 + 6 * test::filtering_error(); }
 // Squares of which less than this is on the object tell nothing; quotients lose digits there.
 constexpr double kLeastCoverage = shaders::kLeastCoverage;
 

@@ -172,8 +172,8 @@ TEST_F(FitPatches, AgreesWithoutSteps) {
   options_.least_score = -0.9, options_.full_score = 0.3;  // all take part
   options_.slope = 0.02;
   const std::vector<Probe> probes = random_probes(250);
-  EXPECT_LE(compare(probes, run(probes)),
-            6);  // a footprint between two mip levels may fall either way
+  // A footprint between two mip levels may fall either way; hardware rounds the level itself.
+  EXPECT_LE(compare(probes, run(probes)), test::filtering_error() > 1e-3 ? 16 : 6);
   EXPECT_GT(informed_, 50);
 }
 
