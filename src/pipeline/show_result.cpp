@@ -1,5 +1,8 @@
 #include "pipeline/show_result.h"
 
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -47,12 +50,12 @@ std::vector<std::vector<std::uint8_t>> pictures(std::span<const PreparedView> vi
   double edge = std::sqrt(double(kPictureBytes) / (kPixelBytes * std::max(pixels, 1e-9)));
   for (;;) {
     edge = std::clamp(edge, kSmallestEdge, kLargestEdge);
-    std::vector<std::vector<std::uint8_t>> made;
+    std::vector<std::vector<std::uint8_t>> made(which.size());
+    tbb::parallel_for(std::size_t(0), which.size(), [&](std::size_t k) {
+      made[k] = picture(views[std::size_t(which[k])].image, edge);
+    });
     std::size_t bytes = 0;
-    for (const int i : which) {
-      made.push_back(picture(views[std::size_t(i)].image, edge));
-      bytes += made.back().size();
-    }
+    for (const std::vector<std::uint8_t>& jpeg : made) bytes += jpeg.size();
     if (bytes <= kPictureBytes || edge <= kSmallestEdge) return made;
     edge *= 0.95 * std::sqrt(double(kPictureBytes) / double(bytes));
   }
@@ -65,9 +68,15 @@ page::Shown show_result(const TriMesh& mesh, SeenVertices seen,
   constexpr float kNotKnown = std::numeric_limits<float>::quiet_NaN();
   seen.views.resize(mesh.positions.size(), kNotKnown);
   seen.disagreement.resize(mesh.positions.size(), kNotKnown);
-  const TriMesh reduced = reduce_mesh(mesh, kShownTriangles, {&seen.views, &seen.disagreement});
-  page::Shown shown = show_views(views);
-  shown.model = page::encode_model(reduced, layers_of(reduced, std::move(seen)));
+  page::Shown shown;
+  page::Model model;
+  tbb::parallel_invoke([&] { shown = show_views(views); },
+                       [&] {
+                         const TriMesh reduced =
+                             reduce_mesh(mesh, kShownTriangles, {&seen.views, &seen.disagreement});
+                         model = page::encode_model(reduced, layers_of(reduced, std::move(seen)));
+                       });
+  shown.model = std::move(model);
   return shown;
 }
 

@@ -75,8 +75,7 @@ struct ClosestPoint::Data {
 };
 
 void ClosestPoint::Data::build() {
-  // One thread builds the tree, so that it is the same tree in every run.
-  device = rtcNewDevice("threads=1");
+  device = rtcNewDevice(nullptr);
   if (!device)
     throw Error(
         "the distance queries (Embree) cannot be started: most likely too little memory or too few "

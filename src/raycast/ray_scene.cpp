@@ -53,8 +53,7 @@ struct RayScene::Device {
   RTCScene scene = nullptr;
 
   Device() {
-    // One thread builds the tree, so that it is the same tree in every run.
-    device = rtcNewDevice("threads=1");
+    device = rtcNewDevice(nullptr);
     if (!device)
       throw Error(
           "the ray caster (Embree) cannot be started: most likely too little memory or too few "

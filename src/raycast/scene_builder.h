@@ -2,6 +2,7 @@
 #pragma once
 
 #include <embree3/rtcore.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
 namespace photohull {
@@ -12,7 +13,10 @@ namespace photohull {
 /// own; the scene's task group refers to it as long as it lives.
 class SceneBuilder {
  public:
+  /// One thread builds the tree, so that it is the same tree in every run. Embree's own option for
+  /// that would hold all of the process's TBB at one thread as long as the scene lives.
   void commit(RTCScene scene) {
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     tbb::parallel_for(
         0, 1, [&](int) { rtcCommitScene(scene); }, context_);
   }

@@ -1,6 +1,7 @@
 #include "raycast/ray_scene.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
 #include <cmath>
@@ -134,6 +135,19 @@ TEST(RayScene, IsBuiltWhileATaskBesideItFails) {
                             EXPECT_LT(ClosestPoint(mesh).nearest(mesh.world(0)).distance, 1e-6);
                           }),
         Error);
+}
+
+/// Embree's devices can limit all of the process's TBB as long as they live.
+TEST(RayScene, LeavesTheProcessItsThreads) {
+  const auto allowed = [] {
+    return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  };
+  const std::size_t before = allowed();
+  const TriMesh mesh = triangle_soup(100);
+  const RayScene rays(mesh);
+  EXPECT_EQ(allowed(), before);
+  const ClosestPoint near(mesh);
+  EXPECT_EQ(allowed(), before);
 }
 
 }  // namespace
