@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Checks that files and functions fit a head: no C++ file of src/, cli/ and tests/ has more than 400 lines, and no function
-of src/ and cli/ has more than 60 between its braces. Relies on the layout that clang-format gives: a function's head starts
-at the column of its scope (0, or 2 more for each class around it) and its body ends with a brace there. Prints what is too
-long and fails; needs the standard library only.
+"""Checks that files and functions fit a head: no C++ file of src/, cli/ and tests/ and no shader has more than 400 lines,
+no function of src/, cli/ and shaders/ has more than 60 between its braces, and none of src/refine and shaders/ more than 6
+parameters. Relies on the layout that clang-format gives, and that shaders have as well: a function's head starts at the
+column of its scope (0, or 2 more for each class around it) and its body ends with a brace there. Prints what is too long
+and fails; needs the standard library only.
 
     scripts/check_sizes.py [ROOT]    # of another checkout than this one
 """
@@ -12,6 +13,7 @@ from pathlib import Path
 
 MOST_FILE_LINES = 400
 MOST_FUNCTION_LINES = 60
+MOST_PARAMETERS = 6
 TYPE = re.compile(r"(template <.*> )?(class|struct|union)\b[^()]*\{$")
 NO_FUNCTION = re.compile(r"(namespace|enum|extern)\b")
 
@@ -19,7 +21,7 @@ NO_FUNCTION = re.compile(r"(namespace|enum|extern)\b")
 def files_of(root, folders):
     for folder in folders:
         for path in sorted((root / folder).rglob("*")):
-            if path.suffix in (".cpp", ".h"):
+            if path.suffix in (".cpp", ".h", ".glsl"):
                 yield path
 
 
@@ -53,11 +55,23 @@ def functions(lines):
                 body = number
 
 
+def parameters(head):
+    """How many parameters a function with this head has."""
+    count, depth, text = 1, 0, ""
+    for letter in head.partition("(")[2]:
+        depth += (letter in "([{<") - (letter in ")]}>")
+        if depth < 0:
+            break
+        count += letter == "," and depth == 0
+        text += letter
+    return count if text.strip() else 0
+
+
 def main():
     root = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parent.parent
     faults = []
     checked = 0
-    for path in files_of(root, ("src", "cli", "tests")):
+    for path in files_of(root, ("src", "cli", "tests", "shaders")):
         lines = path.read_text().splitlines()
         name = path.relative_to(root)
         if len(lines) > MOST_FILE_LINES:
@@ -68,6 +82,8 @@ def main():
             checked += 1
             if length > MOST_FUNCTION_LINES:
                 faults.append(f"{name}:{start}: {length} lines, {MOST_FUNCTION_LINES} at most: {head[:80]}")
+            if (name.parts[0] == "shaders" or name.parts[:2] == ("src", "refine")) and parameters(head) > MOST_PARAMETERS:
+                faults.append(f"{name}:{start}: {parameters(head)} parameters, {MOST_PARAMETERS} at most: {head[:80]}")
     if not checked:
         faults.append(f"no function found below {root}")
     print("\n".join(faults) or f"{checked} functions checked")

@@ -20,6 +20,7 @@ layout(std430, binding = kChooseViewListsBinding) readonly buffer ViewLists { ui
 float best_worth[kMatchCandidates];
 int best_view[kMatchCandidates];
 
+// Puts a view into its place among the worthiest ones.
 void insert(int view, float worth) {
   for (int k = 0; k < kMatchCandidates; ++k) {
     bool better = worth > best_worth[k];
@@ -36,6 +37,7 @@ void insert(int view, float worth) {
 float hidden_cosine[kHiddenViews];
 int hidden_view[kHiddenViews];
 
+// Puts a view into its place among the most frontal hidden ones.
 void insert_hidden(int view, float cosine) {
   for (int k = 0; k < kHiddenViews; ++k) {
     bool better = cosine > hidden_cosine[k];
@@ -48,10 +50,14 @@ void insert_hidden(int view, float cosine) {
   }
 }
 
-void main() {
-  uint i = invocation().x;
-  if (i >= uint(parameters.counts.x)) return;
-  vec3 position = surfels[i].position.xyz, normal = surfels[i].normal.xyz;
+// How many views there are of a kind for a surfel.
+struct ViewCounts {
+  int seen;        // see it
+  int candidates;  // of those the listed ones, not too flat to be matched in
+};
+
+// Lists for a surfel the worthiest views that see it and the most frontal ones that something hides it from.
+ViewCounts list_candidates(vec3 position, vec3 normal) {
   for (int k = 0; k < kMatchCandidates; ++k) best_worth[k] = 0.0;
   for (int k = 0; k < kMatchCandidates; ++k) best_view[k] = 0;
   for (int k = 0; k < kHiddenViews; ++k) hidden_cosine[k] = 0.0;
@@ -59,7 +65,7 @@ void main() {
   vec3 receiver = position + parameters.visibility.x * normal;
   uint list = work_group().x * uint(parameters.counts.y + 1);
   uint listed = view_lists[list];
-  int found = 0, seen = 0;
+  ViewCounts counts = ViewCounts(0, 0);
   for (uint k = 1u; k <= listed; ++k) {
     int v = int(view_lists[list + k]);
     GpuView view = views[v];
@@ -73,36 +79,47 @@ void main() {
       if (cosine > parameters.visibility.z) insert_hidden(v, cosine);
       continue;
     }
-    ++seen;
+    ++counts.seen;
     if (!(cosine > parameters.visibility.z)) continue;
     float energy = view.detail.x * view.detail.x;
     insert(v, cosine * energy * energy);
-    ++found;
+    ++counts.candidates;
   }
-  found = min(found, kMatchCandidates);
+  counts.candidates = min(counts.candidates, kMatchCandidates);
+  return counts;
+}
+
+// The worthiest candidate whose direction is at a useful angle; -1 where there is none. `nearest`: how near
+// each one is to what is chosen already, as a cosine; more than 1 takes it out.
+int worthiest(float nearest[kMatchCandidates]) {
+  int best = -1;
+  float most = 0.0;
+  for (int k = 1; k < kMatchCandidates; ++k) {
+    // Near-duplicates are worth a third.
+    float worth = best_worth[k] * (nearest[k] > parameters.angles.z ? 0.33 : 1.0);
+    bool better = nearest[k] <= 1.0 && worth > most;
+    most = better ? worth : most;
+    best = better ? k : best;
+  }
+  return best;
+}
+
+// Chooses greedily among the listed candidates, the worthiest one first; says how many it chose.
+int choose_among(int candidates, vec3 position, out int chosen[kMatchViews]) {
   vec3 direction[kMatchCandidates];
   for (int k = 0; k < kMatchCandidates; ++k)
     direction[k] = normalize(views[best_view[k]].centre.xyz - position);
 
-  int chosen[kMatchViews] = int[kMatchViews](-1, -1, -1, -1, -1, -1);
-  int count = found > 0 ? 1 : 0;
-  chosen[0] = found > 0 ? best_view[0] : -1;
-  // How near each candidate is to what is chosen already, as a cosine; 2 takes it out.
+  chosen = int[kMatchViews](-1, -1, -1, -1, -1, -1);
+  int count = candidates > 0 ? 1 : 0;
+  chosen[0] = candidates > 0 ? best_view[0] : -1;
   float nearest[kMatchCandidates];
   for (int k = 0; k < kMatchCandidates; ++k) {
     float c = dot(direction[k], direction[0]);
-    nearest[k] = k > 0 && k < found && c <= parameters.angles.x && c >= parameters.angles.y ? c : 2.0;
+    nearest[k] = k > 0 && k < candidates && c <= parameters.angles.x && c >= parameters.angles.y ? c : 2.0;
   }
   for (int slot = 1; slot < kMatchViews; ++slot) {
-    int best = -1;
-    float most = 0.0;
-    for (int k = 1; k < kMatchCandidates; ++k) {
-      // Near-duplicates are worth a third.
-      float worth = best_worth[k] * (nearest[k] > parameters.angles.z ? 0.33 : 1.0);
-      bool better = nearest[k] <= 1.0 && worth > most;
-      most = better ? worth : most;
-      best = better ? k : best;
-    }
+    int best = worthiest(nearest);
     if (best < 0) break;
     chosen[slot] = best_view[best];
     ++count;
@@ -110,7 +127,18 @@ void main() {
     for (int k = 1; k < kMatchCandidates; ++k)
       nearest[k] = nearest[k] > 1.0 || k == best ? 2.0 : max(nearest[k], dot(direction[k], taken));
   }
-  choices[i].first = ivec4(chosen[0], chosen[1], chosen[2], chosen[3]);
-  choices[i].second = ivec4(chosen[4], chosen[5], seen, count);
-  choices[i].hidden = ivec4(hidden_view[0], hidden_view[1], hidden_view[2], hidden_view[3]);
+  return count;
+}
+
+// The choice of one surfel.
+void main() {
+  uint i = invocation().x;
+  if (i >= uint(parameters.counts.x)) return;
+  vec3 position = surfels[i].position.xyz, normal = surfels[i].normal.xyz;
+  ViewCounts counts = list_candidates(position, normal);
+  MatchChoice choice;
+  choice.seen = counts.seen;
+  choice.count = choose_among(counts.candidates, position, choice.views);
+  choice.hidden = hidden_view;
+  choices[i] = choice;
 }

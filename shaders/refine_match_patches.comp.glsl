@@ -23,69 +23,101 @@ layout(std430, binding = kMatchTexturesBinding) writeonly buffer Textures { floa
 layout(std430, binding = kMatchBendsBinding) readonly buffer Bends { vec4 bends[]; };  // curvature along uu, uv, vv
 #endif
 
+const float kTapCount = float(kTaps);
+
+// Colours of the taps of the reference view's patch.
+vec3 reference_colours[kTaps];
+
+// What correlations with the reference view's patch need beside its colours.
+struct ReferenceMoments {
+  vec3 sum;        // of the colours
+  float variance;  // of all values, times their number
+  float scale;     // 1 / root of that variance with the lift
+};
+
+// What is added to the variances of both patches in a correlation, so that rounding does not count.
+float variance_lift() { return 3.0 * kTapCount * parameters.consistency.z; }
+
+// Fetches reference_colours, and their moments.
+ReferenceMoments fetch_reference(int view, TangentPatch t) {
+  PatchFootprint f = footprint(view, t);
+  ReferenceMoments r;
+  r.sum = vec3(0.0);
+  float squares = 0.0;
+  for (int k = 0; k < kTaps; ++k) {
+    vec3 x = tap(f, k, t.bend);
+    reference_colours[k] = x;
+    r.sum += x;
+    squares += dot(x, x);
+  }
+  r.variance = max(squares - dot(r.sum, r.sum) / kTapCount, 0.0);
+  r.scale = inversesqrt(r.variance + variance_lift());
+  return r;
+}
+
+// Zero-mean normalised cross-correlation of a view's patch with the reference view's.
+float correlation(int view, TangentPatch t, ReferenceMoments r) {
+  PatchFootprint f = footprint(view, t);
+  vec3 sum = vec3(0.0);
+  float squares = 0.0, product = 0.0;
+  for (int k = 0; k < kTaps; ++k) {
+    vec3 x = tap(f, k, t.bend);
+    sum += x;
+    squares += dot(x, x);
+    product += dot(x, reference_colours[k]);
+  }
+  return (product - dot(r.sum, sum) / kTapCount) * r.scale *
+         inversesqrt(max(squares - dot(sum, sum) / kTapCount, 0.0) + variance_lift());
+}
+
+// Puts the score of a pair of views into its place in the falling order.
+void insert(float score, inout float pairs[kMatchViews - 1]) {
+  for (int k = 0; k < kMatchViews - 1; ++k) {
+    float kept = max(pairs[k], score);
+    score = min(pairs[k], score);
+    pairs[k] = kept;
+  }
+}
+
+// Mean over the best share of the pairs that `count` views make with their reference.
+float mean_of_best(float pairs[kMatchViews - 1], int count) {
+  int best = int(ceil(parameters.consistency.y * float(count - 1)));
+  float total = 0.0;
+  for (int k = 0; k < kMatchViews - 1; ++k) total += k < best ? pairs[k] : 0.0;
+  return total / float(best);
+}
+
+// The patch of a surfel that was moved by an offset.
+TangentPatch patch_of_surfel(uint i, float offset, int reference) {
+  vec3 normal = surfels[i].normal.xyz;
+  TangentPatch t = tangent_patch(surfels[i].position.xyz + offset * normal, normal, views[reference],
+                                 parameters.search.z, parameters.search.w);
+#ifdef PATCH_BENT
+  t.bend = vec3(0.5, 1.0, 0.5) * bends[i].xyz * dot(t.u, t.u);
+#endif
+  return t;
+}
+
+// Score of one surfel at one offset, and at the middle offset the surfel's texture.
 void main() {
   uint offsets = uint(parameters.counts.z);
   uint i = invocation().x / offsets;
   if (i >= uint(parameters.counts.x)) return;
   float offset = (parameters.search.x + parameters.search.y * float(invocation().x % offsets)) *
                  surfels[i].position.w;
-  vec3 normal = surfels[i].normal.xyz;
-  vec3 centre = surfels[i].position.xyz + offset * normal;
-  int count = choices[i].second.w;
-  if (count < 2) {
+  MatchChoice choice = choices[i];
+  if (choice.count < 2) {
     scores[invocation().x] = kNoScore;
     textures[i] = 1.0;
     return;
   }
-  int chosen[kMatchViews] = int[kMatchViews](choices[i].first.x, choices[i].first.y, choices[i].first.z,
-                                             choices[i].first.w, choices[i].second.x, choices[i].second.y);
-  vec3 u, w;
-  patch_axes(centre, normal, views[chosen[0]], parameters.search.z, parameters.search.w, u, w);
-
-#ifdef PATCH_BENT
-  vec3 bend = vec3(0.5, 1.0, 0.5) * bends[i].xyz * dot(u, u);
-#else
-  vec3 bend = vec3(0.0);
-#endif
-
-  vec3 patch_of_reference[kTaps];
-  vec3 sum = vec3(0.0);
-  float squares = 0.0;
-  PatchFootprint f = footprint(chosen[0], centre, u, w, normal);
-  for (int k = 0; k < kTaps; ++k) {
-    vec3 x = tap(f, k, bend);
-    patch_of_reference[k] = x;
-    sum += x;
-    squares += dot(x, x);
-  }
-  const float n = float(kTaps);
-  float lift = 3.0 * n * parameters.consistency.z;
-  float variance = max(squares - dot(sum, sum) / n, 0.0);
-  float scale = inversesqrt(variance + lift);
-  if (invocation().x % offsets == offsets / 2u) textures[i] = variance / (variance + 3.0 * n * parameters.consistency.x);
+  TangentPatch t = patch_of_surfel(i, offset, choice.views[0]);
+  ReferenceMoments reference = fetch_reference(choice.views[0], t);
+  if (invocation().x % offsets == offsets / 2u)
+    textures[i] = reference.variance / (reference.variance + 3.0 * kTapCount * parameters.consistency.x);
 
   float pairs[kMatchViews - 1];
   for (int k = 0; k < kMatchViews - 1; ++k) pairs[k] = -1.0;
-  for (int v = 1; v < count; ++v) {
-    f = footprint(chosen[v], centre, u, w, normal);
-    vec3 other_sum = vec3(0.0);
-    float other_squares = 0.0, product = 0.0;
-    for (int k = 0; k < kTaps; ++k) {
-      vec3 x = tap(f, k, bend);
-      other_sum += x;
-      other_squares += dot(x, x);
-      product += dot(x, patch_of_reference[k]);
-    }
-    float score = (product - dot(sum, other_sum) / n) * scale *
-                  inversesqrt(max(other_squares - dot(other_sum, other_sum) / n, 0.0) + lift);
-    for (int k = 0; k < kMatchViews - 1; ++k) {
-      float kept = max(pairs[k], score);
-      score = min(pairs[k], score);
-      pairs[k] = kept;
-    }
-  }
-  int best = int(ceil(parameters.consistency.y * float(count - 1)));
-  float total = 0.0;
-  for (int k = 0; k < kMatchViews - 1; ++k) total += k < best ? pairs[k] : 0.0;
-  scores[invocation().x] = total / float(best);
+  for (int v = 1; v < choice.count; ++v) insert(correlation(choice.views[v], t, reference), pairs);
+  scores[invocation().x] = mean_of_best(pairs, choice.count);
 }

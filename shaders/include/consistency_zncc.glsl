@@ -6,22 +6,30 @@ const int kPairs = kViews * (kViews - 1) / 2;
 const float kOutlierShare = 0.5;  // views whose agreement is below this share of the best are dropped,
 const float kOutlierSlack = 0.1;  // but none that is this close to it
 
-Consistency consistency(uint base, inout bool seen[kViews]) {
-#ifdef SAMPLE_COVERAGE
-  uint taps = common_taps(base, seen);
-  float tap_count = float(max(bitCount(taps), 1));
-#else
-  const float tap_count = float(kPatchTaps);
-#endif
-  // Sums over the patch: of each view's colours, of their squares and of the views' products.
-  vec3 sums[kViews];
+// Sums over the patch: of each view's colours, of their squares and of the views' products.
+struct PatchSums {
+  vec3 colours[kViews];
   float squares[kViews];
   float products[kPairs];
+};
+
+// What of the views' patches counts in a correlation.
+struct PatchScales {
+  float scale[kViews];     // 1 / standard deviation with the noise floor; 0 for views that do not count
+  float texture_variance;  // mean over the views that count, a channel
+};
+
+// Where the products of two views lie, j < i.
+int pair_of(int i, int j) { return i * (i - 1) / 2 + j; }
+
+// Sums the taps that all views show. Views that the patch leaves do not count.
+PatchSums sum_patches(uint base, uint taps, inout bool seen[kViews]) {
+  PatchSums sums;
   for (int i = 0; i < kViews; ++i) {
-    sums[i] = vec3(0.0);
-    squares[i] = 0.0;
+    sums.colours[i] = vec3(0.0);
+    sums.squares[i] = 0.0;
   }
-  for (int i = 0; i < kPairs; ++i) products[i] = 0.0;
+  for (int i = 0; i < kPairs; ++i) sums.products[i] = 0.0;
   for (int row = 0; row < kPatchEdge; ++row)
     for (int at = 0; at < kPatchEdge; ++at) {
       vec3 x[kViews];
@@ -34,52 +42,87 @@ Consistency consistency(uint base, inout bool seen[kViews]) {
 #else
         seen[i] = seen[i] && s.a >= 0.0;
 #endif
-        sums[i] += x[i];
-        squares[i] += dot(x[i], x[i]);
+        sums.colours[i] += x[i];
+        sums.squares[i] += dot(x[i], x[i]);
       }
       for (int i = 1; i < kViews; ++i)
-        for (int j = 0; j < i; ++j) products[i * (i - 1) / 2 + j] += dot(x[i], x[j]);
+        for (int j = 0; j < i; ++j) sums.products[pair_of(i, j)] += dot(x[i], x[j]);
     }
+  return sums;
+}
 
-  float scale[kViews];  // 1 / standard deviation with the noise floor; 0 for views that do not count
-  float texture_variance = 0.0;
+// What brings each view's patch to unit variance, and how much texture the views show.
+PatchScales scales_of(PatchSums sums, float tap_count, bool seen[kViews]) {
+  PatchScales s;
+  s.texture_variance = 0.0;
   int n = 0;
   for (int i = 0; i < kViews; ++i) {
-    float variance = max(squares[i] - dot(sums[i], sums[i]) / tap_count, 0.0) / tap_count;
-    scale[i] = seen[i] ? inversesqrt(variance + 3.0 * parameters.noise.x) : 0.0;
-    texture_variance += seen[i] ? variance / 3.0 : 0.0;
+    float variance = max(sums.squares[i] - dot(sums.colours[i], sums.colours[i]) / tap_count, 0.0) / tap_count;
+    s.scale[i] = seen[i] ? inversesqrt(variance + 3.0 * parameters.noise.x) : 0.0;
+    s.texture_variance += seen[i] ? variance / 3.0 : 0.0;
     n += seen[i] ? 1 : 0;
   }
-  float agreement[kViews];
+  s.texture_variance /= float(max(n, 1));
+  return s;
+}
+
+// Makes correlations of the sums of products, and sums for each view those with all others.
+void correlate(inout PatchSums sums, float scale[kViews], float tap_count, out float agreement[kViews]) {
   for (int i = 0; i < kViews; ++i) agreement[i] = 0.0;
   for (int i = 1; i < kViews; ++i)
     for (int j = 0; j < i; ++j) {
-      int pair = i * (i - 1) / 2 + j;
-      float covariance = (products[pair] - dot(sums[i], sums[j]) / tap_count) / tap_count;
-      products[pair] = covariance * scale[i] * scale[j];
-      agreement[i] += products[pair];
-      agreement[j] += products[pair];
+      int pair = pair_of(i, j);
+      float covariance = (sums.products[pair] - dot(sums.colours[i], sums.colours[j]) / tap_count) / tap_count;
+      sums.products[pair] = covariance * scale[i] * scale[j];
+      agreement[i] += sums.products[pair];
+      agreement[j] += sums.products[pair];
     }
+}
+
+// The views that do not agree far less with the others than the best one does; says how many.
+int keep_agreeing(float agreement[kViews], bool seen[kViews], out bool kept[kViews]) {
   float best = -1e30;
   for (int i = 0; i < kViews; ++i) best = seen[i] ? max(best, agreement[i]) : best;
   float least = best - max((1.0 - kOutlierShare) * best, kOutlierSlack);
-  bool kept[kViews];
   int used = 0;
   for (int i = 0; i < kViews; ++i) {
     kept[i] = seen[i] && agreement[i] >= least;
     used += kept[i] ? 1 : 0;
   }
+  return used;
+}
+
+// Mean correlation of the pairs of kept views, weighted by how much of the voxel both see.
+float mean_correlation(float correlations[kPairs], bool kept[kViews]) {
   float score = 0.0;
   float pairs = 0.0;
   for (int i = 1; i < kViews; ++i)
     for (int j = 0; j < i; ++j) {
       float weight = kept[i] && kept[j] ? view_weights[i] * view_weights[j] : 0.0;
-      score += weight * products[i * (i - 1) / 2 + j];
+      score += weight * correlations[pair_of(i, j)];
       pairs += weight;
     }
-  score = used >= 2 ? score / pairs : -1.0;
+  return score / pairs;
+}
+
+// The statistic of the voxel whose patches begin at `base`.
+Consistency consistency(uint base, inout bool seen[kViews]) {
 #ifdef SAMPLE_COVERAGE
-  if (bitCount(taps) < kLeastTaps) texture_variance = 0.0;
+  uint taps = common_taps(base, seen);
+  float tap_count = float(max(bitCount(taps), 1));
+#else
+  const uint taps = 0u;  // are not asked for: all count
+  const float tap_count = float(kPatchTaps);
 #endif
-  return Consistency(score, texture_variance / float(max(n, 1)), used);
+  PatchSums sums = sum_patches(base, taps, seen);
+  PatchScales scales = scales_of(sums, tap_count, seen);
+  float agreement[kViews];
+  correlate(sums, scales.scale, tap_count, agreement);
+  bool kept[kViews];
+  int used = keep_agreeing(agreement, seen, kept);
+  float score = mean_correlation(sums.products, kept);
+#ifdef SAMPLE_COVERAGE
+  if (bitCount(taps) < kLeastTaps) scales.texture_variance = 0.0;
+#endif
+  return Consistency(used >= 2 ? score : -1.0, scales.texture_variance, used);
 }

@@ -21,7 +21,7 @@ constexpr int kMatchParametersBinding = 0;
 constexpr int kMatchSurfelsBinding = 1;     // MatchSurfel
 constexpr int kMatchChoicesBinding = 2;     // MatchChoice
 constexpr int kMatchScoresBinding = 3;
-constexpr int kMatchBendsBinding = 4;       // curvature along uu, uv, vv of patch_axes
+constexpr int kMatchBendsBinding = 4;       // curvature along uu, uv, vv of tangent_patch
 constexpr int kMatchTexturesBinding = 5;
 constexpr int kFitParametersBinding = 0;
 constexpr int kFitSurfelsBinding = 1;       // SurfacePoint
@@ -59,10 +59,13 @@ struct MatchSurfel {
   vec4 normal;    // xyz: unit and outward
 };
 
+// The views that a surfel is matched in, by number; -1 in the places behind the last one. Such arrays lie
+// in storage buffers (std430) as they do in C++, in a uniform block (std140) they would not.
 struct MatchChoice {
-  ivec4 first;   // x: reference view; -1 where there is none
-  ivec4 second;  // x, y: the last two; z: views that see it; w: number of views chosen
-  ivec4 hidden;  // the most frontal views that something hides it from, -1 where there are fewer
+  int views[kMatchViews];    // the reference view, then those compared with it
+  int seen;                  // views that see the surfel
+  int count;                 // views that it is matched in
+  int hidden[kHiddenViews];  // the most frontal views that something hides it from
 };
 
 // Fitting planes to the images after matching.
@@ -76,7 +79,7 @@ struct FitParameters {
 
 struct FitShape {
   vec4 curvature;  // x, y, z: second derivatives of the height over the tangent plane along uu, uv, vv
-                   // of patch_axes; w: 1 where a view is held out
+                   // of tangent_patch; w: 1 where a view is held out
 };
 
 struct FitResult {
@@ -92,7 +95,7 @@ static_assert(sizeof(FitResult) == 32);
 static_assert(sizeof(ChooseParameters) == 48);
 static_assert(sizeof(MatchParameters) == 48);
 static_assert(sizeof(MatchSurfel) == 32);
-static_assert(sizeof(MatchChoice) == 48);
+static_assert(sizeof(MatchChoice) == 4 * (kMatchViews + 2 + kHiddenViews));
 }  // namespace photohull::shaders
 #endif
 

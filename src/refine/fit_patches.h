@@ -67,7 +67,7 @@ std::vector<glm::vec3> curvatures(const VertexGraph& graph, std::span<const glm:
 /// can be compared.
 bool holds_out(const glm::vec3& position, int one_in);
 
-/// Unit tangents u and v, as patch_axes (shaders/include/patch.glsl) has them but for their length.
+/// Tangents u and v as those of tangent_patch (shaders/include/patch.glsl), but of unit length.
 struct TangentAxes {
   glm::dvec3 u, v;
 };

@@ -1,5 +1,6 @@
 #include "refine/kernels/device_choice.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace photohull::refine {
@@ -9,8 +10,6 @@ static_assert(ViewChoice::kMostViews == shaders::kMatchViews);
 static_assert(ViewChoice::kMostHidden == shaders::kHiddenViews);
 static_assert(ViewChoice::kCandidates == shaders::kMatchCandidates);
 
-constexpr int kFirst = 4;  // views that MatchChoice::first holds
-
 }  // namespace
 
 gpu::Buffer to_device(std::span<const ViewChoice> choices, std::span<const std::uint32_t> indices) {
@@ -18,9 +17,11 @@ gpu::Buffer to_device(std::span<const ViewChoice> choices, std::span<const std::
   out.reserve(indices.size());
   for (const std::uint32_t i : indices) {
     const ViewList<ViewChoice::kMostViews>& views = choices[i].views;
-    shaders::MatchChoice choice{glm::ivec4(-1), {-1, -1, 0, views.size()}, glm::ivec4(-1)};
-    for (int k = 0; k < views.size(); ++k)
-      (k < kFirst ? choice.first[k] : choice.second[k - kFirst]) = views[k];
+    shaders::MatchChoice choice{};
+    std::ranges::fill(choice.views, -1);
+    std::ranges::fill(choice.hidden, -1);
+    std::ranges::copy(views, choice.views);
+    choice.count = views.size();
     out.push_back(choice);
   }
   return gpu::Buffer::of(out);
@@ -28,9 +29,8 @@ gpu::Buffer to_device(std::span<const ViewChoice> choices, std::span<const std::
 
 ViewChoice from_device(const shaders::MatchChoice& choice) {
   ViewChoice out;
-  out.seen = choice.second.z;
-  for (int k = 0; k < choice.second.w; ++k)
-    out.views.push_back(k < kFirst ? choice.first[k] : choice.second[k - kFirst]);
+  out.seen = choice.seen;
+  for (int k = 0; k < choice.count; ++k) out.views.push_back(choice.views[k]);
   for (int k = 0; k < ViewChoice::kMostHidden && choice.hidden[k] >= 0; ++k)
     out.hidden.push_back(choice.hidden[k]);
   return out;
