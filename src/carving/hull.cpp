@@ -6,6 +6,7 @@
 #include <bit>
 
 #include "carving/kernels/hull_device.h"
+#include "carving/silhouette_textures.h"
 #include "core/error.h"
 
 namespace photohull::carving {
@@ -73,9 +74,13 @@ std::int64_t count_bits(const std::vector<std::uint32_t>& words) {
 
 SparseVolume carve_silhouette(gpu::Context& context, const HullSpace& space, const HullViews& views,
                               const HullOptions& options, Progress& progress, HullReport* report) {
-  PHOTOHULL_CHECK(!views.cameras.empty());
-  PHOTOHULL_CHECK_OP(views.cameras.size(), ==, views.silhouettes.size());
-  const HullDevice device(context, space, views, options);
+  return carve_silhouette(context, space, SilhouetteTextures(views), options, progress, report);
+}
+
+SparseVolume carve_silhouette(gpu::Context& context, const HullSpace& space,
+                              const SilhouetteTextures& silhouettes, const HullOptions& options,
+                              Progress& progress, HullReport* report) {
+  const HullDevice device(context, space, silhouettes, options);
   SparseVolume volume;
   volume.grid = space.grid;
   volume.table.assign(space.grid.brick_count(), SparseVolume::kOutside);

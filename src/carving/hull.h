@@ -60,11 +60,17 @@ struct HullViews {
   std::span<const Silhouette> silhouettes;
 };
 
+class SilhouetteTextures;
+
 /// Truncated signed distance to the intersection of box, silhouette cones and (for min_views > 1)
 /// frusta. When nothing is left the volume is empty.
 SparseVolume carve_silhouette(gpu::Context& context, const HullSpace& space, const HullViews& views,
                               const HullOptions& options, Progress& progress,
                               HullReport* report = nullptr);
+/// The same of silhouettes that are on the device already, for several hulls of them.
+SparseVolume carve_silhouette(gpu::Context& context, const HullSpace& space,
+                              const SilhouetteTextures& silhouettes, const HullOptions& options,
+                              Progress& progress, HullReport* report = nullptr);
 
 namespace reference {
 

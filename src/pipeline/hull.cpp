@@ -24,6 +24,9 @@ constexpr int kBoundingMargin = 2;             // coarse voxels around the box
 SparseVolume Hull::carve_box(const GridSpec& grid, const Box& inner) {
   const std::vector<carving::Silhouette> silhouettes = silhouettes_of(subject_.views);
   const std::vector<Camera> cameras = projtex::cameras_of(subject_.views);
+  if (!textures_)
+    textures_ =
+        std::make_unique<carving::SilhouetteTextures>(carving::HullViews{cameras, silhouettes});
   carving::HullOptions hull_options;
   hull_options.min_views = any_mask(subject_.views) ? 1 : 2;
   hull_options.views_may_miss = options_.views_may_miss.value_or(0);
@@ -36,8 +39,8 @@ SparseVolume Hull::carve_box(const GridSpec& grid, const Box& inner) {
   const Box box{inner.min - slack, inner.max + slack};
   carving::HullReport counts;
   Progress silent(progress_.token());
-  SparseVolume volume = carving::carve_silhouette(context_, {grid, box}, {cameras, silhouettes},
-                                                  hull_options, silent, &counts);
+  SparseVolume volume =
+      carving::carve_silhouette(context_, {grid, box}, *textures_, hull_options, silent, &counts);
   const std::size_t thin =
       carving::keep_thin_parts(volume, box, cameras, silhouettes, hull_options);
   findings_.nodes_tested += counts.nodes_tested;
@@ -48,6 +51,8 @@ SparseVolume Hull::carve_box(const GridSpec& grid, const Box& inner) {
                       thin < kFewestThinVoxels;  // coarse grids may hold no more of it
   return specks ? SparseVolume() : volume;
 }
+
+void Hull::release_textures() { textures_.reset(); }
 
 SparseVolume Hull::carve(const GridSpec& grid) {
   SparseVolume volume = carve_box(grid, subject_.box);

@@ -1,8 +1,10 @@
 // Hulls: what silhouettes leave of a box, or frusta where there are none.
 #pragma once
 
+#include <memory>
 #include <optional>
 
+#include "carving/silhouette_textures.h"
 #include "core/grid.h"
 #include "core/progress.h"
 #include "gpu/context.h"
@@ -29,6 +31,9 @@ class Hull {
   /// Share of the hull's surface that goes on beyond the box's sides; 1 without silhouettes.
   double share_beyond();
 
+  /// Frees the device's memory for the silhouettes; a hull that is carved later takes it again.
+  void release_textures();
+
   const HullFindings& findings() const { return findings_; }
 
  private:
@@ -45,6 +50,7 @@ class Hull {
   Progress& progress_;
   HullFindings findings_;
   std::optional<Bounds> bounds_;
+  std::unique_ptr<const carving::SilhouetteTextures> textures_;  ///< from the first hull on
 };
 
 }  // namespace photohull::pipeline

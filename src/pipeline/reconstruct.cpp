@@ -201,6 +201,7 @@ class Carver {
       make_alike([&] { return measure_gains_on_hull(photometric_job(), hull_, subject_); });
     if (!masks_are_needed(run_.options, subject_.views))
       subject_.views = without_masks(std::move(subject_.views));
+    if (method_.from_hull) hull_.release_textures();
     run_.context->release_deleted();
     run_.clock.run("images", Weights::kImages, [&] { upload(); });
     Surface surface;
@@ -217,6 +218,7 @@ class Carver {
     } else {
       surface = work();
     }
+    hull_.release_textures();
     run_.report.surface = std::move(surface.findings);
     return std::move(surface.volume);
   }

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <embree3/rtcore.h>
-#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 namespace photohull {
 
@@ -13,12 +13,15 @@ namespace photohull {
 /// own; the scene's task group refers to it as long as it lives.
 class SceneBuilder {
  public:
-  /// One thread builds the tree, so that it is the same tree in every run. Embree's own option for
-  /// that would hold all of the process's TBB at one thread as long as the scene lives.
+  /// One thread builds the tree, in an arena of its own, so that it is the same tree in every run.
+  /// Embree's own option for that would hold all of the process's TBB at one thread as long as the
+  /// scene lives.
   void commit(RTCScene scene) {
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-    tbb::parallel_for(
-        0, 1, [&](int) { rtcCommitScene(scene); }, context_);
+    tbb::task_arena one(1);
+    one.execute([&] {
+      tbb::parallel_for(
+          0, 1, [&](int) { rtcJoinCommitScene(scene); }, context_);
+    });
   }
 
  private:

@@ -7,7 +7,6 @@
 #include "carving/fit_grid.h"
 #include "carving/hull_kernels.h"
 #include "core/error.h"
-#include "support/filtering.h"
 #include "support/gl_context.h"
 
 namespace photohull::carving {
@@ -54,7 +53,7 @@ void for_each_voxel(const GridSpec& grid, F&& f) {
 /// matters to the surface. Deeper inside, views that cannot touch the surface are left out.
 void expect_equals_dense(const SparseVolume& volume, const HullScene& scene) {
   const std::vector<Silhouette> silhouettes = scene.silhouettes();
-  const double bound = 2e-3 + 2 * test::filtering_error();
+  const double bound = test_kernels::distance_bound();
   int wrong_sign = 0;
   double worst = 0;
   for_each_voxel(volume.grid, [&](const ivec3& voxel) {

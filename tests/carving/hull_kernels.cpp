@@ -5,8 +5,11 @@
 
 #include "carving/mask_pyramid.h"
 #include "projtex/gpu_views.h"
+#include "support/filtering.h"
 
 namespace photohull::carving::test_kernels {
+
+double distance_bound() { return 2e-3 + 2 * test::filtering_error(); }
 
 std::vector<Silhouette> HullScene::silhouettes() const {
   std::vector<Silhouette> out;

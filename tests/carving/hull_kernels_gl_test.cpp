@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "support/filtering.h"
 #include "support/gl_context.h"
 
 namespace photohull::carving {
@@ -14,12 +13,9 @@ namespace {
 using glm::ivec3;
 using glm::ivec4;
 using reference::NodeClass;
+using test_kernels::distance_bound;
 using test_kernels::HullKernels;
 using test_kernels::HullScene;
-
-/// Measured on llvmpipe: 1.3e-3 voxels, nearly all of it the half floats' rounding of distances;
-/// beyond that what the device rounds when it filters along two axes.
-double distance_bound() { return 2e-3 + 2 * test::filtering_error(); }
 
 HullScene empty_scene(const ivec3& bricks) {
   HullScene scene;

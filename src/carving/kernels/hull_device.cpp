@@ -18,66 +18,27 @@ static_assert(HullOptions::kMostMissing == shaders::kMostMissing);
 constexpr std::size_t kBatchBricks = 16384;  // 32 MiB of distances a dispatch
 constexpr std::size_t kBatchNodes = std::size_t(1) << 20;
 
-/// Repeats the border beyond the image: samples half a pixel outside must not meet foreign values.
-void pad_distances(const SilhouetteDistance* d, const glm::ivec2& size, std::vector<float>& out) {
-  out.assign(std::size_t(size.x) * size.y, -SilhouetteDistance::kNoContour);
-  for (int y = 0; d && y < size.y; ++y) {
-    const float* row = &d->pixels[std::size_t(std::min(y, d->height - 1)) * d->width];
-    float* target = &out[std::size_t(y) * size.x];
-    std::copy(row, row + d->width, target);
-    std::fill(target + d->width, target + size.x, row[d->width - 1]);
-  }
-}
-
-Mask whole_image(const Intrinsics& k) {
-  return {k.width, k.height, std::vector<std::uint8_t>(std::size_t(k.width) * k.height, 255)};
-}
-
 }  // namespace
 
-HullDevice::HullDevice(gpu::Context& context, const HullSpace& space, const HullViews& views,
-                       const HullOptions& options)
+HullDevice::HullDevice(gpu::Context& context, const HullSpace& space,
+                       const SilhouetteTextures& silhouettes, const HullOptions& options)
     : context_(context),
       space_(space),
+      silhouettes_(silhouettes),
       options_(options),
-      views_(int(views.cameras.size())),
+      views_(int(silhouettes.cameras().size())),
       words_((views_ + 31) / 32) {
   PHOTOHULL_CHECK(options.views_may_miss >= 0 &&
                   options.views_may_miss <= HullOptions::kMostMissing);
   PHOTOHULL_CHECK(options.full_evidence >= 0);
   PHOTOHULL_CHECK(options.full_evidence == 0 || options.views_may_miss == 0);
-  upload(views);
+  std::vector<shaders::GpuView> gpu_views;
+  for (const Camera& camera : silhouettes.cameras())
+    gpu_views.push_back(
+        projtex::to_gpu_view(projtex::to_grid(camera, space.grid), silhouettes.size()));
+  view_buffer_ = Buffer::of(gpu_views);
   classify_ = gpu::Program::compute(context, "carving_classify_nodes.comp.glsl");
   distance_ = gpu::Program::compute(context, "carving_hull_distance.comp.glsl");
-}
-
-void HullDevice::upload(const HullViews& views) {
-  const glm::ivec2 size = projtex::array_size(views.cameras);
-  distances_ = gpu::TextureArray(gpu::TextureFormat::kR16f, size.x, size.y, views_);
-  std::vector<shaders::GpuView> gpu_views;
-  std::vector<float> padded;
-  for (int i = 0; i < views_; ++i) {
-    const Camera& camera = views.cameras[std::size_t(i)];
-    const Silhouette& silhouette = views.silhouettes[std::size_t(i)];
-    const Intrinsics& k = camera.intrinsics;
-    const bool masked = silhouette.mask && !silhouette.mask->empty();
-    const MaskPyramid pyramid =
-        build_mask_pyramid(masked ? *silhouette.mask : whole_image(k), size.x, size.y);
-    if (i == 0) {
-      levels_ = int(pyramid.levels.size());
-      pyramid_ =
-          gpu::TextureArray(gpu::TextureFormat::kRg8, pyramid.width, pyramid.height, views_, 0);
-    }
-    for (int level = 0; level < levels_; ++level)
-      pyramid_.upload(i, std::max(pyramid.width >> level, 1), std::max(pyramid.height >> level, 1),
-                      pyramid.levels[level].data(), level);
-    const SilhouetteDistance* d = silhouette.distance;
-    PHOTOHULL_CHECK(!d || (d->width == k.width && d->height == k.height));
-    pad_distances(d, size, padded);
-    distances_.upload(i, size.x, size.y, padded.data());
-    gpu_views.push_back(projtex::to_gpu_view(projtex::to_grid(camera, space_.grid), size));
-  }
-  view_buffer_ = Buffer::of(gpu_views);
 }
 
 gpu::Buffer HullDevice::bind_parameters(std::size_t items) const {
@@ -91,7 +52,7 @@ gpu::Buffer HullDevice::bind_parameters(std::size_t items) const {
   p.counts = {int(items), views_, words_, options_.min_views};
   p.limits = {options_.views_may_miss, 0, 0, 0};
   p.evidence = {float(options_.full_evidence), 0, 0, 0};
-  p.pyramid = {MaskPyramid::kBlock, levels_, kSplitMargin, SparseVolume::kBand};
+  p.pyramid = {MaskPyramid::kBlock, silhouettes_.levels(), kSplitMargin, SparseVolume::kBand};
   Buffer parameters(sizeof p, &p);
   parameters.bind_uniform(shaders::kHullParametersBinding);
   view_buffer_.bind_storage(shaders::kViewsBinding);
@@ -114,8 +75,8 @@ void HullDevice::classify_batch(std::span<const HullNode> nodes, ClassifiedNodes
   const Buffer node_buffer = Buffer::of(places);
   const Buffer classes(nodes.size() * 4), relevant(nodes.size() * 4 * words_);
   const Buffer parameters = bind_parameters(nodes.size());
-  pyramid_.bind(shaders::kMaskPyramidUnit);
-  distances_.bind(shaders::kNodeSilhouettesUnit);
+  silhouettes_.pyramid().bind(shaders::kMaskPyramidUnit);
+  silhouettes_.distances().bind(shaders::kNodeSilhouettesUnit);
   node_buffer.bind_storage(shaders::kHullNodesBinding);
   classes.bind_storage(shaders::kHullClassesBinding);
   relevant.bind_storage(shaders::kHullRelevantBinding);
@@ -161,7 +122,7 @@ std::vector<float> HullDevice::distances(const ClassifiedNodes& bricks, std::siz
   const Buffer relevant = Buffer::of(view_lists(bricks, first, count));
   const Buffer found(count * kBrickVoxels * 4);
   const Buffer parameters = bind_parameters(count);
-  distances_.bind(shaders::kBrickSilhouettesUnit);
+  silhouettes_.distances().bind(shaders::kBrickSilhouettesUnit);
   brick_buffer.bind_storage(shaders::kHullBricksBinding);
   found.bind_storage(shaders::kHullDistancesBinding);
   relevant.bind_storage(shaders::kHullViewListsBinding);

@@ -1,5 +1,5 @@
-// The two kernels of the visual hull, with the silhouettes that they look at on the device
-// (carving_classify_nodes.comp.glsl, carving_hull_distance.comp.glsl).
+// The two kernels of the visual hull (carving_classify_nodes.comp.glsl,
+// carving_hull_distance.comp.glsl).
 #pragma once
 
 #include <cstddef>
@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "carving/hull.h"
+#include "carving/silhouette_textures.h"
 #include "gpu/buffer.h"
 #include "gpu/context.h"
 #include "gpu/program.h"
-#include "gpu/texture.h"
 
 namespace photohull::carving {
 
@@ -36,8 +36,8 @@ struct ClassifiedNodes {
 
 class HullDevice {
  public:
-  /// Throws Error when the device cannot hold the silhouettes.
-  HullDevice(gpu::Context& context, const HullSpace& space, const HullViews& views,
+  /// The silhouettes outlive it.
+  HullDevice(gpu::Context& context, const HullSpace& space, const SilhouetteTextures& silhouettes,
              const HullOptions& options);
 
   /// In the order of the nodes, batch by batch (reference::classify_node).
@@ -51,7 +51,6 @@ class HullDevice {
                                std::size_t count) const;
 
  private:
-  void upload(const HullViews& views);
   void classify_batch(std::span<const HullNode> nodes, ClassifiedNodes& out) const;
   /// The views that matter to each brick, as the kernel reads them.
   std::vector<std::uint32_t> view_lists(const ClassifiedNodes& bricks, std::size_t first,
@@ -61,10 +60,9 @@ class HullDevice {
 
   gpu::Context& context_;
   HullSpace space_;
+  const SilhouetteTextures& silhouettes_;
   HullOptions options_;
   int views_, words_;  ///< views, and words of a set of them
-  int levels_ = 0;     ///< of the pyramid
-  gpu::TextureArray pyramid_, distances_;
   gpu::Buffer view_buffer_;
   std::shared_ptr<const gpu::Program> classify_, distance_;
 };
