@@ -63,6 +63,18 @@ glm::dvec3 middle_of(const std::vector<glm::dvec3>& points) {
   return middle;
 }
 
+ordered_json lens_json(const AdjustedLens& lens) {
+  const Intrinsics& k = lens.intrinsics;
+  return {{"photographs", lens.views},
+          {"width", k.width},
+          {"height", k.height},
+          {"focal_length", {k.fx, k.fy}},
+          {"principal_point", {k.cx, k.cy}},
+          {"distortion", lens.distortion.coefficients},
+          {"focal_sigma", lens.focal_sigma},
+          {"principal_point_sigma", {lens.principal_sigma.x, lens.principal_sigma.y}}};
+}
+
 std::string report_of(const PoseJob& job, const ColmapPose& pose) {
   const io::ColmapFound& found = pose.found;
   ordered_json j;
@@ -72,6 +84,8 @@ std::string report_of(const PoseJob& job, const ColmapPose& pose) {
   j["models"] = found.models;
   j["points"] = found.scene.points.size();
   j["warnings"] = pose.warnings;
+  j["cameras"] = ordered_json::array();
+  for (const AdjustedLens& lens : pose.lenses) j["cameras"].push_back(lens_json(lens));
   j["photographs"] = ordered_json::array();
   std::size_t next = 0;
   for (std::size_t i = 0; i < job.names.size(); ++i) {
@@ -79,9 +93,11 @@ std::string report_of(const PoseJob& job, const ColmapPose& pose) {
     ordered_json one = {{"name", job.names[i]}, {"posed", photo.posed}};
     if (photo.features >= 0) one["features"] = photo.features;
     if (photo.posed) {
-      const SourceView& view = found.scene.views[next++];
+      const SourceView& view = found.scene.views[next];
+      if (!pose.lenses.empty()) one["camera"] = found.lens_of_view[next];
       one["focal_length"] = {view.camera.intrinsics.fx, view.camera.intrinsics.fy};
       add_pose_json(view.camera.cam_from_world, one);
+      ++next;
     } else {
       one["reason"] = photo.reason;
     }
@@ -104,6 +120,8 @@ ColmapPose pose_with_colmap(const PoseJob& job, Progress& progress) {
     all[readable.index[i]] = pose.found.photos[i];
   pose.found.photos = std::move(all);
   Scene& scene = pose.found.scene;
+  progress.stage("lenses", 0.1);
+  pose.lenses = adjust_lenses(scene, pose.found.lens_of_view, progress);
   scene.path = job.out;
   scene.format = SceneFormat::kTransforms;
   pose.warnings = pipeline::check_photographs(readable.looks, scene.views, middle_of(scene.points),
@@ -121,6 +139,10 @@ void print_colmap_pose(const PoseJob& job, const ColmapPose& pose) {
                   pose.found.photos[i].reason.c_str());
   std::printf("%zu of %zu photographs have a pose, from %zu points\n",
               pose.found.scene.views.size(), job.names.size(), pose.found.scene.points.size());
+  for (const AdjustedLens& lens : pose.lenses)
+    std::printf("focal length     %.1f +- %.1f px, principal point %.1f +- %.1f, %.1f +- %.1f px\n",
+                lens.intrinsics.fx, lens.focal_sigma, lens.intrinsics.cx, lens.principal_sigma.x,
+                lens.intrinsics.cy, lens.principal_sigma.y);
   if (pose.found.models > 1)
     std::printf("COLMAP made %d models that are not connected; the largest is taken\n",
                 pose.found.models);

@@ -17,7 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kColmapWeight = 1.1;  // io::run_colmap's stages, and a look at the photographs
+// io::run_colmap's stages, a look at the photographs, and the lenses.
+constexpr double kColmapWeight = 1.2;
 
 void print_warnings(const std::vector<std::string>& warnings) {
   for (const std::string& text : warnings) std::fprintf(stderr, "warning: %s\n", text.c_str());

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 #include <map>
+#include <numeric>
 
 #include "core/atomic_file.h"
 #include "core/child_process.h"
@@ -142,8 +143,9 @@ OptionNames option_names(const Progress& progress) {
   return names;
 }
 
-/// One lens a folder of photographs, with one radial term: with more terms, wrong focal lengths fit
-/// the first few views that the mapper has as well as the right one.
+/// One lens a folder of photographs, with one radial term and its principal point in the middle:
+/// with more terms, wrong focal lengths fit the first few views that the mapper has as well as the
+/// right one.
 void find_features(const ColmapJob& job, const OptionNames& options, Runs& runs) {
   std::vector<std::string> words = {"feature_extractor",
                                     "--database_path",
@@ -183,40 +185,6 @@ Scene read_model(const ColmapJob& job, const fs::path& folder) {
   return load_scene(folder, options);
 }
 
-/// Has each lens of the model so many photographs that they say where its principal point is?
-bool tells_principal_points(const Scene& model) {
-  constexpr std::size_t kManyOfALens = 10;
-  std::map<fs::path, std::size_t> counts;
-  for (const SourceView& view : model.views) ++counts[view.image.parent_path()];
-  return std::ranges::all_of(counts, [](const auto& of) { return of.second >= kManyOfALens; });
-}
-
-/// Are the lenses such as are built, with principal points near the middle?
-bool has_plausible_lenses(const Scene& model) {
-  constexpr double kFarthest = 0.1;  // of the picture's longer side
-  return std::ranges::all_of(model.views, [](const SourceView& view) {
-    const Intrinsics& k = view.camera.intrinsics;
-    const double far = kFarthest * std::max(k.width, k.height);
-    return k.fx > 0 && std::abs(k.cx - 0.5 * (k.width - 1)) < far &&
-           std::abs(k.cy - 0.5 * (k.height - 1)) < far;
-  });
-}
-
-/// The model adjusted once more with free principal points, which the mapper has in the middle;
-/// the model itself where it does not tell them, or what comes out is no lens.
-Scene with_principal_points(const ColmapJob& job, Scene model, Runs& runs) {
-  if (!tells_principal_points(model)) return model;
-  const fs::path folder = job.folder / "sparse" / "adjusted";
-  std::error_code failure;
-  fs::create_directories(folder, failure);
-  if (!runs.run({"bundle_adjuster", "--input_path", model.path.string(), "--output_path",
-                 folder.string(), "--BundleAdjustment.refine_principal_point", "1"}) ||
-      !is_file(folder / "images.bin"))
-    return model;
-  Scene adjusted = read_model(job, folder);
-  return has_plausible_lenses(adjusted) ? adjusted : model;
-}
-
 /// Makes the models, and reads them, the one with the most photographs first.
 std::vector<Scene> make_models(const ColmapJob& job, Runs& runs) {
   const fs::path sparse = job.folder / "sparse";
@@ -236,7 +204,6 @@ std::vector<Scene> make_models(const ColmapJob& job, Runs& runs) {
   for (const fs::path& folder : folders) models.push_back(read_model(job, folder));
   std::stable_sort(models.begin(), models.end(),
                    [](const Scene& a, const Scene& b) { return a.views.size() > b.views.size(); });
-  if (!models.empty()) models.front() = with_principal_points(job, std::move(models.front()), runs);
   return models;
 }
 
@@ -259,6 +226,23 @@ std::string reason_of(const ColmapLog::Heard& heard, bool elsewhere) {
       "; photographs from places between are missing");
 }
 
+/// The model's views in the order of the photographs, its tracks with them.
+void sort_views(Scene& scene) {
+  std::vector<std::size_t> order(scene.views.size()), place(order.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::ranges::sort(order, {}, [&](std::size_t i) { return index_of(scene.views[i]); });
+  std::vector<SourceView> views;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    views.push_back(std::move(scene.views[order[i]]));
+    place[order[i]] = i;
+  }
+  scene.views = std::move(views);
+  for (SceneTrack& track : scene.tracks) {
+    for (SceneTrack::Observation& o : track.observations) o.view = int(place[std::size_t(o.view)]);
+    std::ranges::sort(track.observations, {}, &SceneTrack::Observation::view);
+  }
+}
+
 ColmapFound gather(const ColmapJob& job, const Links& links, std::vector<Scene> models,
                    const ColmapLog& log) {
   ColmapFound found;
@@ -277,10 +261,11 @@ ColmapFound gather(const ColmapJob& job, const Links& links, std::vector<Scene> 
   found.scene = std::move(models.front());
   found.scene.box.reset();
   found.model = found.scene.path;
-  std::sort(found.scene.views.begin(), found.scene.views.end(),
-            [](const SourceView& a, const SourceView& b) { return index_of(a) < index_of(b); });
+  sort_views(found.scene);
+  std::map<std::string, std::size_t> lenses;
   for (SourceView& view : found.scene.views) {
     const std::size_t i = index_of(view);
+    found.lens_of_view.push_back(lenses.emplace(job.photos[i].lens, lenses.size()).first->second);
     found.photos[i].posed = true;
     found.photos[i].reason.clear();
     view.name = job.photos[i].name;
@@ -288,7 +273,6 @@ ColmapFound gather(const ColmapJob& job, const Links& links, std::vector<Scene> 
     if (!job.photos[i].mask.empty())
       view.mask = fs::absolute(job.photos[i].mask).lexically_normal();
   }
-  found.scene.tracks.clear();  // they count views in COLMAP's order
   return found;
 }
 

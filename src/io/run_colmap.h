@@ -32,12 +32,14 @@ struct ColmapPhotoFound {
 struct ColmapFound {
   std::vector<ColmapPhotoFound> photos;  ///< as many as were given
   Scene scene;  ///< those that are posed, in the order given, in COLMAP's world; no box
-  std::filesystem::path model;  ///< the folder of COLMAP's model
-  int models = 0;               ///< that COLMAP made; the one with the most photographs counts
+  std::vector<std::size_t> lens_of_view;  ///< of the scene's views: which have a lens in common
+  std::filesystem::path model;            ///< the folder of COLMAP's model
+  int models = 0;  ///< that COLMAP made; the one with the most photographs counts
 };
 
 /// Features on the processor, all pairs of photographs matched (or neighbours, where they are
-/// ordered), and the incremental mapper [Schoenberger16]. What COLMAP says is in colmap.log of the
+/// ordered), and the incremental mapper [Schoenberger16], which leaves principal points in the
+/// middle (calib/adjust_lenses.h finds them). What COLMAP says is in colmap.log of the
 /// folder. Throws Error where COLMAP is not installed or fails, where it makes no model, where it
 /// places fewer than three photographs, and where the folder holds what is not COLMAP's work for
 /// this program; Cancelled, and COLMAP ends then.
