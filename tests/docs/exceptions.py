@@ -2,7 +2,7 @@
 
 # Not run at all: what stands there is no whole command, or needs a program that may not be there.
 FRAGMENTS = {
-    r"photohull (pose|scan) \.\./shared/": "COLMAP may not be installed; tests/cli/pose_colmap_gl_test.cpp runs it where it is",
+    r"photohull (pose|scan) (\.\./shared/|out/NAME)": "COLMAP may not be installed; tests/cli/pose_colmap_gl_test.cpp runs it where it is",
     r"photohull reconstruct \.\.\. ": "its arguments are left out",
 }
 
