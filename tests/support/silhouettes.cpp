@@ -57,7 +57,8 @@ Outline random_outline(Rng& rng, int width, int height) {
   };
   std::vector<Disc> discs;
   for (int i = 0; i < 4; ++i) {
-    const glm::dvec2 centre(uniform(rng, 0.1, 0.9) * width, uniform(rng, 0.1, 0.9) * height);
+    const double y = uniform(rng, 0.1, 0.9) * height, x = uniform(rng, 0.1, 0.9) * width;
+    const glm::dvec2 centre(x, y);
     discs.push_back({centre, uniform(rng, 0.2, 0.45) * std::min(width, height)});
   }
   return rasterise(width, height, [&](const glm::dvec2& pixel) {
