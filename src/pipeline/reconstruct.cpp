@@ -276,6 +276,7 @@ class Carver {
     if (bounded_ || !has_surroundings(run_.options, subject_.box_found, subject_.views)) return {};
     Around around = run_.clock.run("surroundings", Weights::kSurroundings,
                                    [&] { return make_surroundings(job(), mesh, open); });
+    hull_.release_textures();
     run_.clock.count_samples("surroundings", around.samples);
     run_.report.surroundings = around.findings;
     return around;

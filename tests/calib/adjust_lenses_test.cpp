@@ -32,11 +32,12 @@ Camera look_from(double azimuth, double elevation) {
 }
 
 /// Cameras in rings around points on a sphere, and what a mapper makes of their tracks: principal
-/// points in the middle, which turns make up for, and a focal length that is 2 % too long.
+/// points in `assumed`, which turns make up for, and a focal length that is 2 % too long.
 class Photographs {
  public:
   explicit Photographs(const std::vector<Ring>& rings,
-                       const std::vector<glm::dvec2>& offsets = {{14, -9}}) {
+                       const std::vector<glm::dvec2>& offsets = {{14, -9}},
+                       const glm::dvec2& assumed = kMiddle) {
     for (const Ring& ring : rings)
       for (int i = 0; i < ring.count; ++i) {
         Camera camera = look_from(2 * std::numbers::pi * i / ring.count,
@@ -45,7 +46,8 @@ class Photographs {
         camera.intrinsics.cx += offsets[lenses.back()].x;
         camera.intrinsics.cy += offsets[lenses.back()].y;
         truth.push_back(camera);
-        scene.views.push_back({std::to_string(truth.size()), {}, {}, as_mapped(camera), {}});
+        scene.views.push_back(
+            {std::to_string(truth.size()), {}, {}, as_mapped(camera, assumed), {}});
       }
     for (int i = 0; i < 1000; ++i) add_track();
   }
@@ -71,15 +73,15 @@ class Photographs {
   Progress progress;
 
  private:
-  static Camera as_mapped(Camera camera) {
-    const glm::dvec2 offset(camera.intrinsics.cx - kMiddle.x, camera.intrinsics.cy - kMiddle.y);
+  static Camera as_mapped(Camera camera, const glm::dvec2& assumed) {
+    const glm::dvec2 offset(camera.intrinsics.cx - assumed.x, camera.intrinsics.cy - assumed.y);
     const glm::dvec3 seen = glm::normalize(glm::dvec3(offset / kFocal, 1.0));
     const glm::dvec3 x = glm::normalize(glm::dvec3(seen.z, 0, -seen.x));
     const glm::dmat3 turn(x, glm::cross(seen, x), seen);
     camera.cam_from_world.rotation = turn * camera.cam_from_world.rotation;
     camera.cam_from_world.translation = 1.02 * (turn * camera.cam_from_world.translation);
     camera.intrinsics.fx = camera.intrinsics.fy = 1.02 * kFocal;
-    camera.intrinsics.cx = kMiddle.x, camera.intrinsics.cy = kMiddle.y;
+    camera.intrinsics.cx = assumed.x, camera.intrinsics.cy = assumed.y;
     return camera;
   }
 
@@ -134,6 +136,15 @@ TEST(AdjustLenses, LeavesInTheMiddleWhatOneRingDoesNotTell) {
   EXPECT_NEAR(photos.focal_error(0), 0, 0.01);
   EXPECT_LT(lenses[0].principal_sigma.x, 1.5);
   EXPECT_GT(lenses[0].principal_sigma.y, 6);
+  EXPECT_LT(lenses[0].principal_sigma.y, 0.0151 * kWidth);  // the prior's
+}
+
+TEST(AdjustLenses, BringsBackToTheMiddleWhatOneRingDoesNotTell) {
+  Photographs photos({{24, 35}}, {{14, -9}}, kMiddle - glm::dvec2(0, 40));
+  ASSERT_EQ(photos.adjust().size(), 1u);
+  EXPECT_LT(std::abs(photos.principal_error(0).x), 2);
+  EXPECT_NEAR(photos.scene.views[0].camera.intrinsics.cy, kMiddle.y, 3);
+  EXPECT_NEAR(photos.focal_error(0), 0, 0.01);
 }
 
 TEST(AdjustLenses, FindsEachLensOfSeveral) {

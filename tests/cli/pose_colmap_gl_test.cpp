@@ -163,7 +163,7 @@ TEST_F(PoseWithColmap, MistakesAreNamed) {
 }
 
 TEST_F(PoseWithColmap, FindsTheCamerasOfATexturedObject) {
-  if (!is_on_path("colmap")) GTEST_SKIP() << "the program colmap is not installed";
+  ASSERT_TRUE(is_on_path("colmap")) << "scripts/test.sh installs it";
   photograph(R"("rings": [{"count": 24, "elevation": 35}])");
   write_atomically(folder_ / "my photos/torn.jpg", "no picture");
   write_atomically(folder_ / "my photos/IMG_1.HEIC", "no reader");
@@ -202,7 +202,7 @@ TEST_F(PoseWithColmap, FindsTheCamerasOfATexturedObject) {
 }
 
 TEST_F(PoseWithColmap, FindsThePrincipalPointThatTwoRingsTell) {
-  if (!is_on_path("colmap")) GTEST_SKIP() << "the program colmap is not installed";
+  ASSERT_TRUE(is_on_path("colmap")) << "scripts/test.sh installs it";
   photograph(R"("principal_offset": [14, -9], "rings": [{"count": 12, "elevation": 20},
                  {"count": 12, "elevation": 55}])");
   const Finished posed = pose_patiently();
