@@ -5,7 +5,7 @@
 // selected column. References: those of the statistics.
 #include "include/dispatch.glsl"
 #include "include/projection.glsl"
-#include "include/layer.glsl"
+#include "include/layer_items.glsl"
 #include "include/sweep_visibility.glsl"
 #include "include/selection.glsl"
 #include "include/patch_views.glsl"
@@ -23,20 +23,20 @@ layout(std430, binding = kSweepScoresBinding) writeonly buffer Scores { vec4 sco
 void main() {
   uint index = invocation().x + uint(parameters.chunk.z);
   if (invocation().x >= uint(parameters.chunk.w)) return;
-  Selection selection = selection_of(index);
-  vec3 voxel = layer_point(vec2(selection.uv), float(parameters.layer.x));
-  int view_count = items[selection.item].brick.w;
+  SelectedColumn selected = selected_columns[index];
+  vec3 voxel = layer_point(vec2(selected.u, selected.v), float(parameters.layer.x));
+  int view_count = items[selected.item].brick.w;
 
   bool seen[kViews];
   float sum = 0.0;  // of the views' shares
   for (int i = 0; i < kViews; ++i) {
-    uint v = items[selection.item].views[i >> 2][i & 3];
+    uint v = items[selected.item].views[i >> 2][i & 3];
     vec3 p = project(views[v], voxel);
     view_weights[i] = i < view_count ? sweep_visible(v, voxel, p, parameters.thresholds.w) : 0.0;
     seen[i] = view_weights[i] > 0.0;
   }
-  uint base = (selection.entry - uint(parameters.chunk.x)) * uint(kViews * SEARCH_TAPS * kApronArea) +
-              (selection.column >> 3u) * uint(kApronEdge) + (selection.column & 7u);
+  uint base = (selected.brick - uint(parameters.chunk.x)) * uint(kViews * SEARCH_TAPS * kApronArea) +
+              uint(selected.v & 7) * uint(kApronEdge) + uint(selected.u & 7);
 #if SEARCH_TAPS > 1
   choose_shifts(base, seen);
 #endif

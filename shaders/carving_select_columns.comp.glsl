@@ -4,7 +4,7 @@
 // bare towards the cameras, and those on an open path. Everything else that stands on the layer and
 // touches empty space is an occluder from now on. One work group a brick of the layer.
 #include "include/dispatch.glsl"
-#include "include/layer.glsl"
+#include "include/layer_items.glsl"
 #include "include/occupancy.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

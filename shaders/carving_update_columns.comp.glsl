@@ -38,7 +38,7 @@ void close_path(ivec2 uv, inout Column column) {
 void main() {
   uint index = invocation().x;
   if (index >= uint(parameters.chunk.w)) return;
-  ivec2 uv = selection_of(index).uv;
+  ivec2 uv = ivec2(selected_columns[index].u, selected_columns[index].v);
   int layer = parameters.layer.x;
   Column column = columns[column_index(uv)];
   vec4 score = scores[index];

@@ -9,7 +9,7 @@
 // shares the view's set-up. Reference: projtex::reference::project_layer_sample.
 #include "include/dispatch.glsl"
 #include "include/projection.glsl"
-#include "include/layer.glsl"
+#include "include/layer_items.glsl"
 #include "include/search_disc.glsl"
 
 #ifndef SUPERSAMPLE

@@ -7,7 +7,7 @@
 // Reference: projtex::reference::sample_square.
 #include "include/dispatch.glsl"
 #include "include/sample_image.glsl"
-#include "include/layer.glsl"
+#include "include/layer_items.glsl"
 #include "include/search_disc.glsl"
 
 layout(local_size_x = 8, local_size_y = kMaxLayerViews) in;

@@ -1,8 +1,7 @@
-// Addresses on a layer of the sweep, and who stands there.
+// Addresses on a layer of the sweep.
 #include "shared/sweep.h"
 
 layout(std140, binding = kSweepParametersBinding) uniform Parameters { SweepParameters parameters; };
-layout(std430, binding = kSweepItemsBinding) readonly buffer Items { LayerItem items[]; };
 
 // Voxel coordinates (they may be fractional) of a position on a layer.
 vec3 layer_point(vec2 uv, float layer) {
@@ -21,12 +20,6 @@ ivec3 layer_voxel(ivec2 uv, int layer) {
   p[parameters.axes.z] =
       parameters.axes.w > 0 ? layer : parameters.bricks[parameters.axes.z] * 8 - 1 - layer;
   return p;
-}
-
-// In-plane coordinates of the first column of an item.
-ivec2 item_origin(uint item) {
-  ivec4 brick = items[item].brick;
-  return ivec2(brick[parameters.axes.x], brick[parameters.axes.y]) * 8;
 }
 
 uint column_index(ivec2 uv) {

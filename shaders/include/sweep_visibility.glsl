@@ -1,7 +1,6 @@
 // How much of a voxel's part of a layer a view sees among what the sweep has passed, by the test that
 // SWEEP_... chooses (visibility/sweep_test.h); a constant bias in voxels with all of them.
 // Reference: visibility::reference::sweep_visible.
-#include "include/depth_map.glsl"
 
 #if defined(SWEEP_RAYS)
 layout(std430, binding = kSweepTableBinding) readonly buffer Table { uint table[]; };
@@ -35,6 +34,7 @@ float sweep_visible(uint v, vec3 voxel, vec3 p, float bias) {
 }
 
 #else
+#include "include/depth_map.glsl"
 
 const float kSteepestLayer = 4.0;  // voxels of depth a texel: a layer seen so flat is edge-on
 

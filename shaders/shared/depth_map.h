@@ -14,8 +14,8 @@ using glm::vec4;
 // Voxels to draw, ivec4 after a header of four words, the first of which is their number. The sweep
 // writes such lists, so that these numbers fit beside those of shared/sweep.h.
 constexpr int kOccludersBinding = 6;
-constexpr int kDepthMapInfosBinding = 8;  // DepthMapInfo, one a camera
-constexpr int kDepthMapsBinding = 9;      // depths of all maps, in one buffer
+constexpr int kDepthMapInfosBinding = 4;  // DepthMapInfo, one a camera
+constexpr int kDepthMapsBinding = 5;      // depths of all maps, in one buffer
 constexpr int kDepthMapLayersUnit = 2;    // or in the layers of an image
 
 struct DepthMapInfo {

@@ -16,19 +16,20 @@ using glm::vec4;
 #define constexpr const
 #endif
 
-// Of all steps of a layer; cameras are at kViewsBinding, depth maps where shared/depth_map.h says.
+// Devices are sure to have eight storage blocks, so that what no step has together shares a binding.
+// Cameras are at kViewsBinding, depth maps where shared/depth_map.h says.
 constexpr int kSweepParametersBinding = 0;
-constexpr int kSweepItemsBinding = 1;           // LayerItem
-constexpr int kSweepTableBinding = 2;           // bricks of the bits
-constexpr int kSweepOccupancyBinding = 3;       // which voxels stand, one bit each
-constexpr int kSweepColumnsBinding = 4;         // Column
-constexpr int kSweepSelectedBinding = 5;        // bricks with columns to judge
-constexpr int kSweepSamplesBinding = 6;         // colours on the layer; not together with kOccludersBinding
-constexpr int kSweepScoresBinding = 7;
-constexpr int kSweepActiveBinding = 10;         // bricks that a sweep has to look at
-constexpr int kSweepDecisionsBinding = 11;      // Decision
-constexpr int kSweepSelectedColumnsBinding = 12;
-constexpr int kSweepPassedBinding = 13;         // voxels that hide what the sweep comes to, one bit each
+constexpr int kSweepActiveBinding = 0;           // bricks that a sweep has to look at
+constexpr int kSweepItemsBinding = 1;            // LayerItem
+constexpr int kSweepDecisionsBinding = 1;        // Decision
+constexpr int kSweepSelectedBinding = 2;         // bricks with columns to judge
+constexpr int kSweepSelectedColumnsBinding = 2;  // SelectedColumn
+constexpr int kSweepScoresBinding = 3;
+constexpr int kSweepTableBinding = 4;            // bricks of the bits
+constexpr int kSweepOccupancyBinding = 5;        // which voxels stand, one bit each
+constexpr int kSweepPassedBinding = 5;           // voxels that hide what the sweep comes to, one bit each
+constexpr int kSweepSamplesBinding = 6;          // colours on the layer
+constexpr int kSweepColumnsBinding = 7;          // Column
 
 constexpr int kMaxLayerViews = 8;  // views projected onto one brick's part of a layer
 constexpr int kPatchRadius = 2;     // voxels: patches of 5 x 5 on the reference plane
@@ -53,6 +54,12 @@ struct LayerItem {
   uvec4 views[kMaxLayerViews / 4];  // view indices, most frontal first
 };
 
+struct SelectedColumn {  // to be judged on a layer
+  uint brick;            // which of the selected bricks
+  uint item;             // that brick's LayerItem
+  int u, v;              // voxel in the plane
+};
+
 struct Column {       // the open path of a column of voxels
   ivec4 path;         // x: layer where it starts, -1 when none is open; y: layer of its best score
   vec4 scores;        // x: score at the start; y: best score
@@ -71,6 +78,7 @@ struct Decision {
 #ifdef __cplusplus
 static_assert(sizeof(SweepParameters) == 96);
 static_assert(sizeof(LayerItem) == 48);
+static_assert(sizeof(SelectedColumn) == 16);
 static_assert(sizeof(Column) == 32);
 static_assert(sizeof(Decision) == 32);
 }  // namespace photohull::shaders

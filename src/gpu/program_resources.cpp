@@ -10,7 +10,7 @@ namespace photohull::gpu {
 namespace {
 
 constexpr int kTextures = 16, kImages = 8;  // of a shader
-constexpr int kStorageBlocks = 16, kStorageBindings = 16;
+constexpr int kStorageBlocks = 8, kStorageBindings = 8;
 constexpr int kImageUnits = 8, kTextureUnits = 96;
 constexpr int kUniformComponents = 1024, kUniformBlockBytes = 16384;
 constexpr std::array<int, 3> kGroup{1024, 1024, 64};

@@ -44,7 +44,8 @@ SweepKernels::SweepKernels(gpu::Context& context, const BitVolume& bits,
       occupancy_(Buffer::of(bits.words)),
       active_(bits.table.size() * 4),
       passed_(bits.words.size() * 4),
-      uniforms_(sizeof parameters) {
+      uniforms_(sizeof parameters),
+      by_rays_(score_defines.find("SWEEP_RAYS") != std::string::npos) {
   const std::size_t columns =
       std::size_t(frame.voxels[frame.u()]) * std::size_t(frame.voxels[frame.v()]);
   columns_ = Buffer::of(std::vector<shaders::Column>(columns, {{-1, -1, 0, 0}, glm::vec4(0)}));
@@ -54,23 +55,11 @@ SweepKernels::SweepKernels(gpu::Context& context, const BitVolume& bits,
   parameters.axes = {frame.u(), frame.v(), frame.axis, frame.sign};
 }
 
-void SweepKernels::bind() {
+void SweepKernels::set_parameters() {
   parameters.chunk.x = parameters.chunk.z = 0;
   parameters.chunk.w = int(judged_.size());
   uniforms_.write(0, sizeof parameters, &parameters);
   uniforms_.bind_uniform(shaders::kSweepParametersBinding);
-  views_.bind_storage(shaders::kViewsBinding);
-  items_.bind_storage(shaders::kSweepItemsBinding);
-  table_.bind_storage(shaders::kSweepTableBinding);
-  occupancy_.bind_storage(shaders::kSweepOccupancyBinding);
-  columns_.bind_storage(shaders::kSweepColumnsBinding);
-  selected_.bind_storage(shaders::kSweepSelectedBinding);
-  scores_.bind_storage(shaders::kSweepScoresBinding);
-  maps_.bind();
-  active_.bind_storage(shaders::kSweepActiveBinding);
-  decisions_.bind_storage(shaders::kSweepDecisionsBinding);
-  packed_.bind_storage(shaders::kSweepSelectedColumnsBinding);
-  passed_.bind_storage(shaders::kSweepPassedBinding);
 }
 
 SelectedLayer SweepKernels::select(int layer) {
@@ -90,8 +79,13 @@ SelectedLayer SweepKernels::select(int layer) {
   selected_ = list_of(items.size(), 16);
   occluders_ = list_of(items.size() * 128, 16);
   judged_.clear();
-  bind();
+  set_parameters();
+  items_.bind_storage(shaders::kSweepItemsBinding);
+  selected_.bind_storage(shaders::kSweepSelectedBinding);
+  table_.bind_storage(shaders::kSweepTableBinding);
+  occupancy_.bind_storage(shaders::kSweepOccupancyBinding);
   occluders_.bind_storage(shaders::kOccludersBinding);
+  columns_.bind_storage(shaders::kSweepColumnsBinding);
   select_->dispatch(context_, "carving_select_columns", items.size());
 
   const std::uint32_t count = selected_.download<std::uint32_t>(1)[0];
@@ -101,12 +95,13 @@ SelectedLayer SweepKernels::select(int layer) {
   selected_.write(16, entries_.size() * 16, entries_.data());
   SelectedLayer out;
   for (std::size_t entry = 0; entry < entries_.size(); ++entry)
-    for (std::uint32_t column = 0; column < 64; ++column) {
-      if (!(entries_[entry][1 + int(column / 32)] >> (column % 32) & 1)) continue;
-      judged_.push_back(std::uint32_t(entry * 64) + column);
-      const glm::ivec4 b = items[entries_[entry].x].brick;
+    for (int column = 0; column < 64; ++column) {
+      if (!(entries_[entry][1 + column / 32] >> (column % 32) & 1)) continue;
+      const std::uint32_t item = entries_[entry].x;
+      const glm::ivec4 b = items[item].brick;
       out.judged.push_back(glm::ivec2(b[u], b[v]) * kBrickEdge +
                            glm::ivec2(column % 8, column / 8));
+      judged_.push_back({std::uint32_t(entry), item, out.judged.back().x, out.judged.back().y});
     }
   out.occluders = occluders();
   packed_ = Buffer::of(judged_);
@@ -115,14 +110,26 @@ SelectedLayer SweepKernels::select(int layer) {
 }
 
 void SweepKernels::mark(const Buffer& voxels, std::size_t count) {
-  bind();
+  set_parameters();
+  table_.bind_storage(shaders::kSweepTableBinding);
+  passed_.bind_storage(shaders::kSweepPassedBinding);
   voxels.bind_storage(shaders::kOccludersBinding);
   mark_->dispatch(context_, "carving_mark_passed", gpu::group_count(count, 64));
 }
 
 std::vector<glm::vec4> SweepKernels::score(const std::vector<glm::vec4>& samples) {
   const Buffer sample_buffer = Buffer::of(samples);
-  bind();
+  set_parameters();
+  views_.bind_storage(shaders::kViewsBinding);
+  items_.bind_storage(shaders::kSweepItemsBinding);
+  packed_.bind_storage(shaders::kSweepSelectedColumnsBinding);
+  scores_.bind_storage(shaders::kSweepScoresBinding);
+  if (by_rays_) {
+    table_.bind_storage(shaders::kSweepTableBinding);
+    passed_.bind_storage(shaders::kSweepPassedBinding);
+  } else {
+    maps_.bind();
+  }
   sample_buffer.bind_storage(shaders::kSweepSamplesBinding);
   score_->dispatch(context_, "carving_score_columns", gpu::group_count(judged_.size(), 64));
   return scores_.download<glm::vec4>(judged_.size());
@@ -130,16 +137,23 @@ std::vector<glm::vec4> SweepKernels::score(const std::vector<glm::vec4>& samples
 
 void SweepKernels::update(const std::vector<glm::vec4>& scores) {
   scores_ = Buffer::of(scores);
-  bind();
+  set_parameters();
+  active_.bind_storage(shaders::kSweepActiveBinding);
+  decisions_.bind_storage(shaders::kSweepDecisionsBinding);
+  packed_.bind_storage(shaders::kSweepSelectedColumnsBinding);
+  scores_.bind_storage(shaders::kSweepScoresBinding);
+  table_.bind_storage(shaders::kSweepTableBinding);
+  occupancy_.bind_storage(shaders::kSweepOccupancyBinding);
   occluders_.bind_storage(shaders::kOccludersBinding);
+  columns_.bind_storage(shaders::kSweepColumnsBinding);
   update_->dispatch(context_, "carving_update_columns", gpu::group_count(judged_.size(), 64));
 }
 
 std::size_t SweepKernels::patch_base(std::size_t judged, int view, int shift) const {
-  const std::uint32_t entry = judged_[judged] / 64, column = judged_[judged] % 64;
-  const std::size_t place = std::size_t(entry) * shaders::kMaxLayerViews + std::size_t(view);
+  const shaders::SelectedColumn& column = judged_[judged];
+  const std::size_t place = std::size_t(column.brick) * shaders::kMaxLayerViews + std::size_t(view);
   return (place * std::size_t(shifts_) + std::size_t(shift)) * shaders::kApronArea +
-         column / 8 * shaders::kApronEdge + column % 8;
+         std::size_t(column.v % 8 * shaders::kApronEdge + column.u % 8);
 }
 
 std::vector<std::uint8_t> SweepKernels::on_path() const {

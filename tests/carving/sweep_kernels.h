@@ -54,7 +54,7 @@ class SweepKernels {
   std::uint32_t judged_count() const;
 
  private:
-  void bind();
+  void set_parameters();
 
   gpu::Context& context_;
   reference::SweepFrame frame_;
@@ -64,8 +64,9 @@ class SweepKernels {
   visibility::DepthMaps maps_;
   gpu::Buffer views_, table_, occupancy_, columns_, active_, passed_, uniforms_;
   gpu::Buffer items_, selected_, occluders_, packed_, scores_, decisions_;
-  std::vector<glm::uvec4> entries_;    ///< selected bricks of the layer
-  std::vector<std::uint32_t> judged_;  ///< entry * 64 + column
+  std::vector<glm::uvec4> entries_;  ///< selected bricks of the layer
+  std::vector<shaders::SelectedColumn> judged_;
+  bool by_rays_;
 };
 
 }  // namespace photohull::carving::test_kernels

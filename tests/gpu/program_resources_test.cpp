@@ -27,15 +27,15 @@ TEST(ProgramResources, EachNumberBeyondThePromiseIsNamed) {
     return beyond_promise(r);
   };
   using R = ProgramResources;
-  EXPECT_EQ(with([](R& r) { r.compute.storage_blocks = 17; }),
-            "17 storage blocks in a compute shader (at most 16)");
+  EXPECT_EQ(with([](R& r) { r.compute.storage_blocks = 9; }),
+            "9 storage blocks in a compute shader (at most 8)");
   EXPECT_THAT(with([](R& r) { r.vertex.storage_blocks = 1; }),
               HasSubstr("vertex shader (at most 0)"));
-  EXPECT_THAT(with([](R& r) { r.fragment.storage_blocks = 17; }), HasSubstr("fragment shader"));
+  EXPECT_THAT(with([](R& r) { r.fragment.storage_blocks = 9; }), HasSubstr("fragment shader"));
   EXPECT_THAT(with([](R& r) { r.compute.textures = 17; }), HasSubstr("17 textures"));
   EXPECT_THAT(with([](R& r) { r.fragment.images = 9; }), HasSubstr("9 images"));
   EXPECT_THAT(with([](R& r) { r.vertex.images = 1; }), HasSubstr("1 images in a vertex shader"));
-  EXPECT_THAT(with([](R& r) { r.highest_storage_binding = 16; }), HasSubstr("17 bindings"));
+  EXPECT_THAT(with([](R& r) { r.highest_storage_binding = 8; }), HasSubstr("9 bindings"));
   EXPECT_THAT(with([](R& r) { r.highest_image_unit = 8; }), HasSubstr("9 image units"));
   EXPECT_THAT(with([](R& r) { r.uniform_components = 1025; }), HasSubstr("1025 numbers"));
   EXPECT_THAT(with([](R& r) { r.uniform_block_bytes = 16400; }), HasSubstr("16400 bytes"));

@@ -45,11 +45,12 @@ std::vector<Band> make_bands(int across, int rows) {
 
 BandWork::BandWork(const Band& of, std::span<const LayerItem> items)
     : band(of),
-      count(items.size()),
       item_buffer(to_device(items)),
-      scores(count * 64 * 16),
-      selected(count),
-      occluders(count * 128),
-      decided(count * kDecidedEntries) {}
+      scores(items.size() * 64 * 16),
+      selected(items.size()),
+      occluders(items.size() * 128),
+      decided(items.size() * kDecidedEntries) {
+  for (const LayerItem& item : items) bricks.push_back(item.brick);
+}
 
 }  // namespace photohull::carving

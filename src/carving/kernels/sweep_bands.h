@@ -38,7 +38,7 @@ std::vector<Band> make_bands(int across, int rows);
 /// A band's part of a slab of bricks: its items, and what the kernels find in them.
 struct BandWork {
   const Band& band;
-  std::size_t count;  ///< of the items
+  std::vector<glm::ivec3> bricks;  ///< of the items
   gpu::Buffer item_buffer, scores;
   DeviceList selected, occluders, decided;
 

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "carving/search_disc.h"
-#include "shared/sweep.h"
 
 namespace photohull::carving {
 namespace {
@@ -79,82 +78,121 @@ void SweepDevice::begin(const SweepDirection& direction) {
   passed_.fill(0);
 }
 
-void SweepDevice::bind(int layer, const BandWork& work, const Chunk& chunk) {
+void SweepDevice::set_parameters(int layer, const BandWork& work, const Chunk& chunk) {
   shaders::SweepParameters p = parameters_of(options_);
   const int axis = direction_.axis;
-  p.bricks = glm::ivec4(bricks_, int(work.count));
+  p.bricks = glm::ivec4(bricks_, int(work.bricks.size()));
   p.axes = {(axis + 1) % 3, (axis + 2) % 3, axis, direction_.sign};
   p.layer = {layer, work.band.first_row * kBrickEdge, 0, options_.front_face};
   p.chunk = {int(chunk.first_brick), options_.max_path, int(chunk.first_column),
              int(chunk.columns)};
   uniforms_.write(0, sizeof p, &p);
   uniforms_.bind_uniform(shaders::kSweepParametersBinding);
-  views_.bind_storage(shaders::kViewsBinding);
+}
+
+void SweepDevice::bind_selection(const BandWork& work) const {
   work.item_buffer.bind_storage(shaders::kSweepItemsBinding);
+  work.selected.buffer.bind_storage(shaders::kSweepSelectedBinding);
   table_.bind_storage(shaders::kSweepTableBinding);
   occupancy_.bind_storage(shaders::kSweepOccupancyBinding);
+  work.occluders.buffer.bind_storage(shaders::kOccludersBinding);
   work.band.columns.bind_storage(shaders::kSweepColumnsBinding);
+}
+
+void SweepDevice::bind_sampling(const BandWork& work) const {
+  views_.bind_storage(shaders::kViewsBinding);
+  work.item_buffer.bind_storage(shaders::kSweepItemsBinding);
   work.selected.buffer.bind_storage(shaders::kSweepSelectedBinding);
+  samples_.bind_storage(shaders::kSweepSamplesBinding);
+}
+
+void SweepDevice::bind_scoring(const BandWork& work) const {
+  views_.bind_storage(shaders::kViewsBinding);
+  work.item_buffer.bind_storage(shaders::kSweepItemsBinding);
+  packed_.bind_storage(shaders::kSweepSelectedColumnsBinding);
   work.scores.bind_storage(shaders::kSweepScoresBinding);
-  maps_.bind();
+  if (is_by_rays()) {
+    table_.bind_storage(shaders::kSweepTableBinding);
+    passed_.bind_storage(shaders::kSweepPassedBinding);
+  } else {
+    maps_.bind();
+  }
+  samples_.bind_storage(shaders::kSweepSamplesBinding);
+}
+
+void SweepDevice::bind_update(const BandWork& work) const {
   active_.bind_storage(shaders::kSweepActiveBinding);
   work.decided.buffer.bind_storage(shaders::kSweepDecisionsBinding);
   packed_.bind_storage(shaders::kSweepSelectedColumnsBinding);
-  passed_.bind_storage(shaders::kSweepPassedBinding);
+  work.scores.bind_storage(shaders::kSweepScoresBinding);
+  table_.bind_storage(shaders::kSweepTableBinding);
+  occupancy_.bind_storage(shaders::kSweepOccupancyBinding);
+  work.occluders.buffer.bind_storage(shaders::kOccludersBinding);
+  work.band.columns.bind_storage(shaders::kSweepColumnsBinding);
 }
 
 std::int64_t SweepDevice::judge_layer(int layer, BandWork& work) {
   work.selected.clear();
   work.occluders.clear();
   columns_of_layer_.clear();
-  bind(layer, work, {});
-  work.occluders.buffer.bind_storage(shaders::kOccludersBinding);
-  select_->dispatch(context_, "carving_select_columns", work.count);
-  const std::size_t count = pack_columns(work.selected);
+  set_parameters(layer, work, {});
+  bind_selection(work);
+  select_->dispatch(context_, "carving_select_columns", work.bricks.size());
+  const std::size_t count = pack_columns(work);
   std::size_t column = 0;
   std::int64_t samples = 0;
   for (std::size_t first = 0; first < count; first += chunk_) {
     const std::size_t end = std::min(first + chunk_, count), first_column = column;
-    while (column < columns_of_layer_.size() && columns_of_layer_[column] >> 6 < end) ++column;
-    bind(layer, work, {first, first_column, column - first_column});
-    samples_.bind_storage(shaders::kSweepSamplesBinding);
+    while (column < columns_of_layer_.size() && columns_of_layer_[column].brick < end) ++column;
+    set_parameters(layer, work, {first, first_column, column - first_column});
+    bind_sampling(work);
     sampling_.bind(*sampling_.program);
     sampling_.program->dispatch(context_, sampling_.launch, end - first, search_.size());
+    bind_scoring(work);
     score_->dispatch(context_, "carving_score_columns",
                      gpu::group_count(column - first_column, 64));
     samples += std::int64_t(end - first) * shaders::kMaxLayerViews * shaders::kApronArea *
                options_.supersample * options_.supersample * std::int64_t(search_.size());
   }
-  bind(layer, work, {0, 0, columns_of_layer_.size()});
-  work.occluders.buffer.bind_storage(shaders::kOccludersBinding);
+  set_parameters(layer, work, {0, 0, columns_of_layer_.size()});
+  bind_update(work);
   update_->dispatch(context_, "carving_update_columns",
                     gpu::group_count(columns_of_layer_.size(), 64));
   return samples;
 }
 
 void SweepDevice::hide_behind(int layer, const BandWork& work) {
-  bind(layer, work, {});
-  work.occluders.buffer.bind_storage(shaders::kOccludersBinding);
   const std::size_t count = work.occluders.count();
-  if (options_.visibility == visibility::SweepTest::kRays)
+  if (is_by_rays()) {
+    set_parameters(layer, work, {});
+    table_.bind_storage(shaders::kSweepTableBinding);
+    passed_.bind_storage(shaders::kSweepPassedBinding);
+    work.occluders.buffer.bind_storage(shaders::kOccludersBinding);
     mark_->dispatch(context_, "carving_mark_passed", gpu::group_count(count, 64));
-  else
+  } else {
+    views_.bind_storage(shaders::kViewsBinding);
     maps_.splat(context_, work.occluders.buffer, count);
+  }
 }
 
 /// Puts the selected bricks in the order of their items, so that a run never depends on the
 /// device's scheduling, and lists their columns. Returns the number of bricks.
-std::size_t SweepDevice::pack_columns(DeviceList& selected) {
-  const std::size_t count = selected.count();
+std::size_t SweepDevice::pack_columns(BandWork& work) {
+  const std::size_t count = work.selected.count();
   auto entries = std::vector<glm::uvec4>(count);
-  selected.buffer.read(16, count * 16, entries.data());
+  work.selected.buffer.read(16, count * 16, entries.data());
   std::sort(entries.begin(), entries.end(),
             [](const glm::uvec4& a, const glm::uvec4& b) { return a.x < b.x; });
-  selected.buffer.write(16, count * 16, entries.data());
-  for (std::size_t entry = 0; entry < count; ++entry)
-    for (std::uint32_t column = 0; column < 64; ++column)
-      if (entries[entry][1 + int(column / 32)] >> (column % 32) & 1)
-        columns_of_layer_.push_back(std::uint32_t(entry * 64) + column);
+  work.selected.buffer.write(16, count * 16, entries.data());
+  const int u = (direction_.axis + 1) % 3, v = (direction_.axis + 2) % 3;
+  for (std::size_t entry = 0; entry < count; ++entry) {
+    const glm::ivec3 origin = work.bricks[entries[entry].x] * kBrickEdge;
+    for (int column = 0; column < 64; ++column)
+      if (entries[entry][1 + column / 32] >> (column % 32) & 1)
+        columns_of_layer_.push_back({std::uint32_t(entry), entries[entry].x,
+                                     origin[u] + column % kBrickEdge,
+                                     origin[v] + column / kBrickEdge});
+  }
   packed_ = Buffer::of(columns_of_layer_);
   return count;
 }

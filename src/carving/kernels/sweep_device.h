@@ -16,6 +16,7 @@
 #include "gpu/context.h"
 #include "gpu/program.h"
 #include "projtex/gpu_views.h"
+#include "shared/sweep.h"
 #include "visibility/kernels/depth_maps.h"
 
 namespace photohull::carving {
@@ -47,9 +48,15 @@ class SweepDevice {
   struct Chunk {
     std::size_t first_brick = 0, first_column = 0, columns = 0;
   };
-  /// All but what a step reads or writes at kOccludersBinding or kSweepSamplesBinding.
-  void bind(int layer, const BandWork& work, const Chunk& chunk);
-  std::size_t pack_columns(DeviceList& selected);
+  /// What each step works on: they have bindings in common.
+  void set_parameters(int layer, const BandWork& work, const Chunk& chunk);
+  void bind_selection(const BandWork& work) const;
+  void bind_sampling(const BandWork& work) const;
+  void bind_scoring(const BandWork& work) const;
+  void bind_update(const BandWork& work) const;
+  std::size_t pack_columns(BandWork& work);
+
+  bool is_by_rays() const { return options_.visibility == visibility::SweepTest::kRays; }
 
   gpu::Context& context_;
   LayerSampling sampling_;
@@ -61,7 +68,7 @@ class SweepDevice {
   std::shared_ptr<const gpu::Program> select_, score_, update_, mark_;
   gpu::Buffer views_, table_, occupancy_, active_, samples_, packed_, uniforms_;
   gpu::Buffer passed_;  ///< bits of the voxels that hide what the sweep comes to, for rays
-  std::vector<std::uint32_t> columns_of_layer_;
+  std::vector<shaders::SelectedColumn> columns_of_layer_;
   SweepDirection direction_{};
 };
 
