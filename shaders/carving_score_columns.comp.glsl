@@ -27,13 +27,13 @@ void main() {
   vec3 voxel = layer_point(vec2(selected.u, selected.v), float(parameters.layer.x));
   int view_count = items[selected.item].brick.w;
 
-  bool seen[kViews];
+  uint seen = 0u;  // views, as bits
   float sum = 0.0;  // of the views' shares
   for (int i = 0; i < kViews; ++i) {
     uint v = items[selected.item].views[i >> 2][i & 3];
     vec3 p = project(views[v], voxel);
     view_weights[i] = i < view_count ? sweep_visible(v, voxel, p, parameters.thresholds.w) : 0.0;
-    seen[i] = view_weights[i] > 0.0;
+    seen |= view_weights[i] > 0.0 ? 1u << uint(i) : 0u;
   }
   uint base = (selected.brick - uint(parameters.chunk.x)) * uint(kViews * SEARCH_TAPS * kApronArea) +
               uint(selected.v & 7) * uint(kApronEdge) + uint(selected.u & 7);
@@ -41,6 +41,6 @@ void main() {
   choose_shifts(base, seen);
 #endif
   Consistency c = consistency(base, seen);
-  for (int i = 0; i < kViews; ++i) sum += seen[i] ? view_weights[i] : 0.0;
+  for (int i = 0; i < kViews; ++i) sum += has(seen, i) ? view_weights[i] : 0.0;
   scores[index] = vec4(c.score, float(c.used), c.confidence, sum);
 }

@@ -6,16 +6,16 @@ const float kTolerance = 2.4494897;      // noise of a difference of sums of thr
 const float kLeastInformative = 0.25;    // of the taps
 const float kCensusGain = 1.4;           // a similarity of a half counts as agreement (0.7)
 
-Consistency consistency(uint base, inout bool seen[kViews]) {
+Consistency consistency(uint base, inout uint seen) {
   uint taps = common_taps(base, seen);
-  int n = count_of(seen);
+  int n = bitCount(seen);
   if (n < 2 || bitCount(taps) < kLeastTaps) return Consistency(-1.0, 0.0, n);
   float tolerance = kTolerance * sqrt(parameters.noise.x);
   float middle[kViews];
   for (int i = 0; i < kViews; ++i) middle[i] = dot(patch_tap(base, i, kPatchTaps / 2).rgb, vec3(1.0));
   int differing = 0, informative = 0;
   for (int k = 0; k < kPatchTaps; ++k) {
-    if (k == kPatchTaps / 2 || !has_tap(taps, k)) continue;
+    if (k == kPatchTaps / 2 || !has(taps, k)) continue;
     int digit[kViews];
     for (int i = 0; i < kViews; ++i) {
       float d = dot(patch_tap(base, i, k).rgb, vec3(1.0)) - middle[i];
@@ -23,7 +23,7 @@ Consistency consistency(uint base, inout bool seen[kViews]) {
     }
     for (int i = 1; i < kViews; ++i)
       for (int j = 0; j < i; ++j) {
-        bool pair = seen[i] && seen[j] && (digit[i] != 0 || digit[j] != 0);
+        bool pair = has(seen, i) && has(seen, j) && (digit[i] != 0 || digit[j] != 0);
         informative += pair ? 1 : 0;
         differing += pair ? abs(digit[i] - digit[j]) : 0;
       }

@@ -7,9 +7,9 @@ const int kPowerSteps = 16;
 
 int gram_index(int i, int j) { return i >= j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i; }
 
-Consistency consistency(uint base, inout bool seen[kViews]) {
+Consistency consistency(uint base, inout uint seen) {
   uint taps = common_taps(base, seen);
-  int n = count_of(seen);
+  int n = bitCount(seen);
   float tap_count = float(bitCount(taps));
   if (n < 2 || bitCount(taps) < kLeastTaps) return Consistency(-1.0, 0.0, n);
   float gram[kPairs];
@@ -20,7 +20,7 @@ Consistency consistency(uint base, inout bool seen[kViews]) {
   for (int k = 0; k < kPatchTaps; ++k) {
     vec3 x[kViews];
     for (int i = 0; i < kViews; ++i) {
-      x[i] = seen[i] && has_tap(taps, k) ? patch_tap(base, i, k).rgb : vec3(0.0);
+      x[i] = has(seen, i) && has(taps, k) ? patch_tap(base, i, k).rgb : vec3(0.0);
       moments[i] += vec2(dot(x[i], vec3(1.0)), dot(x[i], x[i]));
     }
     for (int i = 0; i < kViews; ++i)
@@ -34,7 +34,7 @@ Consistency consistency(uint base, inout bool seen[kViews]) {
   contrast /= float(n);
   // The greatest eigenvalue of the views' products.
   float weight[kViews];
-  for (int i = 0; i < kViews; ++i) weight[i] = seen[i] ? 1.0 : 0.0;
+  for (int i = 0; i < kViews; ++i) weight[i] = has(seen, i) ? 1.0 : 0.0;
   float greatest = 0.0;
   for (int step = 0; step < kPowerSteps; ++step) {
     float next[kViews];

@@ -23,7 +23,7 @@ struct PatchScales {
 int pair_of(int i, int j) { return i * (i - 1) / 2 + j; }
 
 // Sums the taps that all views show. Views that the patch leaves do not count.
-PatchSums sum_patches(uint base, uint taps, inout bool seen[kViews]) {
+PatchSums sum_patches(uint base, uint taps, inout uint seen) {
   PatchSums sums;
   for (int i = 0; i < kViews; ++i) {
     sums.colours[i] = vec3(0.0);
@@ -38,9 +38,9 @@ PatchSums sum_patches(uint base, uint taps, inout bool seen[kViews]) {
         // Centred on mid-grey: the products then lose no precision.
         x[i] = s.rgb - 0.5;
 #ifdef SAMPLE_COVERAGE
-        x[i] = has_tap(taps, row * kPatchEdge + at) ? x[i] : vec3(0.0);
+        x[i] = has(taps, row * kPatchEdge + at) ? x[i] : vec3(0.0);
 #else
-        seen[i] = seen[i] && s.a >= 0.0;
+        if (!(s.a >= 0.0)) seen &= ~(1u << uint(i));
 #endif
         sums.colours[i] += x[i];
         sums.squares[i] += dot(x[i], x[i]);
@@ -52,17 +52,15 @@ PatchSums sum_patches(uint base, uint taps, inout bool seen[kViews]) {
 }
 
 // What brings each view's patch to unit variance, and how much texture the views show.
-PatchScales scales_of(PatchSums sums, float tap_count, bool seen[kViews]) {
+PatchScales scales_of(PatchSums sums, float tap_count, uint seen) {
   PatchScales s;
   s.texture_variance = 0.0;
-  int n = 0;
   for (int i = 0; i < kViews; ++i) {
     float variance = max(sums.squares[i] - dot(sums.colours[i], sums.colours[i]) / tap_count, 0.0) / tap_count;
-    s.scale[i] = seen[i] ? inversesqrt(variance + 3.0 * parameters.noise.x) : 0.0;
-    s.texture_variance += seen[i] ? variance / 3.0 : 0.0;
-    n += seen[i] ? 1 : 0;
+    s.scale[i] = has(seen, i) ? inversesqrt(variance + 3.0 * parameters.noise.x) : 0.0;
+    s.texture_variance += has(seen, i) ? variance / 3.0 : 0.0;
   }
-  s.texture_variance /= float(max(n, 1));
+  s.texture_variance /= float(max(bitCount(seen), 1));
   return s;
 }
 
@@ -80,25 +78,22 @@ void correlate(inout PatchSums sums, float scale[kViews], float tap_count, out f
 }
 
 // The views that do not agree far less with the others than the best one does; says how many.
-int keep_agreeing(float agreement[kViews], bool seen[kViews], out bool kept[kViews]) {
+int keep_agreeing(float agreement[kViews], uint seen, out uint kept) {
   float best = -1e30;
-  for (int i = 0; i < kViews; ++i) best = seen[i] ? max(best, agreement[i]) : best;
+  for (int i = 0; i < kViews; ++i) best = has(seen, i) ? max(best, agreement[i]) : best;
   float least = best - max((1.0 - kOutlierShare) * best, kOutlierSlack);
-  int used = 0;
-  for (int i = 0; i < kViews; ++i) {
-    kept[i] = seen[i] && agreement[i] >= least;
-    used += kept[i] ? 1 : 0;
-  }
-  return used;
+  kept = 0u;
+  for (int i = 0; i < kViews; ++i) kept |= has(seen, i) && agreement[i] >= least ? 1u << uint(i) : 0u;
+  return bitCount(kept);
 }
 
 // Mean correlation of the pairs of kept views, weighted by how much of the voxel both see.
-float mean_correlation(float correlations[kPairs], bool kept[kViews]) {
+float mean_correlation(float correlations[kPairs], uint kept) {
   float score = 0.0;
   float pairs = 0.0;
   for (int i = 1; i < kViews; ++i)
     for (int j = 0; j < i; ++j) {
-      float weight = kept[i] && kept[j] ? view_weights[i] * view_weights[j] : 0.0;
+      float weight = has(kept, i) && has(kept, j) ? view_weights[i] * view_weights[j] : 0.0;
       score += weight * correlations[pair_of(i, j)];
       pairs += weight;
     }
@@ -106,7 +101,7 @@ float mean_correlation(float correlations[kPairs], bool kept[kViews]) {
 }
 
 // The statistic of the voxel whose patches begin at `base`.
-Consistency consistency(uint base, inout bool seen[kViews]) {
+Consistency consistency(uint base, inout uint seen) {
 #ifdef SAMPLE_COVERAGE
   uint taps = common_taps(base, seen);
   float tap_count = float(max(bitCount(taps), 1));
@@ -118,7 +113,7 @@ Consistency consistency(uint base, inout bool seen[kViews]) {
   PatchScales scales = scales_of(sums, tap_count, seen);
   float agreement[kViews];
   correlate(sums, scales.scale, tap_count, agreement);
-  bool kept[kViews];
+  uint kept;
   int used = keep_agreeing(agreement, seen, kept);
   float score = mean_correlation(sums.products, kept);
 #ifdef SAMPLE_COVERAGE

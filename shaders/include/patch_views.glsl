@@ -34,11 +34,12 @@ vec4 patch_tap(uint base, int view, int k) {
   return samples[base + uint(area * kApronArea + k / kPatchEdge * kApronEdge + k % kPatchEdge)];
 }
 
-bool has_tap(uint taps, int k) { return (taps >> uint(k) & 1u) != 0u; }
+// Sets of taps and of views are bits of a number: some drivers (Zink of Mesa 22) take no arrays of bool.
+bool has(uint set, int k) { return (set >> uint(k) & 1u) != 0u; }
 
 // Taps, as bits, that all views show. Views that the patch leaves, that show background in its middle
 // or in more than half of it, do not count.
-uint common_taps(uint base, inout bool seen[kViews]) {
+uint common_taps(uint base, inout uint seen) {
   uint common_bits = (1u << uint(kPatchTaps)) - 1u;
   for (int i = 0; i < kViews; ++i) {
     uint shown = 0u;
@@ -48,16 +49,10 @@ uint common_taps(uint base, inout bool seen[kViews]) {
       whole = whole && a >= 0.0;
       shown |= a > 0.0 ? 1u << uint(k) : 0u;
     }
-    seen[i] = seen[i] && whole && has_tap(shown, kPatchTaps / 2) && bitCount(shown) >= kLeastTaps;
-    common_bits = seen[i] ? common_bits & shown : common_bits;
+    if (!(whole && has(shown, kPatchTaps / 2) && bitCount(shown) >= kLeastTaps)) seen &= ~(1u << uint(i));
+    common_bits = has(seen, i) ? common_bits & shown : common_bits;
   }
   return common_bits;
-}
-
-int count_of(bool seen[kViews]) {
-  int n = 0;
-  for (int i = 0; i < kViews; ++i) n += seen[i] ? 1 : 0;
-  return n;
 }
 
 // Residuals that count as agreement: beyond noise, what resampling and a place not quite on the
@@ -72,7 +67,7 @@ float patch_texture(uint base, int view, uint taps) {
   vec3 sum = vec3(0.0);
   float squares = 0.0;
   for (int k = 0; k < kPatchTaps; ++k) {
-    vec3 x = has_tap(taps, k) ? patch_tap(base, view, k).rgb - 0.5 : vec3(0.0);
+    vec3 x = has(taps, k) ? patch_tap(base, view, k).rgb - 0.5 : vec3(0.0);
     sum += x;
     squares += dot(x, x);
   }

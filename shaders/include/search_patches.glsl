@@ -51,23 +51,23 @@ void add_patch(uint base, int view, SearchedPatch p, float sign, inout vec3 patt
 }
 
 // Sets view_shifts; views that nowhere in their disc show the patch no longer count.
-void choose_shifts(uint base, inout bool seen[kViews]) {
+void choose_shifts(uint base, inout uint seen) {
   vec3 pattern[kPatchTaps];
   for (int k = 0; k < kPatchTaps; ++k) pattern[k] = vec3(0.0);
   for (int i = 0; i < kViews; ++i) {
     view_shifts[i] = 0;
-    if (!seen[i]) continue;
+    if (!has(seen, i)) continue;
     SearchedPatch p = search_patch(base, i, pattern);
     while (p.scale == 0.0 && view_shifts[i] < SEARCH_TAPS - 1) {
       ++view_shifts[i];
       p = search_patch(base, i, pattern);
     }
-    seen[i] = p.scale > 0.0;
-    if (seen[i]) add_patch(base, i, p, 1.0, pattern);
+    if (!(p.scale > 0.0)) seen &= ~(1u << uint(i));
+    else add_patch(base, i, p, 1.0, pattern);
   }
   for (int at = 0; at < kSearchRounds * kViews; ++at) {
     int i = at % kViews;
-    if (!seen[i]) continue;
+    if (!has(seen, i)) continue;
     add_patch(base, i, search_patch(base, i, pattern), -1.0, pattern);
     SearchedPatch best = search_patch(base, i, pattern);
     int chosen = view_shifts[i];
