@@ -1,6 +1,6 @@
 """Textured models beside photographs that they were not made from, and what fewer triangles and smaller files cost.
 
-    python3 -m bench textures [--scenes bunny,templeRing] [--out FILE] [--keep FOLDER]
+    python3 -m bench textures [--scenes bunny,templeRing] [--held-out-only] [--out FILE] [--keep FOLDER]
 
 Three views are held out, and cameras are taken as given, for those of the held-out views could not be refined. The test
 program compare_with_photographs draws the meshes from their cameras: with the texture of mesh.glb, with the vertices'
@@ -30,6 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_program(parser)
     add_datasets(parser)
     parser.add_argument("--scenes", type=listed, default="bunny,templeRing,dinoRing,glazed,fountain")
+    parser.add_argument("--held-out-only", action="store_true", help="leave triangles and files out")
     parser.add_argument("--out", type=Path, help="file for the figures")
     add_keep(parser)
 
@@ -96,7 +97,7 @@ def run(options: argparse.Namespace) -> None:
         for number, scene in enumerate(options.scenes):
             study = Study(photohull, options.datasets / scene, folder)
             rows += study.held_out()
-            if number < 2:
+            if number < 2 and not options.held_out_only:
                 rows += [*study.simplified(), *study.files()]
     for table in page.data("textures").values():
         print(page.table_of(table, rows), end="\n\n")
