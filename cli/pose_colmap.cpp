@@ -5,14 +5,13 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
-#include "core/median.h"
 #include "io/image_file.h"
 #include "io/photo_lens.h"
 #include "io/write_scene.h"
 #include "json_parts.h"
 #include "photo/fine_detail.h"
 #include "photo/grey_image.h"
-#include "pipeline/check_photographs.h"
+#include "pose_coverage.h"
 #include "scene_arguments.h"
 
 namespace photohull::cli {
@@ -51,16 +50,13 @@ Readable look_at_photographs(const PoseJob& job, const std::vector<fs::path>& ma
   return readable;
 }
 
-/// About which the photographs were taken: the middle of the sparse points.
-glm::dvec3 middle_of(const std::vector<glm::dvec3>& points) {
-  glm::dvec3 middle(0);
-  if (points.empty()) return middle;
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<double> values;
-    for (const glm::dvec3& p : points) values.push_back(p[axis]);
-    middle[axis] = median(values);
-  }
-  return middle;
+PosedSides sides_of(const PoseJob& job, const Readable& readable, const io::ColmapFound& found) {
+  PosedSides sides{readable.looks, found.scene.views, {}, {}, {}};
+  sides.middle = pipeline::find_middle(found.scene.views, found.scene.points);
+  sides.up = pipeline::level_up(found.scene.views, sides.middle);
+  for (std::size_t i = 0; i < job.names.size(); ++i)
+    if (!found.photos[i].posed) sides.left_out.push_back({job.names[i], std::nullopt});
+  return sides;
 }
 
 ordered_json lens_json(const AdjustedLens& lens) {
@@ -124,8 +120,7 @@ ColmapPose pose_with_colmap(const PoseJob& job, Progress& progress) {
   pose.lenses = adjust_lenses(scene, pose.found.lens_of_view, progress);
   scene.path = job.out;
   scene.format = SceneFormat::kTransforms;
-  pose.warnings = pipeline::check_photographs(readable.looks, scene.views, middle_of(scene.points),
-                                              std::nullopt);
+  pose.warnings = check_sides(job.out, sides_of(job, readable, pose.found));
   pose.report = report_of(job, pose);
   write_atomically(job.out / "pose.json", pose.report);
   io::write_transforms(scene, job.out);

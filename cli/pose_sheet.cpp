@@ -8,7 +8,7 @@
 #include "io/image_file.h"
 #include "io/photo_lens.h"
 #include "io/write_scene.h"
-#include "pipeline/check_photographs.h"
+#include "pose_coverage.h"
 #include "pose_json.h"
 #include "pose_masks.h"
 #include "scene_arguments.h"
@@ -69,6 +69,21 @@ Scene scene_of(const PoseJob& job, const PoseResult& result, const std::vector<f
   return scene;
 }
 
+PosedSides sides_of(const PoseJob& job, const ReadPhotos& read, const PoseResult& result,
+                    const Scene& scene) {
+  PosedSides sides{read.looks, scene.views, scene.box->center(), {0, 0, 1}, {}};
+  for (std::size_t i = 0; i < job.images.size(); ++i) {
+    const PosedPhoto& photo = result.photos[i];
+    if (photo.posed) continue;
+    SourceView view;
+    view.name = job.names[i];
+    view.camera.cam_from_world = photo.cam_from_world;
+    sides.left_out.push_back(
+        {view.name, photo.placed ? std::optional(place_of(sides, view)) : std::nullopt});
+  }
+  return sides;
+}
+
 }  // namespace
 
 SheetPose pose_on_sheet(const PoseJob& job, Progress& progress) {
@@ -87,8 +102,7 @@ SheetPose pose_on_sheet(const PoseJob& job, Progress& progress) {
     masks = write_sheet_masks(job.out / "masks", job.images, widths, sheet, pose.result, progress);
   }
   const Scene scene = scene_of(job, pose.result, masks);
-  for (const std::string& warning : pipeline::check_photographs(
-           read.looks, scene.views, scene.box->center(), glm::dvec3(0, 0, 1)))
+  for (const std::string& warning : check_sides(job.out, sides_of(job, read, pose.result, scene)))
     pose.result.warnings.push_back(warning);
   pose.report = pose_json(job.names, pose.result);
   write_atomically(job.out / "pose.json", pose.report);

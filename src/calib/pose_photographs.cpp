@@ -156,6 +156,7 @@ class Poser {
   void leave_out(std::size_t i, const std::string& reason) {
     problem_.photos[i].used = false;
     result_.photos[i].reason = reason;
+    result_.photos[i].placed = true;
   }
 
   glm::dvec3 box_low() const { return {sheet_.free_min, o_.margin / print()}; }
@@ -196,7 +197,8 @@ class Poser {
     problem_ = flat;
     bent_ = false;
     for (std::size_t i = 0; i < given_.size(); ++i)
-      if (problem_.photos[i].used) result_.photos[i].reason.clear();
+      if (problem_.photos[i].used)
+        result_.photos[i].reason.clear(), result_.photos[i].placed = false;
   }
 
   void report() {
@@ -205,6 +207,7 @@ class Poser {
     double sum = 0, count = 0;
     for (std::size_t i = 0; i < given_.size(); ++i) {
       const SheetPhoto& photo = problem_.photos[i];
+      if (photo.used || result_.photos[i].placed) report_pose(photo, result_.photos[i]);
       if (!photo.used) continue;
       report_photo(photo, d.poses.at(i), result_.photos[i]);
       result_.photos[i].tags_used = int(tags_of(photo, i));
@@ -218,11 +221,14 @@ class Poser {
     warn();
   }
 
-  void report_photo(const SheetPhoto& photo, const std::vector<double>& sigma, PosedPhoto& out) {
-    out.posed = true;
+  void report_pose(const SheetPhoto& photo, PosedPhoto& out) const {
     out.camera = int(photo.camera);
     out.cam_from_world = pose_of(photo.pose);
     out.cam_from_world.translation *= result_.scale;
+  }
+
+  void report_photo(const SheetPhoto& photo, const std::vector<double>& sigma, PosedPhoto& out) {
+    out.posed = true;
     out.rms = problem_.rms(photo);
     if (sigma.size() != 6) return;
     for (std::size_t k = 0; k < 3; ++k) {

@@ -43,6 +43,7 @@ struct PosedPhoto {
   std::string reason;  ///< one sentence: why it is not
   int camera = 0;      ///< index of PoseResult::cameras
   Pose cam_from_world;
+  bool placed = false;  ///< it is not posed, but cam_from_world is about right
   int tags_found = 0, tags_used = 0;
   double rms = 0;          ///< pixels, of the points that count
   double turn_sigma = 0;   ///< degrees, standard deviation, largest of three axes

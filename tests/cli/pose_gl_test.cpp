@@ -86,6 +86,9 @@ TEST_F(PoseCommand, PhotographsOnASheetBecomeAScene) {
   const json report = read("scene/pose.json");
   EXPECT_LT(report["rms"], 0.15);
   EXPECT_FALSE(report["bend"]["found"]);
+  const ColourImage sides = io::read_image(folder_ / "scene/coverage.png");
+  EXPECT_EQ(sides.width, 1000);
+  EXPECT_THAT(posed.err, testing::Not(HasSubstr("coverage.png")));  // no gap
   // The cameras are where they were.
   const Scene scene = io::load_scene(path("scene"), {}), truth = io::load_scene(path("table"), {});
   ASSERT_EQ(scene.views.size(), std::size_t(kViews));
@@ -113,6 +116,21 @@ TEST_F(PoseCommand, PhotographsOnASheetBecomeAScene) {
   const double voxel = read("model/report.json")["grid"]["voxel_size"];
   for (std::size_t v = 0; v < mesh.positions.size(); ++v)
     ASSERT_GT(mesh.world(v).z, scene.box->min.z - voxel);
+}
+
+TEST_F(PoseCommand, AGapIsToldWithItsPicture) {
+  photograph_table();
+  const std::vector<std::string> names = listing(folder_ / "table/images");
+  ASSERT_EQ(names.size(), std::size_t(kViews));
+  // At 0, 90 and 45 degrees about the sheet.
+  const Finished posed =
+      run_photohull({"pose", path("table/images/" + names[0]), path("table/images/" + names[1]),
+                     path("table/images/" + names[4]), "--board", path("board.json"), "--out",
+                     path("scene"), "--no-masks"});
+  ASSERT_EQ(posed.code, 0) << posed.err;
+  EXPECT_THAT(posed.err, HasSubstr("from one side: as seen from above they span 90 degrees"));
+  EXPECT_THAT(posed.err, HasSubstr("; " + path("scene/coverage.png") + " shows where\n"));
+  EXPECT_TRUE(fs::exists(folder_ / "scene/coverage.png"));
 }
 
 TEST_F(PoseCommand, SameInputGivesTheSameBytes) {
