@@ -50,6 +50,7 @@ void run(const Arguments& a) {
   job.names = names_of(job.images);
   job.board = a.photos.board;
   job.sheet = a.photos.sheet;
+  job.focal = a.photos.focal;
   job.make_masks = !a.no_masks;
   job.masks = a.masks;
   job.ordered = a.photos.ordered;

@@ -25,6 +25,7 @@ struct Readable {
   std::vector<io::ColmapPhoto> photos;
   std::vector<std::size_t> index;
   std::vector<pipeline::PhotoLook> looks;  ///< of these
+  bool took_focal = false;                 ///< the job's
 };
 
 Readable look_at_photographs(const PoseJob& job, const std::vector<fs::path>& masks,
@@ -35,13 +36,16 @@ Readable look_at_photographs(const PoseJob& job, const std::vector<fs::path>& ma
     progress.check_cancelled();
     progress.update(double(i) / double(job.images.size()));
     try {
-      const io::PhotoLens lens = io::read_photo_lens(job.images[i]);
+      const io::PhotoLens lens = io::read_photo_lens(job.images[i], job.focal);
       const double sharpness = fine_detail(grey_image(io::read_image(job.images[i])));
-      readable.photos.push_back(
-          {job.images[i], masks.empty() ? fs::path() : masks[i], job.names[i], lens.name});
+      readable.photos.push_back({job.images[i], masks.empty() ? fs::path() : masks[i], job.names[i],
+                                 lens.name, lens.given ? lens.focal : 0});
+      readable.took_focal |= lens.given;
       readable.index.push_back(i);
       readable.looks.push_back({job.names[i], sharpness, lens.exposure});
     } catch (const MemoryError&) {
+      throw;
+    } catch (const UsageError&) {
       throw;
     } catch (const Error& failure) {
       all[i].reason = concat("it cannot be read: ", failure.what());
@@ -121,6 +125,8 @@ ColmapPose pose_with_colmap(const PoseJob& job, Progress& progress) {
   scene.path = job.out;
   scene.format = SceneFormat::kTransforms;
   pose.warnings = check_sides(job.out, sides_of(job, readable, pose.found));
+  if (const std::string warning = unused_focal(job, readable.took_focal); !warning.empty())
+    pose.warnings.push_back(warning);
   pose.report = report_of(job, pose);
   write_atomically(job.out / "pose.json", pose.report);
   io::write_transforms(scene, job.out);

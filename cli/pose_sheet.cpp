@@ -23,6 +23,7 @@ struct ReadPhotos {
   std::vector<PosePhoto> photos;
   std::vector<std::string> unreadable;  ///< of each: why; empty: it was read
   std::vector<pipeline::PhotoLook> looks;
+  bool took_focal = false;  ///< the job's
 };
 
 ReadPhotos find_all_tags(const PoseJob& job, const Sheet& sheet, Progress& progress) {
@@ -36,12 +37,15 @@ ReadPhotos find_all_tags(const PoseJob& job, const Sheet& sheet, Progress& progr
     read.unreadable.emplace_back();
     read.looks.push_back({job.names[i]});
     try {
-      const io::PhotoLens lens = io::read_photo_lens(job.images[i]);
+      const io::PhotoLens lens = io::read_photo_lens(job.images[i], job.focal);
       photo.camera = lens.name, photo.focal = lens.focal;
+      read.took_focal |= lens.given;
       read.looks.back().exposure = lens.exposure;
       photo.view = find_tags(io::read_image(job.images[i]), sheet, job.names[i]);
       if (photo.view.edge_width > 0) read.looks.back().sharpness = 1 / photo.view.edge_width;
     } catch (const MemoryError&) {
+      throw;
+    } catch (const UsageError&) {
       throw;
     } catch (const Error& failure) {
       read.unreadable.back() = concat("it cannot be read: ", failure.what());
@@ -101,6 +105,8 @@ SheetPose pose_on_sheet(const PoseJob& job, Progress& progress) {
     for (const PosePhoto& photo : read.photos) widths.push_back(photo.view.edge_width);
     masks = write_sheet_masks(job.out / "masks", job.images, widths, sheet, pose.result, progress);
   }
+  if (const std::string warning = unused_focal(job, read.took_focal); !warning.empty())
+    pose.result.warnings.push_back(warning);
   const Scene scene = scene_of(job, pose.result, masks);
   for (const std::string& warning : check_sides(job.out, sides_of(job, read, pose.result, scene)))
     pose.result.warnings.push_back(warning);

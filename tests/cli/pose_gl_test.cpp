@@ -126,8 +126,9 @@ TEST_F(PoseCommand, AGapIsToldWithItsPicture) {
   const Finished posed =
       run_photohull({"pose", path("table/images/" + names[0]), path("table/images/" + names[1]),
                      path("table/images/" + names[4]), "--board", path("board.json"), "--out",
-                     path("scene"), "--no-masks"});
+                     path("scene"), "--no-masks", "--focal", "900"});
   ASSERT_EQ(posed.code, 0) << posed.err;
+  EXPECT_EQ(read("scene/pose.json")["cameras"][0]["stated_focal_length"], 900);
   EXPECT_THAT(posed.err, HasSubstr("from one side: as seen from above they span 90 degrees"));
   EXPECT_THAT(posed.err, HasSubstr("; " + path("scene/coverage.png") + " shows where\n"));
   EXPECT_TRUE(fs::exists(folder_ / "scene/coverage.png"));
@@ -167,6 +168,12 @@ TEST_F(PoseCommand, MistakesAreNamed) {
   const Finished no_board = pose({path("photos"), "--board", path("photos/a.png")});
   EXPECT_EQ(no_board.code, 1);
   EXPECT_THAT(no_board.err, HasSubstr("a.png"));
+  for (const char* focal : {"0", "28cm", "5"}) {
+    const Finished refused =
+        pose({path("photos"), "--board", path("board.json"), "--focal", focal});
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_THAT(refused.err, HasSubstr(std::string("--focal ") + focal + ": "));
+  }
   const Finished bar = pose({path("photos"), "--board", path("board.json"), "--bar", "15"});
   EXPECT_EQ(bar.code, 2);
   EXPECT_THAT(bar.err, HasSubstr("150"));
