@@ -55,11 +55,12 @@ ReadPhotos find_all_tags(const PoseJob& job, const Sheet& sheet, Progress& progr
   return read;
 }
 
-Scene scene_of(const PoseJob& job, const PoseResult& result, const std::vector<fs::path>& masks) {
+Scene scene_of(const PoseJob& job, const PoseResult& result, const std::vector<fs::path>& masks,
+               bool has_box) {
   Scene scene;
   scene.path = job.out;
   scene.format = SceneFormat::kTransforms;
-  scene.box = result.box;
+  if (has_box) scene.box = result.box;
   for (std::size_t i = 0; i < job.images.size(); ++i) {
     const PosedPhoto& photo = result.photos[i];
     if (!photo.posed) continue;
@@ -75,7 +76,7 @@ Scene scene_of(const PoseJob& job, const PoseResult& result, const std::vector<f
 
 PosedSides sides_of(const PoseJob& job, const ReadPhotos& read, const PoseResult& result,
                     const Scene& scene) {
-  PosedSides sides{read.looks, scene.views, scene.box->center(), {0, 0, 1}, {}};
+  PosedSides sides{read.looks, scene.views, result.box.center(), {0, 0, 1}, {}};
   for (std::size_t i = 0; i < job.images.size(); ++i) {
     const PosedPhoto& photo = result.photos[i];
     if (photo.posed) continue;
@@ -91,7 +92,7 @@ PosedSides sides_of(const PoseJob& job, const ReadPhotos& read, const PoseResult
 }  // namespace
 
 SheetPose pose_on_sheet(const PoseJob& job, Progress& progress) {
-  const Sheet sheet = read_sheet(job.board);
+  const Sheet sheet = as_printed(read_sheet(job.board), job.sheet.bar);
   const ReadPhotos read = find_all_tags(job, sheet, progress);
   progress.stage("poses", 0.05);
   SheetPose pose{pose_photographs(read.photos, sheet, job.sheet), ""};
@@ -99,7 +100,7 @@ SheetPose pose_on_sheet(const PoseJob& job, Progress& progress) {
     if (!read.unreadable[i].empty()) pose.result.photos[i].reason = read.unreadable[i];
   make_folder(job.out, "--out");
   std::vector<fs::path> masks;
-  if (job.make_masks) {
+  if (job.make_masks && sheet.is_flat()) {
     progress.stage("masks", 0.5);
     std::vector<double> widths;
     for (const PosePhoto& photo : read.photos) widths.push_back(photo.view.edge_width);
@@ -107,7 +108,9 @@ SheetPose pose_on_sheet(const PoseJob& job, Progress& progress) {
   }
   if (const std::string warning = unused_focal(job, read.took_focal); !warning.empty())
     pose.result.warnings.push_back(warning);
-  const Scene scene = scene_of(job, pose.result, masks);
+  // What stands on a turntable lies above its strip, but a pot goes through it.
+  const bool has_box = sheet.is_flat() || job.sheet.height > 0;
+  const Scene scene = scene_of(job, pose.result, masks, has_box);
   for (const std::string& warning : check_sides(job.out, sides_of(job, read, pose.result, scene)))
     pose.result.warnings.push_back(warning);
   pose.report = pose_json(job.names, pose.result);

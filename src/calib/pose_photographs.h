@@ -71,6 +71,8 @@ struct PoseResult {
   std::vector<std::string> warnings;
 };
 
+/// A strip around a cylinder is to be given as_printed, and has no bend.
+///
 /// Starts from each camera's stated focal length, or from the tags' homographies [Zhang00], and
 /// from each photograph's pose by itself [Collins14]. Then lenses, poses and the sheet's bend are
 /// one Ceres problem with a robust loss over all corners, from whose covariance the standard

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "calib/object_error.h"
+#include "calib/tag_edges.h"
 #include "core/error.h"
 
 namespace photohull {
@@ -58,6 +59,29 @@ void SheetProblem::add_all(ceres::Problem& problem, bool bent) {
         new ceres::AutoDiffCostFunction<PaperPrior, 1, 3>(new PaperPrior{kStretched}), nullptr,
         bend.data());
   if (!bent) problem.SetParameterBlockConstant(bend.data());
+}
+
+void SheetProblem::follow_arcs() {
+  // A line that is fitted to a parabola's middle part lies so far from its ends, of its height.
+  constexpr double kPart = 1 - 2 * kTagEdgeMargin, kShare = 1 - kPart * kPart / 3;
+  for (SheetPhoto& photo : photos) {
+    if (!photo.used) continue;
+    const Pose pose = pose_of(photo.pose);
+    const glm::dvec3 eye = -(glm::transpose(pose.rotation) * pose.translation);
+    for (std::size_t k = 0; k + 4 <= photo.view.points.size(); k += 4) {
+      glm::dvec3* const p = &photo.view.points[k];
+      const glm::dvec2 chord = 0.5 * glm::dvec2(p[0] + p[1]);
+      const double height = glm::length(glm::dvec2(p[0])) - glm::length(chord);
+      const glm::dvec3 way = 0.25 * (p[0] + p[1] + p[2] + p[3]) - eye;
+      const double inwards = -glm::dot(glm::dvec2(way), glm::normalize(chord));
+      // Seen from above the arc bulges downwards.
+      const double down = inwards > 0 ? -kShare * height * way.z / inwards : 0;
+      for (std::size_t i = 0; i < 4; ++i) {
+        p[i].z += photo.lowered[k + i] - down;
+        photo.lowered[k + i] = down;
+      }
+    }
+  }
 }
 
 double SheetProblem::refine(bool bent) {
