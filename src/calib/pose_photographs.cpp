@@ -51,7 +51,7 @@ class Poser {
       photo.view = view.board;
       for (std::size_t k = 0; k < view.board.points.size(); ++k)
         photo.group.push_back(k < view.tag_points() ? k / 4 : k);
-      if (!problem_.flat) photo.lowered.resize(photo.view.points.size());
+      if (!problem_.flat) photo.moved.resize(photo.view.points.size());
       PosedPhoto& out = result_.photos[i];
       out.tags_found = int(view.tags.size());
       if (view.tags.size() >= fewest_ && problem_.flat) drop_wrong_tags(photo);
@@ -149,11 +149,11 @@ class Poser {
       if (bad.count(photo.group[k])) continue;
       photo.view.points[kept] = photo.view.points[k];
       photo.view.pixels[kept] = photo.view.pixels[k];
-      if (!photo.lowered.empty()) photo.lowered[kept] = photo.lowered[k];
+      if (!photo.moved.empty()) photo.moved[kept] = photo.moved[k];
       photo.group[kept++] = photo.group[k];
     }
     photo.view.points.resize(kept), photo.view.pixels.resize(kept), photo.group.resize(kept);
-    if (!photo.lowered.empty()) photo.lowered.resize(kept);
+    if (!photo.moved.empty()) photo.moved.resize(kept);
     return true;
   }
 

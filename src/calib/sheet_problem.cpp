@@ -13,6 +13,56 @@ constexpr double kStatedFocal = 0.1, kAnyFocal = 0.4;  // deviations of its loga
 constexpr double kStretched = 0.05;                    // mm
 constexpr double kHuber = 2.5;                         // deviations of the noise
 
+/// How tags around a cylinder appear in a photograph.
+struct ArcProjection {
+  LensModel model;
+  const Lens& lens;
+  Pose pose;
+
+  glm::dvec2 at(const glm::dvec3& place) const {
+    const glm::dvec3 q = pose.rotation * place + pose.translation;
+    glm::dvec2 pixel;
+    project(model, lens.data(), &q.x, &pixel.x);
+    return pixel;
+  }
+
+  /// The line that is fitted to the measured part of an arc.
+  std::array<glm::dvec2, 2> line(const glm::dvec3& from, const glm::dvec3& to) const {
+    constexpr int kSteps = 16;
+    const double start = std::atan2(from.y, from.x), radius = glm::length(glm::dvec2(from));
+    const double turn = std::remainder(std::atan2(to.y, to.x) - start, 2 * M_PI);
+    std::array<glm::dvec2, kSteps> points;
+    glm::dvec2 middle(0);
+    for (int i = 0; i < kSteps; ++i) {
+      const double share = kTagEdgeMargin + (1 - 2 * kTagEdgeMargin) * (i + 0.5) / kSteps;
+      const double angle = start + share * turn;
+      points[std::size_t(i)] = at({radius * std::cos(angle), radius * std::sin(angle), from.z});
+      middle += points[std::size_t(i)] / double(kSteps);
+    }
+    double xx = 0, xy = 0, yy = 0;
+    for (const glm::dvec2& p : points) {
+      const glm::dvec2 d = p - middle;
+      xx += d.x * d.x, xy += d.x * d.y, yy += d.y * d.y;
+    }
+    const double slope = 0.5 * std::atan2(2 * xy, xx - yy);
+    return {middle, {std::cos(slope), std::sin(slope)}};
+  }
+
+  /// Pixels from a tag's corners to where the lines through its edges meet, in their order.
+  std::array<glm::dvec2, 4> moves(const glm::dvec3* corners) const {
+    const std::array arcs = {line(corners[0], corners[1]), line(corners[3], corners[2])};
+    std::array<glm::dvec2, 4> all;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto& [middle, along] = arcs[i / 2];
+      const glm::dvec2 corner = at(corners[i]), upright = at(corners[3 - i]) - corner;
+      const double sine = upright.x * along.y - upright.y * along.x;
+      const glm::dvec2 way = middle - corner;
+      all[i] = sine == 0 ? glm::dvec2(0) : (way.x * along.y - way.y * along.x) / sine * upright;
+    }
+    return all;
+  }
+};
+
 }  // namespace
 
 std::vector<double> SheetProblem::errors(const SheetPhoto& photo) const {
@@ -62,23 +112,14 @@ void SheetProblem::add_all(ceres::Problem& problem, bool bent) {
 }
 
 void SheetProblem::follow_arcs() {
-  // A line that is fitted to a parabola's middle part lies so far from its ends, of its height.
-  constexpr double kPart = 1 - 2 * kTagEdgeMargin, kShare = 1 - kPart * kPart / 3;
   for (SheetPhoto& photo : photos) {
     if (!photo.used) continue;
-    const Pose pose = pose_of(photo.pose);
-    const glm::dvec3 eye = -(glm::transpose(pose.rotation) * pose.translation);
+    const ArcProjection projection{model, cameras[photo.camera].lens, pose_of(photo.pose)};
     for (std::size_t k = 0; k + 4 <= photo.view.points.size(); k += 4) {
-      glm::dvec3* const p = &photo.view.points[k];
-      const glm::dvec2 chord = 0.5 * glm::dvec2(p[0] + p[1]);
-      const double height = glm::length(glm::dvec2(p[0])) - glm::length(chord);
-      const glm::dvec3 way = 0.25 * (p[0] + p[1] + p[2] + p[3]) - eye;
-      const double inwards = -glm::dot(glm::dvec2(way), glm::normalize(chord));
-      // Seen from above the arc bulges downwards.
-      const double down = inwards > 0 ? -kShare * height * way.z / inwards : 0;
+      const auto moves = projection.moves(&photo.view.points[k]);
       for (std::size_t i = 0; i < 4; ++i) {
-        p[i].z += photo.lowered[k + i] - down;
-        photo.lowered[k + i] = down;
+        photo.view.pixels[k + i] += photo.moved[k + i] - moves[i];
+        photo.moved[k + i] = moves[i];
       }
     }
   }

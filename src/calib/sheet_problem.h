@@ -22,7 +22,7 @@ struct SheetCamera {
 struct SheetPhoto {
   BoardView view;                  ///< points that count, millimetres
   std::vector<std::size_t> group;  ///< of each point: its tag, or a saddle by itself
-  std::vector<double> lowered;     ///< around a cylinder: mm that each point is moved down
+  std::vector<glm::dvec2> moved;   ///< around a cylinder: pixels that were taken off each pixel
   std::size_t camera = 0;
   Rigid pose{};
   double noise = 0.5;  ///< pixels, of its points
@@ -43,8 +43,8 @@ struct SheetProblem {
   /// Pixels, root mean square.
   double rms(const SheetPhoto& photo) const;
   /// Around a cylinder the upper and lower edges of a tag are arcs, and the lines that are fitted
-  /// to them lie between an arc and its chord. Corners, where these lines meet the upright edges,
-  /// are moved along those to where they are seen from the photographs' poses as they are.
+  /// to them lie between an arc and its chord: takes off what that moves corners by, as the
+  /// photographs' poses and lenses are now.
   void follow_arcs();
   /// Refines all that is used. `bent`: the bend too. Returns the cost.
   double refine(bool bent);

@@ -62,7 +62,7 @@ PosePhoto exact_photo(const Truth& truth, const Sheet& sheet, int i, double dist
   for (const SheetTag& tag : sheet.tags) {
     const glm::dvec3 middle = sheet.at(0.5 * (tag.corners[0] + tag.corners[2]));
     const glm::dvec3 outwards = glm::normalize(glm::dvec3(middle.x, middle.y, 0));
-    if (glm::dot(glm::normalize(eye - middle), outwards) < 0.4) continue;
+    if (glm::dot(glm::normalize(eye - middle), outwards) < 0.55) continue;
     photo.view.tags.push_back(tag.id);
     // What find_tags measures: corners of lines through arcs, which bulge by so much.
     const double radius = glm::length(glm::dvec2(middle)), angle = tag_angle(sheet, tag);
@@ -107,8 +107,8 @@ TEST(PoseRim, ProjectedCornersGiveTheCamerasWithAndWithoutAFocalLength) {
     for (const PosedPhoto& photo : r.photos) EXPECT_TRUE(photo.posed) << photo.reason;
     EXPECT_LT(r.rms, 0.1);
     EXPECT_NEAR(r.cameras[0].intrinsics.fx, 1400, 4 * r.cameras[0].focal_sigma) << stated;
-    EXPECT_LT(r.cameras[0].focal_sigma, 0.005 * 1400);
-    EXPECT_LT(place_error(r, 560), 0.01) << stated;
+    EXPECT_LT(r.cameras[0].focal_sigma, 0.02 * 1400);
+    EXPECT_LT(place_error(r, 560), 0.02) << stated;
     EXPECT_FALSE(r.bend.found);
     // Above the strip, as wide as the cylinder.
     EXPECT_NEAR(r.box.min.z, sheet.strip + 1, 1e-9);
@@ -128,7 +128,7 @@ TEST(PoseRim, PrintsThatAreTooSmallAreToldByTheBar) {
   options.bar = 147;
   const PoseResult r = pose_photographs(photos, printed, options);
   EXPECT_NEAR(r.scale, 1, 1e-12);
-  EXPECT_LT(place_error(r, 560), 1e-4);
+  EXPECT_LT(place_error(r, 560), 0.01);
 }
 
 TEST(PoseRim, ATagThatIsTakenForAnotherIsLeftOutAndFewTagsAreTold) {
@@ -144,6 +144,27 @@ TEST(PoseRim, ATagThatIsTakenForAnotherIsLeftOutAndFewTagsAreTold) {
   EXPECT_EQ(r.photos[2].tags_used, r.photos[2].tags_found - 2);
   EXPECT_FALSE(r.photos[4].posed);
   EXPECT_THAT(r.photos[4].reason, HasSubstr("2 tags were found; 3 are needed"));
+}
+
+/// Pixels between where points above the strip are seen and where the cameras found have them, root
+/// mean square: `height` mm, as wide as half the cylinder.
+double object_error(const Truth& truth, const PoseResult& result, double height) {
+  double sum = 0, count = 0;
+  for (int i = 0; i < kViews; ++i)
+    for (const double z : {20.0, 20 + height / 2, 20 + height})
+      for (const glm::dvec2& xy : {glm::dvec2(0), {50, 0}, {-50, 0}, {0, 50}, {0, -50}}) {
+        const auto seen = [&](const Pose& pose, const Intrinsics& k, const Distortion& lens) {
+          const glm::dvec3 p = pose.rotation * glm::dvec3(xy, z) + pose.translation;
+          const glm::dvec2 q = distort(lens, glm::dvec2(p) / p.z);
+          return glm::dvec2(k.fx * q.x + k.cx, k.fy * q.y + k.cy);
+        };
+        const PosedCamera& camera = result.cameras[0];
+        const glm::dvec2 off = seen(look_at_rim(i, 560), truth.k, truth.lens) -
+                               seen(result.photos[std::size_t(i)].cam_from_world, camera.intrinsics,
+                                    camera.distortion);
+        sum += glm::dot(off, off), ++count;
+      }
+  return std::sqrt(sum / count);
 }
 
 /// How light the cylinder is where a ray meets it, by the pieces that were printed.
@@ -186,9 +207,15 @@ TEST(PoseRim, RenderedStripsArePosed) {
   RecordProperty("rim_rms", concat(r.rms));
   RecordProperty("rim_focal", concat(r.cameras[0].intrinsics.fx / 1400 - 1));
   RecordProperty("rim_place", concat(place_error(r, 560)));
-  EXPECT_LT(r.rms, 0.3);
-  EXPECT_NEAR(r.cameras[0].intrinsics.fx, 1400, 0.01 * 1400);
-  EXPECT_LT(place_error(r, 560), 0.01);
+  RecordProperty("rim_focal_sigma", concat(r.cameras[0].focal_sigma));
+  RecordProperty("rim_object_50", concat(object_error(truth, r, 50)));
+  RecordProperty("rim_object_100", concat(object_error(truth, r, 100)));
+  RecordProperty("rim_object_stated", concat(r.object_error));
+  EXPECT_LT(r.rms, 0.1);
+  // A small strip tells the distance only together with the focal length.
+  EXPECT_NEAR(r.cameras[0].intrinsics.fx, 1400, 0.04 * 1400);
+  EXPECT_LT(place_error(r, 560), 0.03);
+  EXPECT_LT(object_error(truth, r, 100), 3);
 }
 
 }  // namespace
