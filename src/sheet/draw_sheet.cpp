@@ -141,7 +141,7 @@ class Writer {
     const std::string around = sheet_.is_flat() ? "" : concat(" ", number(sheet_.diameter), " mm");
     add_text(b + glm::dvec2(3, -1), 3, concat("photohull, ", sheet_.kind, around));
     if (!sheet_.is_flat())
-      add_text(a + glm::dvec2(0, -6), 3,
+      add_text(a + glm::dvec2(0, -4.8), 3,
                "cut along the lines, glue each dashed tab under the piece whose number is on it; "
                "tags outwards, this side up");
   }

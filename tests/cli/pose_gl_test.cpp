@@ -158,6 +158,14 @@ TEST_F(PoseCommand, MistakesAreNamed) {
   const Finished ending = run_photohull({"board", "--out", path("board.png")});
   EXPECT_EQ(ending.code, 2);
   EXPECT_THAT(ending.err, HasSubstr(".pdf or .svg"));
+  const Finished no_diameter = run_photohull({"board", "--out", path("rim.pdf"), "--kind", "rim"});
+  EXPECT_EQ(no_diameter.code, 2);
+  EXPECT_THAT(no_diameter.err, HasSubstr("say how large the cylinder is: --diameter"));
+  const Finished rim =
+      run_photohull({"board", "--out", path("rim.pdf"), "--kind", "rim", "--diameter", "200"});
+  EXPECT_EQ(rim.code, 0);
+  EXPECT_THAT(rim.out, HasSubstr("40 tags of 12.5 mm on a strip of 628.6 x 18.75 mm, in 4 pieces"));
+  EXPECT_EQ(read("rim.json")["tags"][0]["corners"][0].size(), 3u);
   fs::create_directories(folder_ / "photos");
   const std::vector<std::uint8_t> grey(std::size_t(64) * 48 * 3, 90);
   io::write_png(folder_ / "photos/a.png", 64, 48, 3, grey);
