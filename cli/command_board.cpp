@@ -19,6 +19,21 @@ struct Arguments {
   SheetOptions sheet;
 };
 
+void tell(const Sheet& sheet) {
+  const double side = glm::length(sheet.tags[0].corners[1] - sheet.tags[0].corners[0]);
+  if (!sheet.is_flat()) {
+    std::printf(
+        "%zu tags of %g mm on a strip of %.1f x %g mm, in %zu pieces, on a page of %g x %g mm\n",
+        sheet.tags.size(), side, sheet.pieces.back().to, sheet.strip, sheet.pieces.size(),
+        sheet.page.x, sheet.page.y);
+    std::printf("wrap it once around the cylinder of %g mm; its ends meet\n", sheet.diameter);
+    return;
+  }
+  const glm::dvec2 room = sheet.free_max - sheet.free_min;
+  std::printf("%zu tags of %g mm around a free space of %g x %g mm, on a page of %g x %g mm\n",
+              sheet.tags.size(), side, room.x, room.y, sheet.page.x, sheet.page.y);
+}
+
 void run(const Arguments& a) {
   const fs::path out(a.out);
   const std::string ending = out.extension().string();
@@ -30,17 +45,13 @@ void run(const Arguments& a) {
   described.replace_extension(".json");
   write_atomically(described, sheet_text(sheet));
   write_atomically(out, drawn);
-  const glm::dvec2 room = sheet.free_max - sheet.free_min;
-  std::printf("%zu tags of %g mm around a free space of %g x %g mm, on a page of %g x %g mm\n",
-              sheet.tags.size(), glm::length(sheet.tags[0].corners[1] - sheet.tags[0].corners[0]),
-              room.x, room.y, sheet.page.x, sheet.page.y);
+  tell(sheet);
   std::printf("print it at 100 %% and measure the bar: it should be %g mm long\n",
               sheet.bar_length());
   std::printf("  %s\n  %s\n", out.string().c_str(), described.string().c_str());
 }
 
 }  // namespace
-
 void add_board(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
   CLI::App* c = add_command(app, "board");
@@ -50,7 +61,8 @@ void add_board(CLI::App& app) {
   c->footer(
       "Examples:\n"
       "  photohull board --out board.pdf\n"
-      "  photohull board --out large.svg --paper a3 --kind charuco");
+      "  photohull board --out large.svg --paper a3 --kind charuco\n"
+      "  photohull board --out rim.pdf --kind rim --diameter 250");
   c->callback([a] { run(*a); });
 }
 

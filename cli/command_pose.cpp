@@ -50,6 +50,7 @@ void run(const Arguments& a) {
   job.names = names_of(job.images);
   job.board = a.photos.board;
   job.sheet = a.photos.sheet;
+  job.focal = a.photos.focal;
   job.make_masks = !a.no_masks;
   job.masks = a.masks;
   job.ordered = a.photos.ordered;
@@ -65,7 +66,8 @@ void add_pose(CLI::App& app) {
   a->photos.add_to(*c);
   c->add_option("--with", a->with, "colmap: without a sheet, by the program COLMAP")
       ->check(CLI::IsMember({kColmap}));
-  c->add_option("--out", a->out, "folder for the scene: transforms.json, pose.json and masks/")
+  c->add_option("--out", a->out,
+                "folder for the scene: transforms.json, pose.json, coverage.png and masks/")
       ->required();
   a->photos.of_the_board.push_back(c->add_flag(
       "--no-masks", a->no_masks, "make no masks of what differs from the sheet's picture"));

@@ -102,6 +102,7 @@ PoseJob pose_job(const Arguments& a, KeptSteps& kept) {
   job.out = a.scene();
   job.board = board_of(a.photos);
   job.sheet = a.photos.sheet;
+  job.focal = a.photos.focal;
   job.make_masks = a.load.masks == io::MaskSource::kAuto;
   if (job.board.empty() && a.given_masks()) job.masks = a.load.mask_directory;
   job.ordered = a.photos.ordered;
@@ -118,6 +119,7 @@ std::string identity_of(PoseJob job) {
   if (!job.board.empty()) identity.add_file(job.board);
   Described described;
   describe(described, job.sheet);
+  describe(described, job.focal);
   identity.add_options(described);
   return identity.digest();
 }

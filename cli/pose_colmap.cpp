@@ -5,14 +5,13 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
-#include "core/median.h"
 #include "io/image_file.h"
 #include "io/photo_lens.h"
 #include "io/write_scene.h"
 #include "json_parts.h"
 #include "photo/fine_detail.h"
 #include "photo/grey_image.h"
-#include "pipeline/check_photographs.h"
+#include "pose_coverage.h"
 #include "scene_arguments.h"
 
 namespace photohull::cli {
@@ -26,6 +25,7 @@ struct Readable {
   std::vector<io::ColmapPhoto> photos;
   std::vector<std::size_t> index;
   std::vector<pipeline::PhotoLook> looks;  ///< of these
+  bool took_focal = false;                 ///< the job's
 };
 
 Readable look_at_photographs(const PoseJob& job, const std::vector<fs::path>& masks,
@@ -36,13 +36,16 @@ Readable look_at_photographs(const PoseJob& job, const std::vector<fs::path>& ma
     progress.check_cancelled();
     progress.update(double(i) / double(job.images.size()));
     try {
-      const io::PhotoLens lens = io::read_photo_lens(job.images[i]);
+      const io::PhotoLens lens = io::read_photo_lens(job.images[i], job.focal);
       const double sharpness = fine_detail(grey_image(io::read_image(job.images[i])));
-      readable.photos.push_back(
-          {job.images[i], masks.empty() ? fs::path() : masks[i], job.names[i], lens.name});
+      readable.photos.push_back({job.images[i], masks.empty() ? fs::path() : masks[i], job.names[i],
+                                 lens.name, lens.given ? lens.focal : 0});
+      readable.took_focal |= lens.given;
       readable.index.push_back(i);
       readable.looks.push_back({job.names[i], sharpness, lens.exposure});
     } catch (const MemoryError&) {
+      throw;
+    } catch (const UsageError&) {
       throw;
     } catch (const Error& failure) {
       all[i].reason = concat("it cannot be read: ", failure.what());
@@ -51,16 +54,13 @@ Readable look_at_photographs(const PoseJob& job, const std::vector<fs::path>& ma
   return readable;
 }
 
-/// About which the photographs were taken: the middle of the sparse points.
-glm::dvec3 middle_of(const std::vector<glm::dvec3>& points) {
-  glm::dvec3 middle(0);
-  if (points.empty()) return middle;
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<double> values;
-    for (const glm::dvec3& p : points) values.push_back(p[axis]);
-    middle[axis] = median(values);
-  }
-  return middle;
+PosedSides sides_of(const PoseJob& job, const Readable& readable, const io::ColmapFound& found) {
+  PosedSides sides{readable.looks, found.scene.views, {}, {}, {}};
+  sides.middle = pipeline::find_middle(found.scene.views, found.scene.points);
+  sides.up = pipeline::level_up(found.scene.views, sides.middle);
+  for (std::size_t i = 0; i < job.names.size(); ++i)
+    if (!found.photos[i].posed) sides.left_out.push_back({job.names[i], std::nullopt});
+  return sides;
 }
 
 ordered_json lens_json(const AdjustedLens& lens) {
@@ -124,8 +124,9 @@ ColmapPose pose_with_colmap(const PoseJob& job, Progress& progress) {
   pose.lenses = adjust_lenses(scene, pose.found.lens_of_view, progress);
   scene.path = job.out;
   scene.format = SceneFormat::kTransforms;
-  pose.warnings = pipeline::check_photographs(readable.looks, scene.views, middle_of(scene.points),
-                                              std::nullopt);
+  pose.warnings = check_sides(job.out, sides_of(job, readable, pose.found));
+  if (const std::string warning = unused_focal(job, readable.took_focal); !warning.empty())
+    pose.warnings.push_back(warning);
   pose.report = report_of(job, pose);
   write_atomically(job.out / "pose.json", pose.report);
   io::write_transforms(scene, job.out);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calib/pose_photographs.h"
+#include "io/photo_lens.h"
 
 namespace photohull::cli {
 
@@ -15,6 +16,7 @@ struct PoseJob {
   std::filesystem::path out;       ///< folder for the scene, absolute
   std::filesystem::path board;     ///< description of the printed sheet; empty: by COLMAP
   PoseOptions sheet;               ///< with a sheet
+  io::FocalOptions focal;          ///< of photographs whose files state none
   bool make_masks = true;          ///< with a sheet: of what differs from the sheet's picture
   std::filesystem::path masks;     ///< with COLMAP: folder of masks; empty: none
   bool ordered = false;            ///< with COLMAP: each was taken near the one before
@@ -22,5 +24,9 @@ struct PoseJob {
 
 /// Names that tell the photographs apart: file names, or paths where two would be alike.
 std::vector<std::string> names_of(const std::vector<std::filesystem::path>& images);
+
+/// A warning where a focal length is given and none of the photographs' lenses takes it; else
+/// empty.
+std::string unused_focal(const PoseJob& job, bool taken);
 
 }  // namespace photohull::cli

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "core/option_word.h"
 #include "io/board_images.h"
 #include "option_flags.h"
 #include "pose_colmap.h"
@@ -37,11 +38,18 @@ std::vector<std::string> names_of(const std::vector<fs::path>& images) {
   return names;
 }
 
+std::string unused_focal(const PoseJob& job, bool taken) {
+  if (!job.focal.given() || taken) return "";
+  return concat(option_word("focal"),
+                " is not used: the photographs state their focal lengths, or cannot be read");
+}
+
 void PoseArguments::add_to(CLI::App& command, const std::vector<std::string>& but) {
   command.add_option("PHOTOS", images, "photographs of the object, or folders of them");
   command.add_option("--video", video,
                      "film in the place of photographs, from which sharp pictures are taken");
   of_film = add_flags_of(command, frames);
+  add_flags_of(command, focal);
   of_the_board = {command.add_option(
       "--board", board, "JSON file that photohull board wrote beside the sheet it printed")};
   Described described;

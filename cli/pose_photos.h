@@ -17,6 +17,7 @@ struct PoseArguments {
   io::FrameOptions frames;
   std::string board;
   PoseOptions sheet;
+  io::FocalOptions focal;
   bool ordered = false;
   std::vector<CLI::Option*> of_film, of_the_board, of_colmap;  ///< that say nothing otherwise
 

@@ -8,7 +8,7 @@
 #include "io/image_file.h"
 #include "io/photo_lens.h"
 #include "io/write_scene.h"
-#include "pipeline/check_photographs.h"
+#include "pose_coverage.h"
 #include "pose_json.h"
 #include "pose_masks.h"
 #include "scene_arguments.h"
@@ -23,6 +23,7 @@ struct ReadPhotos {
   std::vector<PosePhoto> photos;
   std::vector<std::string> unreadable;  ///< of each: why; empty: it was read
   std::vector<pipeline::PhotoLook> looks;
+  bool took_focal = false;  ///< the job's
 };
 
 ReadPhotos find_all_tags(const PoseJob& job, const Sheet& sheet, Progress& progress) {
@@ -36,12 +37,15 @@ ReadPhotos find_all_tags(const PoseJob& job, const Sheet& sheet, Progress& progr
     read.unreadable.emplace_back();
     read.looks.push_back({job.names[i]});
     try {
-      const io::PhotoLens lens = io::read_photo_lens(job.images[i]);
+      const io::PhotoLens lens = io::read_photo_lens(job.images[i], job.focal);
       photo.camera = lens.name, photo.focal = lens.focal;
+      read.took_focal |= lens.given;
       read.looks.back().exposure = lens.exposure;
       photo.view = find_tags(io::read_image(job.images[i]), sheet, job.names[i]);
       if (photo.view.edge_width > 0) read.looks.back().sharpness = 1 / photo.view.edge_width;
     } catch (const MemoryError&) {
+      throw;
+    } catch (const UsageError&) {
       throw;
     } catch (const Error& failure) {
       read.unreadable.back() = concat("it cannot be read: ", failure.what());
@@ -51,11 +55,12 @@ ReadPhotos find_all_tags(const PoseJob& job, const Sheet& sheet, Progress& progr
   return read;
 }
 
-Scene scene_of(const PoseJob& job, const PoseResult& result, const std::vector<fs::path>& masks) {
+Scene scene_of(const PoseJob& job, const PoseResult& result, const std::vector<fs::path>& masks,
+               bool has_box) {
   Scene scene;
   scene.path = job.out;
   scene.format = SceneFormat::kTransforms;
-  scene.box = result.box;
+  if (has_box) scene.box = result.box;
   for (std::size_t i = 0; i < job.images.size(); ++i) {
     const PosedPhoto& photo = result.photos[i];
     if (!photo.posed) continue;
@@ -69,10 +74,25 @@ Scene scene_of(const PoseJob& job, const PoseResult& result, const std::vector<f
   return scene;
 }
 
+PosedSides sides_of(const PoseJob& job, const ReadPhotos& read, const PoseResult& result,
+                    const Scene& scene) {
+  PosedSides sides{read.looks, scene.views, result.box.center(), {0, 0, 1}, {}};
+  for (std::size_t i = 0; i < job.images.size(); ++i) {
+    const PosedPhoto& photo = result.photos[i];
+    if (photo.posed) continue;
+    SourceView view;
+    view.name = job.names[i];
+    view.camera.cam_from_world = photo.cam_from_world;
+    sides.left_out.push_back(
+        {view.name, photo.placed ? std::optional(place_of(sides, view)) : std::nullopt});
+  }
+  return sides;
+}
+
 }  // namespace
 
 SheetPose pose_on_sheet(const PoseJob& job, Progress& progress) {
-  const Sheet sheet = read_sheet(job.board);
+  const Sheet sheet = as_printed(read_sheet(job.board), job.sheet.bar);
   const ReadPhotos read = find_all_tags(job, sheet, progress);
   progress.stage("poses", 0.05);
   SheetPose pose{pose_photographs(read.photos, sheet, job.sheet), ""};
@@ -80,15 +100,18 @@ SheetPose pose_on_sheet(const PoseJob& job, Progress& progress) {
     if (!read.unreadable[i].empty()) pose.result.photos[i].reason = read.unreadable[i];
   make_folder(job.out, "--out");
   std::vector<fs::path> masks;
-  if (job.make_masks) {
+  if (job.make_masks && sheet.is_flat()) {
     progress.stage("masks", 0.5);
     std::vector<double> widths;
     for (const PosePhoto& photo : read.photos) widths.push_back(photo.view.edge_width);
     masks = write_sheet_masks(job.out / "masks", job.images, widths, sheet, pose.result, progress);
   }
-  const Scene scene = scene_of(job, pose.result, masks);
-  for (const std::string& warning : pipeline::check_photographs(
-           read.looks, scene.views, scene.box->center(), glm::dvec3(0, 0, 1)))
+  if (const std::string warning = unused_focal(job, read.took_focal); !warning.empty())
+    pose.result.warnings.push_back(warning);
+  // What stands on a turntable lies above its strip, but a pot goes through it.
+  const bool has_box = sheet.is_flat() || job.sheet.height > 0;
+  const Scene scene = scene_of(job, pose.result, masks, has_box);
+  for (const std::string& warning : check_sides(job.out, sides_of(job, read, pose.result, scene)))
     pose.result.warnings.push_back(warning);
   pose.report = pose_json(job.names, pose.result);
   write_atomically(job.out / "pose.json", pose.report);

@@ -129,7 +129,7 @@ SheetView find_tags(const ColourImage& image, const Sheet& sheet, const std::str
       view.tags.push_back(id);
       widths.push_back(measured->edge_width);
       for (std::size_t i = 0; i < 4; ++i) {
-        view.board.points.emplace_back(tag->corners[i], 0.0);
+        view.board.points.push_back(sheet.at(tag->corners[i]));
         view.board.pixels.push_back(measured->corners[i]);
       }
     }

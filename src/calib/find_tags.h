@@ -10,7 +10,8 @@
 namespace photohull {
 
 /// What a photograph shows of a sheet. Points come four to a tag, in the order of its corners, and
-/// after them the saddle points one by one; their z is 0, in millimetres of the sheet's frame.
+/// after them the saddle points one by one, in millimetres of the sheet's frame: their z is 0, but
+/// for a strip around a cylinder.
 struct SheetView {
   BoardView board;
   std::vector<int> tags;  ///< ids of the tags whose corners `board` begins with

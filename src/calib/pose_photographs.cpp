@@ -12,11 +12,10 @@
 namespace photohull {
 namespace {
 
-constexpr std::size_t kFewestTags = 2;
+constexpr std::size_t kFewestTags = 2, kFewestAround = 3;         // on a sheet; around a cylinder
 constexpr double kLeastNoise = 0.01, kBadTag = 5, kBadPhoto = 6;  // pixels; times the median
 constexpr double kHarmlessTag = 0.5, kHarmlessPhoto = 1.0;        // pixels
 constexpr double kUncertainFocal = 0.01;                          // of the focal length
-constexpr double kMostBar = 2;  // times as long as stated, or as short
 
 class Poser {
  public:
@@ -24,6 +23,8 @@ class Poser {
       : given_(photos), sheet_(sheet), o_(options) {
     problem_.model = options.lens;
     problem_.reach = 0.5 * glm::length(sheet.page);
+    problem_.flat = sheet.is_flat();
+    if (!problem_.flat) fewest_ = kFewestAround;
     result_.photos.resize(photos.size());
     result_.scale = (o_.bar > 0 ? o_.bar / sheet.bar_length() : 1) / o_.unit;
   }
@@ -36,7 +37,7 @@ class Poser {
         result_.photos[i].reason = "no pose fits the tags that it shows";
     check_some("no photograph shows the sheet well enough");
     refine();
-    if (!o_.flat) find_bend();
+    if (!o_.flat && sheet_.is_flat()) find_bend();
     report();
     return result_;
   }
@@ -50,11 +51,12 @@ class Poser {
       photo.view = view.board;
       for (std::size_t k = 0; k < view.board.points.size(); ++k)
         photo.group.push_back(k < view.tag_points() ? k / 4 : k);
+      if (!problem_.flat) photo.moved.resize(photo.view.points.size());
       PosedPhoto& out = result_.photos[i];
       out.tags_found = int(view.tags.size());
-      if (view.tags.size() >= kFewestTags) drop_wrong_tags(photo);
+      if (view.tags.size() >= fewest_ && problem_.flat) drop_wrong_tags(photo);
       const std::size_t tags = tags_of(photo, i);
-      photo.used = tags >= kFewestTags;
+      photo.used = tags >= fewest_;
       if (!photo.used) out.reason = why_not(view, tags);
       problem_.photos.push_back(std::move(photo));
     }
@@ -68,7 +70,7 @@ class Poser {
     return tags.size();
   }
 
-  static std::string why_not(const SheetView& view, std::size_t tags) {
+  std::string why_not(const SheetView& view, std::size_t tags) const {
     if (view.mirrored) return "it is mirrored: tags are seen in its mirror image only";
     if (view.tags.empty() && view.foreign > 0)
       return concat("it shows ", view.foreign, " tags, none of them of this board");
@@ -76,10 +78,9 @@ class Poser {
       return concat("it shows ", view.twice, " tags in two places each: are there two sheets?");
     if (view.tags.empty()) return "no tag was found: it is blurred, or does not show the sheet";
     if (tags < view.tags.size())
-      return concat("of its ", view.tags.size(), " tags ", tags, " lie in one plane; ", kFewestTags,
+      return concat("of its ", view.tags.size(), " tags ", tags, " lie in one plane; ", fewest_,
                     " are needed");
-    return concat(tags, tags == 1 ? " tag was" : " tags were", " found; ", kFewestTags,
-                  " are needed");
+    return concat(tags, tags == 1 ? " tag was" : " tags were", " found; ", fewest_, " are needed");
   }
 
   void check_some(const std::string& what) const {
@@ -92,6 +93,7 @@ class Poser {
 
   void refine() {
     for (int round = 0; round < 12; ++round) {
+      if (!problem_.flat) problem_.follow_arcs();
       problem_.refine(bent_);
       set_noise();
       const bool dropped = round > 0 && drop_outliers();
@@ -123,7 +125,7 @@ class Poser {
       if (!photo.used) continue;
       dropped = drop_points(photo) || dropped;
       const double limit = std::max(kHarmlessPhoto, kBadPhoto * usual);
-      if (tags_of(photo, i) < kFewestTags)
+      if (tags_of(photo, i) < fewest_)
         leave_out(i, "its tags do not fit each other");
       else if (noise_of(photo) > limit)
         leave_out(i, concat("its tags do not fit the other photographs: ", problem_.rms(photo),
@@ -147,22 +149,25 @@ class Poser {
       if (bad.count(photo.group[k])) continue;
       photo.view.points[kept] = photo.view.points[k];
       photo.view.pixels[kept] = photo.view.pixels[k];
+      if (!photo.moved.empty()) photo.moved[kept] = photo.moved[k];
       photo.group[kept++] = photo.group[k];
     }
     photo.view.points.resize(kept), photo.view.pixels.resize(kept), photo.group.resize(kept);
+    if (!photo.moved.empty()) photo.moved.resize(kept);
     return true;
   }
 
   void leave_out(std::size_t i, const std::string& reason) {
     problem_.photos[i].used = false;
     result_.photos[i].reason = reason;
+    result_.photos[i].placed = true;
   }
 
-  glm::dvec3 box_low() const { return {sheet_.free_min, o_.margin / print()}; }
+  glm::dvec3 box_low() const { return {sheet_.free_min, sheet_.strip + o_.margin / print()}; }
   glm::dvec3 box_high() const {
     const glm::dvec2 side = sheet_.free_max - sheet_.free_min;
     const double height = o_.height > 0 ? o_.height / print() : std::max(side.x, side.y);
-    return {sheet_.free_max, height};
+    return {sheet_.free_max, sheet_.strip + height};
   }
   /// How much larger than described the sheet is printed.
   double print() const { return result_.scale * o_.unit; }
@@ -196,7 +201,8 @@ class Poser {
     problem_ = flat;
     bent_ = false;
     for (std::size_t i = 0; i < given_.size(); ++i)
-      if (problem_.photos[i].used) result_.photos[i].reason.clear();
+      if (problem_.photos[i].used)
+        result_.photos[i].reason.clear(), result_.photos[i].placed = false;
   }
 
   void report() {
@@ -205,6 +211,7 @@ class Poser {
     double sum = 0, count = 0;
     for (std::size_t i = 0; i < given_.size(); ++i) {
       const SheetPhoto& photo = problem_.photos[i];
+      if (photo.used || result_.photos[i].placed) report_pose(photo, result_.photos[i]);
       if (!photo.used) continue;
       report_photo(photo, d.poses.at(i), result_.photos[i]);
       result_.photos[i].tags_used = int(tags_of(photo, i));
@@ -218,11 +225,14 @@ class Poser {
     warn();
   }
 
-  void report_photo(const SheetPhoto& photo, const std::vector<double>& sigma, PosedPhoto& out) {
-    out.posed = true;
+  void report_pose(const SheetPhoto& photo, PosedPhoto& out) const {
     out.camera = int(photo.camera);
     out.cam_from_world = pose_of(photo.pose);
     out.cam_from_world.translation *= result_.scale;
+  }
+
+  void report_photo(const SheetPhoto& photo, const std::vector<double>& sigma, PosedPhoto& out) {
+    out.posed = true;
     out.rms = problem_.rms(photo);
     if (sigma.size() != 6) return;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -279,6 +289,7 @@ class Poser {
   SheetProblem problem_;
   PoseResult result_;
   std::map<std::size_t, int> cameras_seen_;
+  std::size_t fewest_ = kFewestTags;
   bool bent_ = false;
 };
 
@@ -305,10 +316,7 @@ void describe(Described& to, PoseOptions& o) {
 PoseResult pose_photographs(const std::vector<PosePhoto>& photos, const Sheet& sheet,
                             const PoseOptions& options) {
   check_options(options);
-  const double bar = sheet.bar_length();
-  if (options.bar > 0 && !(options.bar < kMostBar * bar && options.bar > bar / kMostBar))
-    throw UsageError(concat(option_word("bar", options.bar), ": the board's bar is ", bar,
-                            " mm long at 100 %; give its printed length in millimetres"));
+  check_bar(sheet, options.bar);
   return Poser(photos, sheet, options).run();
 }
 

@@ -43,6 +43,7 @@ struct PosedPhoto {
   std::string reason;  ///< one sentence: why it is not
   int camera = 0;      ///< index of PoseResult::cameras
   Pose cam_from_world;
+  bool placed = false;  ///< it is not posed, but cam_from_world is about right
   int tags_found = 0, tags_used = 0;
   double rms = 0;          ///< pixels, of the points that count
   double turn_sigma = 0;   ///< degrees, standard deviation, largest of three axes
@@ -70,6 +71,8 @@ struct PoseResult {
   std::vector<std::string> warnings;
 };
 
+/// A strip around a cylinder is to be given as_printed, and has no bend.
+///
 /// Starts from each camera's stated focal length, or from the tags' homographies [Zhang00], and
 /// from each photograph's pose by itself [Collins14]. Then lenses, poses and the sheet's bend are
 /// one Ceres problem with a robust loss over all corners, from whose covariance the standard

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "calib/object_error.h"
+#include "calib/tag_edges.h"
 #include "core/error.h"
 
 namespace photohull {
@@ -11,6 +12,56 @@ namespace {
 constexpr double kStatedFocal = 0.1, kAnyFocal = 0.4;  // deviations of its logarithm
 constexpr double kStretched = 0.05;                    // mm
 constexpr double kHuber = 2.5;                         // deviations of the noise
+
+/// How tags around a cylinder appear in a photograph.
+struct ArcProjection {
+  LensModel model;
+  const Lens& lens;
+  Pose pose;
+
+  glm::dvec2 at(const glm::dvec3& place) const {
+    const glm::dvec3 q = pose.rotation * place + pose.translation;
+    glm::dvec2 pixel;
+    project(model, lens.data(), &q.x, &pixel.x);
+    return pixel;
+  }
+
+  /// The line that is fitted to the measured part of an arc.
+  std::array<glm::dvec2, 2> line(const glm::dvec3& from, const glm::dvec3& to) const {
+    constexpr int kSteps = 16;
+    const double start = std::atan2(from.y, from.x), radius = glm::length(glm::dvec2(from));
+    const double turn = std::remainder(std::atan2(to.y, to.x) - start, 2 * M_PI);
+    std::array<glm::dvec2, kSteps> points;
+    glm::dvec2 middle(0);
+    for (int i = 0; i < kSteps; ++i) {
+      const double share = kTagEdgeMargin + (1 - 2 * kTagEdgeMargin) * (i + 0.5) / kSteps;
+      const double angle = start + share * turn;
+      points[std::size_t(i)] = at({radius * std::cos(angle), radius * std::sin(angle), from.z});
+      middle += points[std::size_t(i)] / double(kSteps);
+    }
+    double xx = 0, xy = 0, yy = 0;
+    for (const glm::dvec2& p : points) {
+      const glm::dvec2 d = p - middle;
+      xx += d.x * d.x, xy += d.x * d.y, yy += d.y * d.y;
+    }
+    const double slope = 0.5 * std::atan2(2 * xy, xx - yy);
+    return {middle, {std::cos(slope), std::sin(slope)}};
+  }
+
+  /// Pixels from a tag's corners to where the lines through its edges meet, in their order.
+  std::array<glm::dvec2, 4> moves(const glm::dvec3* corners) const {
+    const std::array arcs = {line(corners[0], corners[1]), line(corners[3], corners[2])};
+    std::array<glm::dvec2, 4> all;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto& [middle, along] = arcs[i / 2];
+      const glm::dvec2 corner = at(corners[i]), upright = at(corners[3 - i]) - corner;
+      const double sine = upright.x * along.y - upright.y * along.x;
+      const glm::dvec2 way = middle - corner;
+      all[i] = sine == 0 ? glm::dvec2(0) : (way.x * along.y - way.y * along.x) / sine * upright;
+    }
+    return all;
+  }
+};
 
 }  // namespace
 
@@ -58,6 +109,20 @@ void SheetProblem::add_all(ceres::Problem& problem, bool bent) {
         new ceres::AutoDiffCostFunction<PaperPrior, 1, 3>(new PaperPrior{kStretched}), nullptr,
         bend.data());
   if (!bent) problem.SetParameterBlockConstant(bend.data());
+}
+
+void SheetProblem::follow_arcs() {
+  for (SheetPhoto& photo : photos) {
+    if (!photo.used) continue;
+    const ArcProjection projection{model, cameras[photo.camera].lens, pose_of(photo.pose)};
+    for (std::size_t k = 0; k + 4 <= photo.view.points.size(); k += 4) {
+      const auto moves = projection.moves(&photo.view.points[k]);
+      for (std::size_t i = 0; i < 4; ++i) {
+        photo.view.pixels[k + i] += photo.moved[k + i] - moves[i];
+        photo.moved[k + i] = moves[i];
+      }
+    }
+  }
 }
 
 double SheetProblem::refine(bool bent) {

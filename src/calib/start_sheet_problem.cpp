@@ -59,11 +59,67 @@ void group_cameras(const std::vector<PosePhoto>& photos, SheetProblem& problem) 
   }
 }
 
+/// By RANSAC, of points that lie in no plane [Terzakis20]; false where no pose fits.
+bool start_around(const SheetProblem& problem, const Lens& lens, SheetPhoto& photo) {
+  constexpr double kOff = 0.005;  // of the focal length
+  constexpr int kTrials = 200;
+  std::vector<cv::Point3d> points;
+  std::vector<cv::Point2d> seen;
+  for (const glm::dvec3& p : photo.view.points) points.emplace_back(p.x, p.y, p.z);
+  for (const glm::dvec2& p : undistorted(photo.view.pixels, problem.model, lens))
+    seen.emplace_back(p.x, p.y);
+  cv::Mat turn, move;
+  std::vector<int> fit;
+  try {
+    if (!cv::solvePnPRansac(points, seen, cv::Matx33d::eye(), {}, turn, move, false, kTrials,
+                            float(kOff), 0.999, fit, cv::SOLVEPNP_SQPNP))
+      return false;
+  } catch (const cv::Exception&) {
+    return false;
+  }
+  for (int c = 0; c < 3; ++c) {
+    photo.pose[std::size_t(c)] = turn.at<double>(c);
+    photo.pose[std::size_t(3 + c)] = move.at<double>(c);
+  }
+  return 2 * fit.size() > points.size() && std::isfinite(problem.rms(photo));
+}
+
+/// Of a strip around a cylinder: photographs that get a pose with that lens. The mean of their
+/// errors' squares, pixels.
+double start_all_around(SheetProblem& problem, SheetCamera& camera, double focal) {
+  camera.lens = {focal, focal, (camera.size.x - 1) / 2.0, (camera.size.y - 1) / 2.0};
+  double sum = 0, count = 0;
+  for (const std::size_t i : camera.photos) {
+    SheetPhoto& photo = problem.photos[i];
+    photo.used = start_around(problem, camera.lens, photo);
+    const double longer = std::max(camera.size.x, camera.size.y);
+    const double off = photo.used ? problem.rms(photo) : longer;
+    sum += std::min(off, longer) * std::min(off, longer), ++count;
+  }
+  return sum / std::max(1.0, count);
+}
+
+/// Its stated focal length, or the one of some that fits best.
+void start_rim_camera(SheetProblem& problem, SheetCamera& camera) {
+  double focal = camera.stated_focal, least = INFINITY;
+  for (const double share : {0.6, 0.8, 1.0, 1.3, 1.7, 2.2, 3.0, 4.0}) {
+    if (camera.stated_focal > 0) break;
+    const double tried = share * std::max(camera.size.x, camera.size.y);
+    const double off = start_all_around(problem, camera, tried);
+    if (off < least) least = off, focal = tried;
+  }
+  start_all_around(problem, camera, focal);
+}
+
 }  // namespace
 
 void start_sheet_problem(const std::vector<PosePhoto>& photos, SheetProblem& problem) {
   group_cameras(photos, problem);
   for (SheetCamera& camera : problem.cameras) {
+    if (!problem.flat) {
+      start_rim_camera(problem, camera);
+      continue;
+    }
     const double focal =
         camera.stated_focal > 0 ? camera.stated_focal : focal_from_tags(problem, camera);
     camera.lens = {focal, focal, (camera.size.x - 1) / 2.0, (camera.size.y - 1) / 2.0};

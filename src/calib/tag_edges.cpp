@@ -9,8 +9,7 @@
 namespace photohull {
 namespace {
 
-constexpr double kStep = 0.25;    // pixels, along a profile
-constexpr double kMargin = 0.08;  // of an edge at either end, where the neighbours' blur is
+constexpr double kStep = 0.25;                        // pixels, along a profile
 constexpr double kLeastReach = 1.25, kMostReach = 6;  // pixels to either side
 constexpr double kReachInCells = 0.75;
 constexpr double kLeastContrast = 0.02;  // of linear light
@@ -82,7 +81,8 @@ std::size_t for_each_place(const cv::Mat& image, const glm::dvec2& a, const glm:
   const glm::dvec2 along = (b - a) / length, outward(along.y, -along.x);
   const int count = std::clamp(int(length), 8, 96);
   for (int i = 0; i < count; ++i) {
-    const glm::dvec2 at = glm::mix(a, b, kMargin + (1 - 2 * kMargin) * (i + 0.5) / count);
+    const glm::dvec2 at =
+        glm::mix(a, b, kTagEdgeMargin + (1 - 2 * kTagEdgeMargin) * (i + 0.5) / count);
     if (inside(image, at - reach * outward) && inside(image, at + reach * outward))
       visit(at, outward);
   }

@@ -8,6 +8,9 @@
 
 namespace photohull {
 
+/// Of an edge at either end, which is not measured, for the neighbours' blur is there.
+inline constexpr double kTagEdgeMargin = 0.08;
+
 struct MeasuredTag {
   std::array<glm::dvec2, 4> corners;  ///< pixels
   double edge_width = 0;  ///< pixels over which its edges rise from a fifth to four fifths

@@ -23,6 +23,7 @@ namespace {
 
 constexpr const char* kColmapProgram = "colmap";
 constexpr const char* kMark = "made_by_photohull";  // a file of the folder
+constexpr const char* kList = "images.txt";         // another: photographs of one run of COLMAP
 constexpr std::size_t kFewestPosed = 3;
 constexpr int kFewFeatures = 200;
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
@@ -38,7 +39,7 @@ void clear(const fs::path& folder) {
   fs::create_directories(folder, failure);
   if (failure) throw Error(concat(folder.string(), ": cannot be made (", failure.message(), ")"));
   write_atomically(folder / kMark, "COLMAP's work. It is replaced when cameras are found anew.\n");
-  for (const char* name : {"images", "masks", "sparse", "database.db", "database.db-wal",
+  for (const char* name : {"images", "masks", "sparse", kList, "database.db", "database.db-wal",
                            "database.db-shm", "colmap.log"})
     fs::remove_all(folder / name, failure);
 }
@@ -146,7 +147,7 @@ OptionNames option_names(const Progress& progress) {
 /// One lens a folder of photographs, with one radial term and its principal point in the middle:
 /// with more terms, wrong focal lengths fit the first few views that the mapper has as well as the
 /// right one.
-void find_features(const ColmapJob& job, const OptionNames& options, Runs& runs) {
+std::vector<std::string> extractor_words(const ColmapJob& job, const OptionNames& options) {
   std::vector<std::string> words = {"feature_extractor",
                                     "--database_path",
                                     (job.folder / "database.db").string(),
@@ -162,7 +163,42 @@ void find_features(const ColmapJob& job, const OptionNames& options, Runs& runs)
     words.push_back("--ImageReader.mask_path");
     words.push_back((job.folder / "masks").string());
   }
-  runs.must_run(words);
+  return words;
+}
+
+/// The photographs' links by the focal length that their lens is given, 0 where it is given none.
+/// Lenses with a focal length are apart, for the principal point is given with it.
+std::map<std::pair<double, std::string>, std::vector<std::size_t>> by_given_focal(
+    const ColmapJob& job) {
+  std::map<std::string, double> of_lens;
+  for (const ColmapPhoto& photo : job.photos) of_lens.emplace(photo.lens, photo.focal);
+  std::map<std::pair<double, std::string>, std::vector<std::size_t>> groups;
+  for (std::size_t i = 0; i < job.photos.size(); ++i) {
+    const std::string& lens = job.photos[i].lens;
+    const double focal = of_lens.at(lens);
+    groups[{focal, focal > 0 ? lens : std::string()}].push_back(i);
+  }
+  return groups;
+}
+
+void find_features(const ColmapJob& job, const OptionNames& options, const Links& links,
+                   Runs& runs) {
+  const std::vector<std::string> words = extractor_words(job, options);
+  for (const auto& [key, photos] : by_given_focal(job)) {
+    std::vector<std::string> all = words;
+    if (photos.size() < job.photos.size()) {
+      std::string list;
+      for (const std::size_t i : photos) list += links.names()[i] + "\n";
+      write_atomically(job.folder / kList, list);
+      all.insert(all.end(), {"--image_list_path", (job.folder / kList).string()});
+    }
+    if (const double focal = key.first; focal > 0) {
+      const ImageSize size = read_image_size(job.photos[photos.front()].image);
+      all.insert(all.end(), {"--ImageReader.camera_params",
+                             concat(focal, ",", 0.5 * size.width, ",", 0.5 * size.height, ",0")});
+    }
+    runs.must_run(all);
+  }
 }
 
 void match_features(const ColmapJob& job, const OptionNames& options, Runs& runs) {
@@ -287,7 +323,7 @@ ColmapFound run_colmap(const ColmapJob& job, Progress& progress) {
   const Links links(job, progress);
   Runs runs(job, progress);
   progress.stage("features", 0.3);
-  find_features(job, options, runs);
+  find_features(job, options, links, runs);
   progress.stage("matches", 0.4);
   match_features(job, options, runs);
   progress.stage("cameras", 0.3);

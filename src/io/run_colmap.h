@@ -15,6 +15,7 @@ struct ColmapPhoto {
   std::filesystem::path mask;  ///< features are looked for inside it; empty: everywhere
   std::string name;            ///< as messages and the scene call it; unique
   std::string lens;            ///< photographs of one lens at one zoom and size have the same here
+  double focal = 0;            ///< pixels, to start from; 0: as the file says, or COLMAP supposes
 };
 
 struct ColmapJob {

@@ -1,4 +1,4 @@
-// Private to the pictures of boxes: drawing by OpenCV, in BGR.
+// Private to the pictures of boxes and of coverage: drawing by OpenCV, in BGR.
 #pragma once
 
 #include <array>

@@ -1,13 +1,11 @@
 // What photographs lack that a model is to be made of, said with what to do.
 #pragma once
 
-#include <glm/glm.hpp>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "core/scene.h"
+#include "pipeline/coverage.h"
 
 namespace photohull::pipeline {
 
@@ -19,13 +17,9 @@ struct PhotoLook {
 };
 
 /// Warnings, each a sentence: photographs that are much less sharp than the median of all; an
-/// exposure that changes by a stop or more; views that look at `middle` (world) from one side
-/// only, or leave a gap of a quarter of the circle or more about it as seen from `up` (nothing: as
-/// the cameras tell). Nothing is said of the sides where views do not look at one place, as in a
-/// room, or most look down.
+/// exposure that changes by a stop or more; the gaps that were found in what the photographs cover,
+/// with the file that shows them in a picture (empty: none does).
 std::vector<std::string> check_photographs(std::span<const PhotoLook> photographs,
-                                           std::span<const SourceView> views,
-                                           const glm::dvec3& middle,
-                                           const std::optional<glm::dvec3>& up);
+                                           const Coverage& coverage, const std::string& picture);
 
 }  // namespace photohull::pipeline

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "core/error.h"
+#include "sheet/sheet_parts.h"
 
 namespace photohull {
 namespace {
@@ -41,11 +42,14 @@ class Writer {
     out_ = concat("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"", w, "mm\" height=\"", h,
                   "mm\" viewBox=\"0 0 ", w, " ", h, "\">\n<rect width=\"", w, "\" height=\"", h,
                   "\" fill=\"#fff\"/>\n");
-    draw_free_space();
-    std::string path;
-    for (const auto& square : sheet_.squares) path += rectangle(square[0], square[1]);
-    add_path(path, "#000");
-    for (const SheetTag& tag : sheet_.tags) draw_tag(tag);
+    if (sheet_.is_flat()) {
+      draw_free_space();
+      std::string path;
+      for (const auto& square : sheet_.squares) path += rectangle(square[0], square[1]);
+      add_path(path, "#000");
+      for (const SheetTag& tag : sheet_.tags) draw_tag(tag);
+    }
+    for (std::size_t i = 0; i < sheet_.pieces.size(); ++i) draw_piece(i);
     draw_bar();
     return out_ + "</svg>\n";
   }
@@ -89,6 +93,33 @@ class Writer {
     add_path(path, "#fff");
   }
 
+  /// Its outline to cut along, the tab under the next piece, and lines at every ten millimetres.
+  void draw_piece(std::size_t i) {
+    constexpr double kStep = 10, kLine = 0.8;  // mm
+    const StripPiece& piece = sheet_.pieces[i];
+    const double wide = piece.to - piece.from;
+    const glm::dvec2 low = piece.low, end = low + glm::dvec2(wide, 0), up(0, sheet_.strip);
+    out_ += concat("<path d=\"", rectangle(low, end + up + glm::dvec2(kGlued, 0)),
+                   "\" fill=\"none\" stroke=\"#888\" stroke-width=\"0.15\"/>\n");
+    out_ += concat("<path d=\"", polygon({end, end + up}),
+                   "\" fill=\"none\" stroke=\"#888\" stroke-width=\"0.15\" "
+                   "stroke-dasharray=\"1 1\"/>\n");
+    std::string marks;
+    for (double x = kStep * std::ceil(piece.from / kStep - 1e-9); x <= piece.to + 1e-9; x += kStep)
+      marks += rectangle(low + glm::dvec2(x - piece.from - 0.05, 0),
+                         low + glm::dvec2(x - piece.from + 0.05, kLine));
+    add_path(marks, "#888");
+    const bool last = i + 1 == sheet_.pieces.size();
+    add_text(end + glm::dvec2(1, 0.5 * sheet_.strip - 1), 2.2,
+             concat(i + 1, "|", last ? 1 : i + 2));
+    for (const SheetTag& tag : sheet_.tags) {
+      if (tag.corners[0].x < piece.from || tag.corners[1].x > piece.to) continue;
+      SheetTag placed = tag;
+      for (glm::dvec2& corner : placed.corners) corner += low - glm::dvec2(piece.from, 0);
+      draw_tag(placed);
+    }
+  }
+
   void draw_free_space() {
     const glm::dvec2 low = sheet_.free_min, high = sheet_.free_max;
     out_ += concat("<path d=\"", rectangle(low, high),
@@ -107,7 +138,12 @@ class Writer {
     const std::string length = number(sheet_.bar_length());
     add_text(a + glm::dvec2(0, kHalf + 1.2), 3.6,
              concat(length, " mm between the outer edges of the bar's ends, printed at 100 %"));
-    add_text(b + glm::dvec2(3, -1), 3, concat("photohull, ", sheet_.kind));
+    const std::string around = sheet_.is_flat() ? "" : concat(" ", number(sheet_.diameter), " mm");
+    add_text(b + glm::dvec2(3, -1), 3, concat("photohull, ", sheet_.kind, around));
+    if (!sheet_.is_flat())
+      add_text(a + glm::dvec2(0, -4.8), 3,
+               "cut along the lines, glue each dashed tab under the piece whose number is on it; "
+               "tags outwards, this side up");
   }
   void add_text(const glm::dvec2& place, double size, const std::string& text) {
     const glm::dvec2 p = on_page(place);

@@ -10,7 +10,7 @@
 namespace photohull {
 
 /// An SVG document of the page's size in millimetres: black on white, the bar with its length, and
-/// a thin grey outline of the free space.
+/// a thin grey outline of the free space; or of the pieces of a strip, with the tabs to be glued.
 std::string sheet_svg(const Sheet& sheet);
 
 /// The same as a PDF page, by librsvg and cairo. The same sheet gives the same bytes on a machine.

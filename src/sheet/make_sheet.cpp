@@ -7,15 +7,12 @@
 #include "core/error.h"
 #include "core/nearest_name.h"
 #include "core/option_word.h"
-#include "sheet/sheet.h"
+#include "sheet/sheet_parts.h"
 
 namespace photohull {
 namespace {
 
-constexpr double kMargin = 8;        // mm, which printers leave free
-constexpr double kFooter = 16;       // mm, for the bar and the words
 constexpr double kLeastFree = 20;    // mm along the free space's shorter side
-constexpr double kQuiet = 0.125;     // of a tag's side: the white that its border needs around it
 constexpr double kLongestBar = 150;  // mm
 constexpr double kTagInSquare = 0.75;
 constexpr const char* kFamily = "apriltag-36h11";
@@ -45,11 +42,6 @@ glm::dvec2 size_of(Paper paper) {
 double side_of(const SheetOptions& o) {
   if (o.tag > 0) return o.tag;
   return o.paper == Paper::kA3 ? 32 : 24;
-}
-
-SheetTag tag_at(int id, const glm::dvec2& low, double side) {
-  const glm::dvec2 x(side, 0), y(0, side);
-  return {id, {low + y, low + x + y, low + x, low}};
 }
 
 /// Lower ends of so many sides as fit between two ends, evenly spread.
@@ -113,6 +105,11 @@ void move_origin(Sheet& s) {
 
 }  // namespace
 
+SheetTag tag_at(int id, const glm::dvec2& low, double side) {
+  const glm::dvec2 x(side, 0), y(0, side);
+  return {id, {low + y, low + x + y, low + x, low}};
+}
+
 const char* to_string(Paper paper) {
   switch (paper) {
     case Paper::kA4:
@@ -126,32 +123,46 @@ const char* to_string(Paper paper) {
 }
 
 const char* to_string(SheetKind kind) {
-  return kind == SheetKind::kCharuco ? "charuco" : "apriltag-ring";
+  return kind == SheetKind::kRim       ? "rim"
+         : kind == SheetKind::kCharuco ? "charuco"
+                                       : "apriltag-ring";
 }
 
 void describe(Described& to, SheetOptions& o) {
   to.choice("paper", &o.paper, std::array{Paper::kA4, Paper::kA3, Paper::kLetter},
             "size of the page");
-  to.choice("kind", &o.kind, std::array{SheetKind::kTagRing, SheetKind::kCharuco},
-            "what is around the free space: tags, or a chessboard with tags in its white squares");
+  to.choice("kind", &o.kind, std::array{SheetKind::kTagRing, SheetKind::kCharuco, SheetKind::kRim},
+            "what is around the free space: tags, or a chessboard with tags in its white squares; "
+            "or a strip of tags around the rim of a turntable or a pot");
   to.number("tag", &o.tag, from_to(0, 200), "mm", "side of a tag, or of a square of the chessboard")
-      .zero = "by the paper: 24, and 32 on a3";
+      .zero = "by the paper: 24, and 32 on a3; of a rim a sixteenth of its diameter";
   to.number("first_id", &o.first_id, from_to(0, 586), "",
-            "number of the first tag, so that two sheets can be told apart");
+            "number of the first tag, so that two sheets can be told apart")
+      .zero = "of a rim 300";
+  to.number("diameter", &o.diameter, from_to(0, 5000), "mm",
+            "diameter of the cylinder that a strip goes around")
+      .zero = "no rim";
 }
 
 Sheet make_sheet(const SheetOptions& o) {
   check_options(o);
+  if (o.kind != SheetKind::kRim && o.diameter > 0)
+    throw UsageError(concat(option_word("diameter", o.diameter),
+                            " is for a strip around a cylinder: ", "give ",
+                            option_word("kind", "rim"), " with it"));
   Sheet s;
   s.kind = to_string(o.kind);
   s.dictionary = kFamily;
   s.page = size_of(o.paper);
   const glm::dvec2 low(kMargin, kMargin + kFooter), high = s.page - kMargin;
-  if (o.kind == SheetKind::kCharuco)
+  if (o.kind == SheetKind::kRim)
+    add_rim(o, s);
+  else if (o.kind == SheetKind::kCharuco)
     add_charuco(o, low, high, s);
   else
     add_ring(o, low, high, s);
-  if (!(std::min(s.free_max.x - s.free_min.x, s.free_max.y - s.free_min.y) >= kLeastFree))
+  if (s.is_flat() &&
+      !(std::min(s.free_max.x - s.free_min.x, s.free_max.y - s.free_min.y) >= kLeastFree))
     throw UsageError(concat(option_word("tag"), ": sides of ", side_of(o),
                             " mm leave no free space of ", kLeastFree, " mm on ",
                             to_string(o.paper), " paper; use smaller ones or a larger paper"));
@@ -162,7 +173,7 @@ Sheet make_sheet(const SheetOptions& o) {
                             ", and the last one is ", ids - 1, "; begin lower"));
   s.bar_from = {kMargin, kMargin + 3};
   s.bar_to = s.bar_from + glm::dvec2(kLongestBar, 0);
-  move_origin(s);
+  if (s.is_flat()) move_origin(s);
   return s;
 }
 

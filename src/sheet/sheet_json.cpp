@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <opencv2/aruco/dictionary.hpp>
@@ -15,9 +16,11 @@ using nlohmann::ordered_json;
 constexpr const char* kMark = "photohull_board";
 constexpr double kLargest = 1e5;  // mm
 constexpr std::size_t kMost = 10000;
+constexpr double kOffCylinder = 0.01;  // mm
 
 double rounded(double v) { return std::round(v * 1e6) / 1e6 + 0.0; }
 ordered_json pair(const glm::dvec2& p) { return {rounded(p.x), rounded(p.y)}; }
+ordered_json triple(const glm::dvec3& p) { return {rounded(p.x), rounded(p.y), rounded(p.z)}; }
 
 /// Fields of a file, with messages that name them.
 class Reader {
@@ -56,6 +59,32 @@ class Reader {
     for (std::size_t i = 0; i < n; ++i) all[i] = point(j[i], concat(field, "[", i, "]"));
     return all;
   }
+  double length(const char* field) const {
+    const auto& j = get(root_, field, field);
+    if (!j.is_number() || !(j.get<double>() > 0 && j.get<double>() <= kLargest))
+      fail(field, "expected a length above 0 in millimetres, found " + shown(j));
+    return j.get<double>();
+  }
+  /// Corners on the strip around a cylinder, on its paper.
+  std::array<glm::dvec2, 4> around(const nlohmann::json& j, const std::string& field,
+                                   const Sheet& sheet) const {
+    if (!j.is_array() || j.size() != 4) fail(field, "expected 4 points, found " + shown(j));
+    std::array<glm::dvec2, 4> all;
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (!j[i].is_array() || j[i].size() != 3 ||
+          !std::ranges::all_of(j[i], [](const auto& v) { return v.is_number(); }))
+        fail(concat(field, "[", i, "]"),
+             "expected three lengths in millimetres [x, y, z], found " + shown(j[i]));
+      const glm::dvec3 p(j[i][0].get<double>(), j[i][1].get<double>(), j[i][2].get<double>());
+      all[i] = sheet.on_paper(p);
+      if (!(glm::length(sheet.at(all[i]) - p) < kOffCylinder))
+        fail(concat(field, "[", i, "]"),
+             concat("expected a place on the cylinder's paper, of a radius of ",
+                    glm::length(glm::dvec2(sheet.at({0, 0}))), " mm, found ", shown(j[i])));
+    }
+    return all;
+  }
+  bool has(const char* field) const { return root_.contains(field); }
   const nlohmann::json& list(const char* field) const {
     const auto& j = get(root_, field, field);
     if (!j.is_array() || j.size() > kMost) fail(field, "expected a list, found " + shown(j));
@@ -95,8 +124,9 @@ void read_tags(const Reader& r, Sheet& s) {
              concat("expected a number from 0 to ", ids - 1, ", found ", Reader::shown(id)));
     if (!seen.insert(id.get<int>()).second)
       r.fail(field + ".id", concat("another tag has the number ", id.get<int>(), " already"));
-    SheetTag tag{id.get<int>(),
-                 r.points<4>(r.get(tags[i], "corners", field + ".corners"), field + ".corners")};
+    const auto& corners = r.get(tags[i], "corners", field + ".corners");
+    SheetTag tag{id.get<int>(), s.is_flat() ? r.points<4>(corners, field + ".corners")
+                                            : r.around(corners, field + ".corners", s)};
     if (!(cross(tag.corners[1] - tag.corners[0], tag.corners[2] - tag.corners[0]) < 0))
       r.fail(field + ".corners",
              "expected top left, top right, bottom right and bottom left with y upwards");
@@ -120,10 +150,12 @@ std::string sheet_text(const Sheet& s) {
   j["bar_from"] = pair(s.bar_from);
   j["bar_to"] = pair(s.bar_to);
   j["bar_length"] = rounded(s.bar_length());
+  if (!s.is_flat()) j["diameter"] = rounded(s.diameter), j["strip_height"] = rounded(s.strip);
   j["tags"] = ordered_json::array();
   for (const SheetTag& tag : s.tags) {
     ordered_json corners = ordered_json::array();
-    for (const glm::dvec2& corner : tag.corners) corners.push_back(pair(corner));
+    for (const glm::dvec2& corner : tag.corners)
+      corners.push_back(s.is_flat() ? pair(corner) : triple(s.at(corner)));
     j["tags"].push_back({{"id", tag.id}, {"corners", corners}});
   }
   j["squares"] = ordered_json::array();
@@ -146,6 +178,7 @@ Sheet read_sheet(const std::filesystem::path& file) {
   if (!(s.page.x > 0 && s.page.y > 0)) r.fail("page", "expected a width and a height above 0");
   if (!(s.free_max.x > s.free_min.x && s.free_max.y > s.free_min.y))
     r.fail("free_max", "expected a corner to the right of free_min and above it");
+  if (r.has("diameter")) s.diameter = r.length("diameter"), s.strip = r.length("strip_height");
   read_tags(r, s);
   const auto& squares = r.list("squares");
   for (std::size_t i = 0; i < squares.size(); ++i)

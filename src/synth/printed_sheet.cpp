@@ -17,6 +17,9 @@ constexpr float kPaper = 0.8f, kInk = 0.03f, kHider = 0.3f;  // reflectances
 
 PrintedSheet::PrintedSheet(const Spec& spec, const Surface& surface) {
   const Sheet sheet = read_sheet(spec.sheet.board);
+  if (!sheet.is_flat())
+    throw Error(concat(spec.sheet.board,
+                       ": diameter: it is a strip around a cylinder; give a flat sheet's file"));
   picture_ = sheet_picture(sheet, kTexelsPerMm);
   const glm::dvec2 object(surface.box.max - surface.box.min);
   const glm::dvec2 room = sheet.free_max - sheet.free_min;

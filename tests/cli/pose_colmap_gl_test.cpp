@@ -124,6 +124,30 @@ TEST_F(PoseWithColmap, GivesMasksAndOrderToColmap) {
   EXPECT_THAT(nowhere.err, HasSubstr("there is no such mask folder"));
 }
 
+TEST_F(PoseWithColmap, GivesFocalLengthsToColmap) {
+  write_photos(3);
+  const RunOptions listing_words =
+      with_colmap(folder_.path(), "echo \"$@\" >> '" + path("words") +
+                                      "'; case $1 in mapper) echo 'failed to create sparse "
+                                      "model'; exit 1;; esac");
+  EXPECT_EQ(pose(listing_words, {"--focal", "70.5"}).code, 1);
+  std::string words = read_bytes(folder_ / "words");
+  EXPECT_THAT(words, HasSubstr("--ImageReader.camera_params 70.5,32,24,0"));
+  EXPECT_THAT(words, testing::Not(HasSubstr("--image_list_path")));
+  // Of another size: a lens of its own, whose principal point is another.
+  const std::vector<std::uint8_t> grey(std::size_t(128) * 96 * 3, 90);
+  io::write_png(folder_ / "my photos/3.PNG", 128, 96, 3, grey);
+  fs::remove(folder_ / "words");
+  EXPECT_EQ(pose(listing_words, {"--focal", "28mm"}).code, 1);
+  words = read_bytes(folder_ / "words");
+  const std::string list = "--image_list_path " + path("scan/colmap/images.txt");
+  EXPECT_THAT(words, HasSubstr(list + " --ImageReader.camera_params 51.772,32,24,0"));
+  EXPECT_THAT(words, HasSubstr(list + " --ImageReader.camera_params 103.544,64,48,0"));
+  const Finished wide = pose(listing_words, {"--focal", "7"});
+  EXPECT_EQ(wide.code, 2);
+  EXPECT_THAT(wide.err, HasSubstr("--focal 7: in 0.PNG, of 64 x 48 pixels, it is a field of view"));
+}
+
 TEST_F(PoseWithColmap, CtrlCEndsColmap) {
   write_photos(4);
   RunOptions options =

@@ -86,6 +86,9 @@ TEST_F(PoseCommand, PhotographsOnASheetBecomeAScene) {
   const json report = read("scene/pose.json");
   EXPECT_LT(report["rms"], 0.15);
   EXPECT_FALSE(report["bend"]["found"]);
+  const ColourImage sides = io::read_image(folder_ / "scene/coverage.png");
+  EXPECT_EQ(sides.width, 1000);
+  EXPECT_THAT(posed.err, testing::Not(HasSubstr("coverage.png")));  // no gap
   // The cameras are where they were.
   const Scene scene = io::load_scene(path("scene"), {}), truth = io::load_scene(path("table"), {});
   ASSERT_EQ(scene.views.size(), std::size_t(kViews));
@@ -115,6 +118,22 @@ TEST_F(PoseCommand, PhotographsOnASheetBecomeAScene) {
     ASSERT_GT(mesh.world(v).z, scene.box->min.z - voxel);
 }
 
+TEST_F(PoseCommand, AGapIsToldWithItsPicture) {
+  photograph_table();
+  const std::vector<std::string> names = listing(folder_ / "table/images");
+  ASSERT_EQ(names.size(), std::size_t(kViews));
+  // At 0, 90 and 45 degrees about the sheet.
+  const Finished posed =
+      run_photohull({"pose", path("table/images/" + names[0]), path("table/images/" + names[1]),
+                     path("table/images/" + names[4]), "--board", path("board.json"), "--out",
+                     path("scene"), "--no-masks", "--focal", "900"});
+  ASSERT_EQ(posed.code, 0) << posed.err;
+  EXPECT_EQ(read("scene/pose.json")["cameras"][0]["stated_focal_length"], 900);
+  EXPECT_THAT(posed.err, HasSubstr("from one side: as seen from above they span 90 degrees"));
+  EXPECT_THAT(posed.err, HasSubstr("; " + path("scene/coverage.png") + " shows where\n"));
+  EXPECT_TRUE(fs::exists(folder_ / "scene/coverage.png"));
+}
+
 TEST_F(PoseCommand, SameInputGivesTheSameBytes) {
   photograph_table();
   for (const char* out : {"one", "two"}) {
@@ -139,6 +158,14 @@ TEST_F(PoseCommand, MistakesAreNamed) {
   const Finished ending = run_photohull({"board", "--out", path("board.png")});
   EXPECT_EQ(ending.code, 2);
   EXPECT_THAT(ending.err, HasSubstr(".pdf or .svg"));
+  const Finished no_diameter = run_photohull({"board", "--out", path("rim.pdf"), "--kind", "rim"});
+  EXPECT_EQ(no_diameter.code, 2);
+  EXPECT_THAT(no_diameter.err, HasSubstr("say how large the cylinder is: --diameter"));
+  const Finished rim =
+      run_photohull({"board", "--out", path("rim.pdf"), "--kind", "rim", "--diameter", "200"});
+  EXPECT_EQ(rim.code, 0);
+  EXPECT_THAT(rim.out, HasSubstr("40 tags of 12.5 mm on a strip of 628.6 x 18.75 mm, in 4 pieces"));
+  EXPECT_EQ(read("rim.json")["tags"][0]["corners"][0].size(), 3u);
   fs::create_directories(folder_ / "photos");
   const std::vector<std::uint8_t> grey(std::size_t(64) * 48 * 3, 90);
   io::write_png(folder_ / "photos/a.png", 64, 48, 3, grey);
@@ -149,6 +176,12 @@ TEST_F(PoseCommand, MistakesAreNamed) {
   const Finished no_board = pose({path("photos"), "--board", path("photos/a.png")});
   EXPECT_EQ(no_board.code, 1);
   EXPECT_THAT(no_board.err, HasSubstr("a.png"));
+  for (const char* focal : {"0", "28cm", "5"}) {
+    const Finished refused =
+        pose({path("photos"), "--board", path("board.json"), "--focal", focal});
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_THAT(refused.err, HasSubstr(std::string("--focal ") + focal + ": "));
+  }
   const Finished bar = pose({path("photos"), "--board", path("board.json"), "--bar", "15"});
   EXPECT_EQ(bar.code, 2);
   EXPECT_THAT(bar.err, HasSubstr("150"));

@@ -14,6 +14,7 @@
 #include "eval/photo_agreement.h"
 #include "gpu/device_options.h"
 #include "io/film_frames.h"
+#include "io/photo_lens.h"
 #include "lab/chart/chart_job.h"
 #include "lab/chart/stress_job.h"
 #include "lab/sampling/sampling_study.h"
@@ -84,6 +85,7 @@ void write_commands(std::ostream& out) {
   write_command<CalibrateOptions>("`photohull calibrate`: the camera", {}, out);
   write_command<PoseOptions>("`photohull pose` and `scan`: the printed sheet", {}, out);
   write_command<io::FrameOptions>("`photohull pose` and `scan`: films", {}, out);
+  write_command<io::FocalOptions>("`photohull pose` and `scan`: the lens", {}, out);
   write_command<TurntableAngles>("`photohull calibrate` and `convert`: turntables", {}, out);
   write_command<gpu::DeviceOptions>(
       "`photohull synthesize`, `bench sampling` and `bench visibility`: the device", {}, out);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include "core/atomic_file.h"
@@ -70,6 +71,108 @@ TEST(Sheet, IsRefusedWhereItCannotBe) {
   EXPECT_THROW(make_sheet({Paper::kA4, SheetKind::kTagRing, 80}), UsageError);
   EXPECT_THROW(make_sheet({Paper::kA4, SheetKind::kTagRing, 0, 580}), UsageError);
   EXPECT_NO_THROW(make_sheet({Paper::kA4, SheetKind::kTagRing, 0, 550}));
+}
+
+SheetOptions rim_of(double diameter, double tag = 0) {
+  SheetOptions options;
+  options.kind = SheetKind::kRim;
+  options.diameter = diameter, options.tag = tag;
+  return options;
+}
+
+TEST(Sheet, AStripGoesOnceAroundTheCylinder) {
+  for (const SheetOptions& flat : all_sheets())
+    for (const SheetTag& tag : make_sheet(flat).tags) EXPECT_LT(tag.id, 300);
+  for (const double diameter : {80.0, 200.0, 350.0}) {
+    const Sheet s = make_sheet(rim_of(diameter));
+    SCOPED_TRACE(diameter);
+    const double around = s.pieces.back().to, pitch = around / double(s.tags.size());
+    EXPECT_NEAR(around, std::numbers::pi * diameter, 0.5);
+    EXPECT_GE(s.tags.size(), 30u);
+    std::set<int> ids;
+    for (std::size_t i = 0; i < s.tags.size(); ++i) {
+      const SheetTag& tag = s.tags[i];
+      EXPECT_GE(tag.id, 300);
+      EXPECT_TRUE(ids.insert(tag.id).second);
+      const SheetTag& next = s.tags[(i + 1) % s.tags.size()];
+      EXPECT_NEAR(std::fmod(next.corners[0].x - tag.corners[0].x + around, around), pitch, 1e-9);
+      EXPECT_NEAR(s.at(tag.corners[3]).z, 0.25 * (tag.corners[1].x - tag.corners[0].x), 1e-9);
+      int pieces = 0;
+      for (const StripPiece& piece : s.pieces)
+        pieces += tag.corners[0].x > piece.from && tag.corners[1].x < piece.to;
+      EXPECT_EQ(pieces, 1);
+      for (const glm::dvec2& corner : tag.corners) {
+        const glm::dvec3 p = s.at(corner);
+        EXPECT_NEAR(std::hypot(p.x, p.y), 0.5 * diameter + 0.1, 1e-9);
+        EXPECT_NEAR(glm::length(s.on_paper(p) - corner), 0, 1e-9);
+      }
+    }
+    // The end meets the beginning.
+    EXPECT_NEAR(glm::length(s.at({around, 0}) - s.at({0, 0})), 0, 1e-9);
+    for (const StripPiece& piece : s.pieces) {
+      EXPECT_GE(piece.low.x, 5);
+      EXPECT_LE(piece.low.x + piece.to - piece.from + 8, s.page.x - 5);
+      EXPECT_GT(piece.low.y, s.bar_from.y + 3);
+      EXPECT_LE(piece.low.y + s.strip, s.page.y - 5);
+    }
+  }
+}
+
+TEST(Sheet, AStripIsRefusedWhereItCannotBe) {
+  const auto message = [](const SheetOptions& options) {
+    try {
+      make_sheet(options);
+    } catch (const UsageError& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(message(rim_of(0)), HasSubstr("kind=rim: say how large the cylinder is: diameter"));
+  EXPECT_THAT(message(rim_of(100, 20)), HasSubstr("an eighth of the diameter"));
+  EXPECT_THAT(message(rim_of(20)), HasSubstr("tags of 3 mm around a cylinder of 20 mm"));
+  EXPECT_THAT(message(rim_of(2000)), HasSubstr("does not fit on one page"));
+  SheetOptions flat;
+  flat.diameter = 100;
+  EXPECT_THAT(message(flat), HasSubstr("diameter=100 is for a strip around a cylinder"));
+}
+
+TEST(Sheet, AStripIsDrawnInPiecesAndReadBack) {
+  const ScratchFolder folder;
+  const Sheet s = make_sheet(rim_of(200));
+  const SheetPicture picture = sheet_picture(s, 20);
+  for (const SheetTag& tag : s.tags) {
+    const auto piece = std::ranges::find_if(
+        s.pieces, [&](const StripPiece& p) { return tag.corners[0].x < p.to; });
+    const auto cells = tag_cells(s.dictionary, tag.id);
+    for (std::size_t y = 0; y < 8; ++y)
+      for (std::size_t x = 0; x < 8; ++x) {
+        const auto& c = tag.corners;
+        const glm::dvec2 place = c[0] + (c[1] - c[0]) * ((double(x) + 0.5) / 8) +
+                                 (c[3] - c[0]) * ((double(y) + 0.5) / 8);
+        ASSERT_NEAR(picture.at(piece->low + place - glm::dvec2(piece->from, 0)),
+                    cells[y][x] ? 1 : 0, 0.02);
+      }
+  }
+  EXPECT_THAT(sheet_svg(s), HasSubstr("200 mm"));
+  const std::string text = sheet_text(s);
+  write_atomically(folder / "rim.json", text);
+  const Sheet back = read_sheet(folder / "rim.json");
+  EXPECT_EQ(back.diameter, 200);
+  ASSERT_EQ(back.tags.size(), s.tags.size());
+  for (std::size_t i = 0; i < s.tags.size(); ++i)
+    for (std::size_t k = 0; k < 4; ++k)
+      EXPECT_LT(glm::length(back.tags[i].corners[k] - s.tags[i].corners[k]), 1e-5);
+  // A corner inside the cylinder.
+  std::string damaged = text;
+  damaged.replace(damaged.find("\"diameter\": 200"), 15, "\"diameter\": 210");
+  write_atomically(folder / "rim.json", damaged);
+  try {
+    read_sheet(folder / "rim.json");
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_THAT(e.what(),
+                HasSubstr("tags[0].corners[0]: expected a place on the cylinder's paper"));
+  }
 }
 
 TEST(Sheet, FileIsReadBack) {
