@@ -27,7 +27,7 @@ struct ReadPhotos {
 
 ReadPhotos find_all_tags(const PoseJob& job, const Sheet& sheet, Progress& progress) {
   ReadPhotos read;
-  progress.stage("tags", 0.45);
+  progress.stage("tags", 0.4);
   for (std::size_t i = 0; i < job.images.size(); ++i) {
     progress.check_cancelled();
     progress.update(double(i) / double(job.images.size()));
@@ -75,22 +75,25 @@ SheetPose pose_on_sheet(const PoseJob& job, Progress& progress) {
   const Sheet sheet = read_sheet(job.board);
   const ReadPhotos read = find_all_tags(job, sheet, progress);
   progress.stage("poses", 0.05);
-  SheetPose pose{pose_photographs(read.photos, sheet, job.sheet), ""};
+  SheetPose pose{pose_photographs(read.photos, sheet, job.sheet), {}, ""};
   for (std::size_t i = 0; i < job.images.size(); ++i)
     if (!read.unreadable[i].empty()) pose.result.photos[i].reason = read.unreadable[i];
+  progress.stage("background", 0.15);
+  pose.turntable = look_for_turntable(job, sheet, pose.result, progress);
   make_folder(job.out, "--out");
   std::vector<fs::path> masks;
   if (job.make_masks) {
-    progress.stage("masks", 0.5);
+    progress.stage("masks", 0.4);
     std::vector<double> widths;
     for (const PosePhoto& photo : read.photos) widths.push_back(photo.view.edge_width);
-    masks = write_sheet_masks(job.out / "masks", job.images, widths, sheet, pose.result, progress);
+    masks = write_sheet_masks(job.out / "masks", job.images, widths, sheet, pose.turntable,
+                              pose.result, progress);
   }
   const Scene scene = scene_of(job, pose.result, masks);
   for (const std::string& warning : pipeline::check_photographs(
            read.looks, scene.views, scene.box->center(), glm::dvec3(0, 0, 1)))
     pose.result.warnings.push_back(warning);
-  pose.report = pose_json(job.names, pose.result);
+  pose.report = pose_json(job.names, pose.result, pose.turntable);
   write_atomically(job.out / "pose.json", pose.report);
   io::write_transforms(scene, job.out);
   return pose;
