@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
-#include <string>
 #include <vector>
 
 #include "core/image.h"
