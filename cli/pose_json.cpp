@@ -41,9 +41,28 @@ ordered_json photo_json(const std::string& name, const PosedPhoto& p) {
   return j;
 }
 
+ordered_json turntable_json(const TurntableFinding& table) {
+  ordered_json j = {{"found", table.found()}};
+  if (!table.found()) j["reason"] = table.reason();
+  if (table.stations.empty()) return j;
+  const TurntableMotion& motion = table.motion;
+  j["axis"] = {{"point", vector_json(motion.point)}, {"direction", vector_json(motion.direction)}};
+  j["rms_degrees"] = motion.rms_degrees;
+  j["rms_length"] = motion.rms_length;
+  j["background_still"] = table.found();
+  j["stations"] = ordered_json::array();
+  for (std::size_t s = 0; s < table.stations.size(); ++s)
+    j["stations"].push_back({{"camera", motion.stations[s].camera},
+                             {"photographs", motion.stations[s].photos.size()},
+                             {"background", to_string(table.stations[s].stillness)},
+                             {"edges_kept", table.stations[s].edges_kept}});
+  return j;
+}
+
 }  // namespace
 
-std::string pose_json(const std::vector<std::string>& names, const PoseResult& result) {
+std::string pose_json(const std::vector<std::string>& names, const PoseResult& result,
+                      const TurntableFinding& turntable) {
   ordered_json j;
   j["photohull_pose"] = 1;
   j["rms"] = finite_or_null(result.rms);
@@ -53,16 +72,22 @@ std::string pose_json(const std::vector<std::string>& names, const PoseResult& r
   const SheetBend& b = result.bend;
   j["bend"] = {{"found", b.found}, {"xx", b.xx},         {"xy", b.xy},
                {"yy", b.yy},       {"height", b.height}, {"height_sigma", b.height_sigma}};
+  j["turntable"] = turntable_json(turntable);
   j["warnings"] = result.warnings;
   j["cameras"] = ordered_json::array();
   for (const PosedCamera& camera : result.cameras) j["cameras"].push_back(camera_json(camera));
   j["photographs"] = ordered_json::array();
-  for (std::size_t i = 0; i < names.size(); ++i)
-    j["photographs"].push_back(photo_json(names[i], result.photos[i]));
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    ordered_json photo = photo_json(names[i], result.photos[i]);
+    if (const int station = turntable.station_of(i); station >= 0)
+      photo["turntable"] = {{"station", station}, {"angle", turntable.motion.angles[i]}};
+    j["photographs"].push_back(std::move(photo));
+  }
   return j.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
-void print_pose(const std::vector<std::string>& names, const PoseResult& result) {
+void print_pose(const std::vector<std::string>& names, const PoseResult& result,
+                const TurntableFinding& turntable) {
   int posed = 0;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const PosedPhoto& p = result.photos[i];
@@ -78,6 +103,14 @@ void print_pose(const std::vector<std::string>& names, const PoseResult& result)
   if (result.bend.found)
     std::printf("the sheet is bent: it rises or falls by %.3g +- %.2g units at its rim\n",
                 result.bend.height, result.bend.height_sigma);
+  const TurntableMotion& motion = turntable.motion;
+  if (turntable.found())
+    std::printf(
+        "turntable        %d photographs around one axis, %.3g degrees and %.3g units rms; the "
+        "background is still\n",
+        turntable.photographs(), motion.rms_degrees, motion.rms_length);
+  else if (!turntable.stations.empty())
+    std::printf("no turntable     the cameras fit one, but %s\n", turntable.reason().c_str());
 }
 
 }  // namespace photohull::cli

@@ -5,13 +5,16 @@
 #include <vector>
 
 #include "calib/pose_photographs.h"
+#include "pose_turntable.h"
 
 namespace photohull::cli {
 
 /// pose.json. `names` has one for each photograph.
-std::string pose_json(const std::vector<std::string>& names, const PoseResult& result);
+std::string pose_json(const std::vector<std::string>& names, const PoseResult& result,
+                      const TurntableFinding& turntable);
 
 /// A few lines on standard output.
-void print_pose(const std::vector<std::string>& names, const PoseResult& result);
+void print_pose(const std::vector<std::string>& names, const PoseResult& result,
+                const TurntableFinding& turntable);
 
 }  // namespace photohull::cli

@@ -41,7 +41,8 @@ std::vector<std::string> mask_names(const std::vector<fs::path>& images) {
 
 std::vector<fs::path> write_sheet_masks(const fs::path& folder, const std::vector<fs::path>& images,
                                         const std::vector<double>& edge_widths, const Sheet& sheet,
-                                        PoseResult& result, Progress& progress) {
+                                        const TurntableFinding& turntable, PoseResult& result,
+                                        Progress& progress) {
   constexpr double kMuch = 0.2;
   make_folder(folder, "--out");
   const SheetPicture picture = sheet_picture(sheet, kTexelsPerMm);
@@ -53,7 +54,8 @@ std::vector<fs::path> write_sheet_masks(const fs::path& folder, const std::vecto
     progress.update(double(i) / double(images.size()));
     if (!result.photos[i].posed) continue;
     const SheetLook look = look_at_sheet(result, i, sheet, picture, blur_of(edge_widths[i]));
-    const SheetMask found = mask_from_sheet(io::read_image(images[i]), look, false);
+    const SheetMask found =
+        mask_from_sheet(io::read_image(images[i]), look, false, turntable.behind(i));
     undecided += found.undecided > kMuch;
     if (found.mask.empty()) {
       ++missing;

@@ -6,15 +6,17 @@
 
 #include "calib/pose_photographs.h"
 #include "core/progress.h"
+#include "pose_turntable.h"
 
 namespace photohull::cli {
 
 /// The mask of each photograph by what the sheet alone would look like, written to
 /// FOLDER/NAME.png; returns the files, an empty path where a photograph is not posed or no mask was
-/// found, of which `result` gets a warning.
+/// found, of which `result` gets a warning. Photographs of a turntable's stations are compared with
+/// what is behind the sheet, too.
 std::vector<std::filesystem::path> write_sheet_masks(
     const std::filesystem::path& folder, const std::vector<std::filesystem::path>& images,
-    const std::vector<double>& edge_widths, const Sheet& sheet, PoseResult& result,
-    Progress& progress);
+    const std::vector<double>& edge_widths, const Sheet& sheet, const TurntableFinding& turntable,
+    PoseResult& result, Progress& progress);
 
 }  // namespace photohull::cli

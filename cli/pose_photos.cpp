@@ -104,7 +104,7 @@ std::string pose_photos(const PoseJob& job, bool tell) {
   progress.finish();
   print_warnings(pose.result.warnings);
   if (tell) {
-    print_pose(job.names, pose.result);
+    print_pose(job.names, pose.result, pose.turntable);
     std::printf("  %s\n", job.out.c_str());
   }
   return pose.report;

@@ -28,7 +28,7 @@ struct ReadPhotos {
 
 ReadPhotos find_all_tags(const PoseJob& job, const Sheet& sheet, Progress& progress) {
   ReadPhotos read;
-  progress.stage("tags", 0.45);
+  progress.stage("tags", 0.4);
   for (std::size_t i = 0; i < job.images.size(); ++i) {
     progress.check_cancelled();
     progress.update(double(i) / double(job.images.size()));
@@ -95,16 +95,23 @@ SheetPose pose_on_sheet(const PoseJob& job, Progress& progress) {
   const Sheet sheet = as_printed(read_sheet(job.board), job.sheet.bar);
   const ReadPhotos read = find_all_tags(job, sheet, progress);
   progress.stage("poses", 0.05);
-  SheetPose pose{pose_photographs(read.photos, sheet, job.sheet), ""};
+  SheetPose pose{pose_photographs(read.photos, sheet, job.sheet), {}, ""};
   for (std::size_t i = 0; i < job.images.size(); ++i)
     if (!read.unreadable[i].empty()) pose.result.photos[i].reason = read.unreadable[i];
+  if (sheet.is_flat()) {
+    progress.stage("background", 0.15);
+    pose.turntable = look_for_turntable(job, sheet, pose.result, progress);
+  } else {
+    pose.turntable.motion.reason = "a strip does not tell where the background behind it begins";
+  }
   make_folder(job.out, "--out");
   std::vector<fs::path> masks;
   if (job.make_masks && sheet.is_flat()) {
-    progress.stage("masks", 0.5);
+    progress.stage("masks", 0.4);
     std::vector<double> widths;
     for (const PosePhoto& photo : read.photos) widths.push_back(photo.view.edge_width);
-    masks = write_sheet_masks(job.out / "masks", job.images, widths, sheet, pose.result, progress);
+    masks = write_sheet_masks(job.out / "masks", job.images, widths, sheet, pose.turntable,
+                              pose.result, progress);
   }
   if (const std::string warning = unused_focal(job, read.took_focal); !warning.empty())
     pose.result.warnings.push_back(warning);
@@ -113,7 +120,7 @@ SheetPose pose_on_sheet(const PoseJob& job, Progress& progress) {
   const Scene scene = scene_of(job, pose.result, masks, has_box);
   for (const std::string& warning : check_sides(job.out, sides_of(job, read, pose.result, scene)))
     pose.result.warnings.push_back(warning);
-  pose.report = pose_json(job.names, pose.result);
+  pose.report = pose_json(job.names, pose.result, pose.turntable);
   write_atomically(job.out / "pose.json", pose.report);
   io::write_transforms(scene, job.out);
   return pose;

@@ -6,12 +6,14 @@
 #include "calib/pose_photographs.h"
 #include "core/progress.h"
 #include "pose_job.h"
+#include "pose_turntable.h"
 
 namespace photohull::cli {
 
 /// What was found, with an entry for each image of the job.
 struct SheetPose {
   PoseResult result;
+  TurntableFinding turntable;
   std::string report;  ///< pose.json
 };
 

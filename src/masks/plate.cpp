@@ -141,9 +141,10 @@ MaskEvidence compare_with_plate(const ColourImage& image, const ColourImage& pla
 }
 
 MaskEvidence compare_with_expected(const cv::Mat& taken, const cv::Mat& plate,
-                                   const cv::Mat& certain, int edge) {
-  const cv::Mat sigma = expected_deviation(taken, plate, certain),
-                depth = shadow_depth(taken, plate);
+                                   const cv::Mat& certain, int edge, const cv::Mat& least) {
+  cv::Mat sigma = expected_deviation(taken, plate, certain);
+  if (!least.empty()) cv::max(sigma, least, sigma);
+  const cv::Mat depth = shadow_depth(taken, plate);
   const cv::Mat roughness = roughness_of(depth, edge);
   MaskEvidence out;
   out.weak = kWeak, out.strong = kStrong;

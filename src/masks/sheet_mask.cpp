@@ -4,10 +4,12 @@
 #include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <vector>
 
 #include "core/error.h"
 #include "core/median.h"
+#include "masks/behind_sheet.h"
 #include "masks/mask_evidence.h"
 
 namespace photohull {
@@ -61,20 +63,24 @@ cv::Vec6d fit(const std::vector<cv::Point>& places, const std::vector<double>& v
 
 class Comparison {
  public:
-  Comparison(const ColourImage& image, const SheetLook& look)
+  Comparison(const ColourImage& image, const SheetLook& look, const StillBackground& still)
       : taken_(light_roots(image)),
         light_(look.height, look.width, CV_32F, const_cast<float*>(look.light.data())),
         possible_(look.height, look.width, CV_8U, const_cast<std::uint8_t*>(look.possible.data())),
         page_(light_ >= 0),
-        expected_(taken_.clone()) {}
+        expected_(taken_.clone()) {
+    if (!still.empty()) behind_.emplace(still, taken_);
+  }
 
   SheetMask run(const ColourImage& image, bool cut) {
     SheetMask out;
     if (!expect_page()) return out;
-    const cv::Mat unknown = expect_surroundings();
+    cv::Mat unknown = expect_surroundings();
     const cv::Mat certain = page_ & ~possible_;
-    MaskEvidence evidence = compare_with_expected(taken_, expected_, certain, kShadowEdge);
+    MaskEvidence evidence = compare_with_expected(taken_, expected_, certain, kShadowEdge,
+                                                  behind_ ? behind_->deviation : cv::Mat());
     evidence.distance.setTo(0, ~possible_);
+    if (behind_) unknown |= disbelieved(*behind_, {page_, possible_, unknown}, evidence);
     evidence.distance.setTo(255, unknown);
     out.undecided = double(cv::countNonZero(unknown)) / std::max(1, cv::countNonZero(possible_));
     out.mask = mask_from_evidence(evidence);
@@ -129,18 +135,65 @@ class Comparison {
       }
   }
 
-  /// Beside the page: as the nearest place where the object cannot be. Returns where nothing is
-  /// known (255), since what lies around is of many colours, or there is nothing.
+  /// Beside the page: as the still background has it, else as the nearest place where the object
+  /// cannot be. Returns where nothing is known (255), since what lies around is of many colours, or
+  /// there is nothing.
   cv::Mat expect_surroundings() {
-    const cv::Mat beside = ~page_, asked = beside & possible_, around = beside & ~possible_;
+    const cv::Mat beside = ~page_, asked = beside & possible_;
     cv::Mat rim;  // of the page, which pixels show in part: neither paper nor background
     cv::dilate(page_, rim, cv::getStructuringElement(cv::MORPH_RECT, {5, 5}));
     cv::Mat unknown = asked.clone();
-    cv::Mat source = around & ~rim;
-    if (cv::countNonZero(source) < int(kFewest)) return unknown;
+    if (expect_nearest(asked, beside & ~possible_ & ~rim)) unknown.setTo(0);
+    if (behind_) {
+      behind_->expose_as(taken_, beside & ~possible_ & ~rim);
+      const cv::Mat known = asked & (behind_->level != StillBackground::kUnknown);
+      behind_->light.copyTo(expected_, known);
+      unknown.setTo(0, known);
+    }
+    // The page's rim is there whatever stands before it: it counts as background but for what
+    // differs from both sides.
+    const cv::Mat thin = asked & rim;
+    const cv::Mat beyond = asked & ~rim & ~unknown;
+    for (int y = 0; y < thin.rows; ++y)
+      for (int x = 0; x < thin.cols; ++x) {
+        std::uint8_t& open = unknown.at<std::uint8_t>(y, x);
+        if (!thin.at<std::uint8_t>(y, x) || (open && !expect_beyond({x, y}, beyond))) continue;
+        open = 0;
+        settle_rim({x, y});
+      }
+    return unknown;
+  }
+
+  /// The mean of the background near a pixel of the page's rim, and its deviation. False where
+  /// nothing is known.
+  bool expect_beyond(const cv::Point& at, const cv::Mat& beyond) {
+    constexpr int kNear = 4;  // pixels
+    cv::Vec3f sum;
+    float squares = 0;
+    int count = 0;
+    for (int v = -kNear; v <= kNear; ++v)
+      for (int u = -kNear; u <= kNear; ++u) {
+        const cv::Point near = at + cv::Point(u, v);
+        if (!near.inside(cv::Rect({}, page_.size())) || !beyond.at<std::uint8_t>(near)) continue;
+        const cv::Vec3f& light = expected_.at<cv::Vec3f>(near);
+        sum += light, squares += light.dot(light), ++count;
+      }
+    if (count == 0) return false;
+    const cv::Vec3f mean = sum * (1.0f / float(count));
+    expected_.at<cv::Vec3f>(at) = mean;
+    if (behind_)
+      behind_->deviation.at<float>(at) =
+          std::sqrt(std::max(0.0f, squares / float(count) - mean.dot(mean)) / 3);
+    return true;
+  }
+
+  /// Where `asked`, as the nearest place of `source`. False where that is of many colours, or too
+  /// small.
+  bool expect_nearest(const cv::Mat& asked, const cv::Mat& source) {
+    if (cv::countNonZero(source) < int(kFewest)) return false;
     cv::Scalar mean, deviation;
     cv::meanStdDev(taken_, mean, deviation, source);
-    if (std::max({deviation[0], deviation[1], deviation[2]}) > kPlain) return unknown;
+    if (std::max({deviation[0], deviation[1], deviation[2]}) > kPlain) return false;
     cv::Mat smooth, distances, labels;
     cv::blur(taken_, smooth, {5, 5});
     cv::distanceTransform(~source, distances, labels, cv::DIST_L2, cv::DIST_MASK_5,
@@ -154,13 +207,7 @@ class Comparison {
         if (asked.at<std::uint8_t>(y, x))
           expected_.at<cv::Vec3f>(y, x) =
               smooth.at<cv::Vec3f>(at[std::size_t(labels.at<int>(y, x))]);
-    // The page's rim is there whatever stands before it: it counts as background but for what
-    // differs from both sides.
-    const cv::Mat thin = asked & rim;
-    for (int y = 0; y < source.rows; ++y)
-      for (int x = 0; x < source.cols; ++x)
-        if (thin.at<std::uint8_t>(y, x)) settle_rim({x, y});
-    return cv::Mat::zeros(unknown.size(), CV_8U);
+    return true;
   }
 
   /// A pixel that mixes page and background: what it would be of the mixture nearest to it.
@@ -182,14 +229,17 @@ class Comparison {
   }
 
   cv::Mat taken_, light_, possible_, page_, expected_;
+  std::optional<Behind> behind_;
 };
 
 }  // namespace
 
-SheetMask mask_from_sheet(const ColourImage& image, const SheetLook& look, bool cut) {
+SheetMask mask_from_sheet(const ColourImage& image, const SheetLook& look, bool cut,
+                          const StillBackground& still) {
   PHOTOHULL_CHECK_OP(image.width, ==, look.width);
   PHOTOHULL_CHECK_OP(image.height, ==, look.height);
-  return Comparison(image, look).run(image, cut);
+  if (!still.empty()) PHOTOHULL_CHECK(still.width == image.width && still.height == image.height);
+  return Comparison(image, look, still).run(image, cut);
 }
 
 }  // namespace photohull

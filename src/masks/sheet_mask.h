@@ -3,6 +3,7 @@
 
 #include "core/image.h"
 #include "core/sheet_look.h"
+#include "masks/still_background.h"
 
 namespace photohull {
 
@@ -18,7 +19,11 @@ struct SheetMask {
 /// object cannot be, and continued smoothly to where it may; what differs is the object's, but
 /// for shadows, as compare_with_plate says. Beside the page the background is what is seen around
 /// the place. `look` has the image's size. Everything is background where the object cannot be.
-/// `cut`: GrabCut places contours.
-SheetMask mask_from_sheet(const ColourImage& image, const SheetLook& look, bool cut);
+/// `cut`: GrabCut places contours. `still`: of the same camera, or empty: beside the page the
+/// background is what it has there, where it has something; the object is wherever it has nothing.
+/// What is doubtful in it does not count where the object reaches the page's edge and ends there,
+/// nor where it is a hole in the object.
+SheetMask mask_from_sheet(const ColourImage& image, const SheetLook& look, bool cut,
+                          const StillBackground& still = {});
 
 }  // namespace photohull

@@ -28,15 +28,27 @@ float smooth_step(float low, float high, float x) {
   return s * s * (3 - 2 * s);
 }
 
+/// About the vertical, radians.
+glm::dmat3 turned(double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {c, s, 0, -s, c, 0, 0, 0, 1};
+}
+
 }  // namespace
 
-Shading::Shading(const Spec& spec, const Surface& surface, double pixel, const PrintedSheet* sheet)
-    : spec_(spec), surface_(surface), sheet_(sheet), seed_(std::uint32_t(mix_bits(spec.seed))) {
+Shading::Shading(const Spec& spec, const Surface& surface, double pixel, const PrintedSheet* sheet,
+                 double turn)
+    : spec_(spec),
+      surface_(surface),
+      sheet_(sheet),
+      room_from_world_(turned(turn)),
+      seed_(std::uint32_t(mix_bits(spec.seed))) {
+  const glm::dmat3 back = transpose(room_from_world_);
   for (const DirectionalLight& d : spec.light.directional)
-    lights_.push_back({normalize(d.direction), glm::vec3(d.colour), true});
+    lights_.push_back({back * normalize(d.direction), glm::vec3(d.colour), true});
   for (const PointLight& p : spec.light.point)
-    lights_.push_back(
-        {surface.box.center() + surface.diagonal * p.position, glm::vec3(p.colour), false});
+    lights_.push_back({surface.box.center() + surface.diagonal * (back * p.position),
+                       glm::vec3(p.colour), false});
   const MaterialSpec& m = spec.material;
   checker_ = (m.period_pixels > 0 ? m.period_pixels * pixel : m.size * surface.diagonal) / 2;
   clutter_ = spec.background.type == "clutter";
@@ -197,7 +209,8 @@ glm::vec3 Shading::background(const Ray& ray, std::size_t view) const {
   const BackgroundSpec& b = spec_.background;
   if (!clutter_) return glm::vec3(b.colour);
   // The sphere around the scene, from within.
-  const glm::dvec3 from = ray.origin - surface_.box.center(), d = normalize(ray.direction);
+  const glm::dvec3 from = room_from_world_ * (ray.origin - surface_.box.center()),
+                   d = room_from_world_ * normalize(ray.direction);
   const double along = dot(from, d);
   const double reach =
       -along +

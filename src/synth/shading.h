@@ -21,9 +21,11 @@ using LightShares = std::vector<std::vector<float>>;
 class Shading {
  public:
   /// `pixel` is the world size of the mean camera's pixel at the middle of the box.
-  /// `sheet`, under the object, outlives this; null: none.
+  /// `sheet`, under the object, outlives this; null: none. `turn`: radians by which object and
+  /// sheet have turned about the vertical axis through the middle of the object's box, before
+  /// lights and background that stand still.
   Shading(const Spec& spec, const Surface& surface, double pixel,
-          const PrintedSheet* sheet = nullptr);
+          const PrintedSheet* sheet = nullptr, double turn = 0);
 
   /// Directional ones first, in the spec's order.
   const std::vector<Light>& lights() const { return lights_; }
@@ -57,8 +59,9 @@ class Shading {
   const Spec& spec_;
   const Surface& surface_;
   const PrintedSheet* sheet_;
-  std::vector<Light> lights_;
-  double checker_ = 0;  ///< edge of a field, world units
+  glm::dmat3 room_from_world_;  ///< about the middle of the box
+  std::vector<Light> lights_;   ///< in the world, which turns with the object
+  double checker_ = 0;          ///< edge of a field, world units
   bool clutter_ = false;
   double clutter_radius_ = 0;  ///< world units
   std::uint32_t seed_;

@@ -87,6 +87,12 @@ void check_together(const Spec& s, const std::string& source) {
     fail("cameras.turns: expected one angle at least, found none");
   if (s.cameras.lowest > s.cameras.highest)
     fail("cameras.lowest: must not be above cameras.highest");
+  if (s.cameras.turntable && (s.cameras.layout == "within" || s.cameras.layout == "hemisphere"))
+    fail("cameras.turntable: the camera stands still; choose the layout rings or arc");
+  if (s.cameras.turntable && s.cameras.roll != 0)
+    fail("cameras.turntable: the camera stands still; set cameras.roll to 0");
+  if (s.cameras.turntable && s.light.shadow_test != kShadowRays)
+    fail("cameras.turntable: lights go around the object; set light.shadow_test to rays");
   if (s.cameras.distance <= 0) fail("cameras.distance: must be more than 0");
   for (std::size_t i = 0; i < s.light.directional.size(); ++i)
     if (length(s.light.directional[i].direction) < 1e-9)

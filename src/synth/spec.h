@@ -111,6 +111,8 @@ struct CameraSpec {
   double fill = 0.8;                   ///< largest share of the frame's width or height in any view
   glm::dvec2 principal_offset{2, -1};  ///< pixels from the middle of the frame
   double roll = 0;                     ///< degrees, either way at random
+  /// Object and sheet turn; lights and background stay, and the camera at azimuth 0 before them.
+  bool turntable = false;
 };
 
 // Styles of masks.

@@ -74,6 +74,7 @@ void visit_cameras(Visitor& v, CameraSpec& c) {
   v.number("fill", c.fill, 0.01, 10);
   v.vector("principal_offset", c.principal_offset, -kLargestImage, kLargestImage);
   v.number("roll", c.roll, 0, 180);
+  v.flag("turntable", c.turntable);
 }
 
 template <typename Visitor>

@@ -130,20 +130,29 @@ void check_above(const PrintedSheet& sheet, const std::vector<LensCamera>& camer
                          " is below the sheet; raise the elevations, or leave out sheet"));
 }
 
+/// By which object and sheet have turned before a camera that stands at azimuth 0, radians.
+double turn_of(const Spec& spec, const Surface& surface, const LensCamera& lens) {
+  if (!spec.cameras.turntable) return 0;
+  const glm::dvec3 out = lens.camera.center() - surface.box.center();
+  return -std::atan2(out.x, -out.y);
+}
+
 /// Renders and writes all views; returns the largest share of a frame that is covered.
 double write_views(const Spec& spec, const Surface& surface, const std::vector<LensCamera>& cameras,
                    const std::vector<std::size_t>& indices, const std::vector<std::string>& names,
                    const SceneFiles& files, SharedProgress& progress, gpu::Context* context,
                    const PrintedSheet* sheet) {
-  const Shading shading(spec, surface, mean_pixel(cameras, surface.box.center()), sheet);
+  const double pixel = mean_pixel(cameras, surface.box.center());
   std::optional<LightMaps> maps;
-  if (context) maps.emplace(*context, spec.light, surface, shading.lights());
+  const Shading still(spec, surface, pixel, sheet);
+  if (context) maps.emplace(*context, spec.light, surface, still.lights());
   const std::uint64_t seed = degradation_seed(spec);
   const double rows = double(cameras.size()) * spec.image.height;
   std::atomic<long> rows_done = 0;
   std::vector<double> fill(cameras.size());
   std::vector<Mask> masks(cameras.size());
   const auto write_view = [&](std::size_t i) {
+    const Shading shading(spec, surface, pixel, sheet, turn_of(spec, surface, cameras[i]));
     const Picture picture = render(
         surface, shading, cameras[i], indices[i], spec.image.samples, spec.seed,
         [&] { progress.update(double(++rows_done) / rows); }, maps ? &*maps : nullptr);

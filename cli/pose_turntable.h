@@ -1,0 +1,36 @@
+// Is it a turntable? The cameras' motion and the background behind the sheet together tell.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calib/find_turntable.h"
+#include "core/progress.h"
+#include "masks/still_background.h"
+#include "pose_job.h"
+#include "sheet/draw_sheet.h"
+
+namespace photohull::cli {
+
+const char* to_string(Stillness stillness);
+
+/// A turntable is one where a station's background is still.
+struct TurntableFinding {
+  TurntableMotion motion;
+  std::vector<StillBackground> stations;  ///< of each station of the motion, where that was found
+
+  bool found() const { return photographs() > 0; }
+  std::string reason() const;  ///< why it was not found, one sentence
+  int photographs() const;     ///< of stations whose background is still
+  /// Index of the photograph's station; -1: of none, or of one whose background is not still.
+  int station_of(std::size_t photo) const;
+  /// The still background of the photograph's station; empty where there is none.
+  const StillBackground& behind(std::size_t photo) const;
+};
+
+/// Looks at the photographs again where their cameras fit a turntable. The backgrounds' light is
+/// found where the job makes masks.
+TurntableFinding look_for_turntable(const PoseJob& job, const Sheet& sheet,
+                                    const PoseResult& result, Progress& progress);
+
+}  // namespace photohull::cli

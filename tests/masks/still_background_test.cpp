@@ -1,0 +1,191 @@
+// The background behind a turntable, and masks on a sheet with it.
+#include "masks/still_background.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "masks/sheet_mask.h"
+#include "support/pictures.h"
+
+namespace photohull {
+namespace {
+
+constexpr int kWidth = 240, kHeight = 180, kPageTop = 120, kPhotos = 12;
+constexpr double kNoise = 0.006;
+
+/// A shelf of boxes in many colours.
+glm::vec3 shelf(double x, double y) {
+  const int i = int(std::floor(x / 13)), j = int(std::floor(y / 17));
+  const auto tone = [&](int k) { return float(0.12 + 0.07 * ((i * 7 + j * 11 + k * 5) % 9)); };
+  return {tone(1), tone(2), tone(3)};
+}
+
+glm::vec3 page(double x, double y) {
+  const bool ink = int(x / 16) % 2 == 0 && y > kPageTop + 30 && y < kPageTop + 50;
+  return glm::vec3(ink ? 0.03f : 0.8f);
+}
+
+/// How the k-th photograph differs from the others.
+struct Scene {
+  std::function<bool(int, double, double)> object;  ///< is it seen there?
+  std::function<glm::vec3(int, double, double)> colour = [](int k, double x, double y) {
+    return glm::vec3(0.5 + 0.3 * std::sin(0.6 * x + 2.1 * k), 0.3,
+                     0.2 + 0.1 * std::cos(0.5 * y + k));
+  };
+  std::function<glm::vec3(int, double, double)> behind = [](int, double x, double y) {
+    return shelf(x, y);
+  };
+  bool same_exposure = true;
+};
+
+ColourImage photograph(const Scene& scene, int k) {
+  std::mt19937 random(unsigned(100 + k));
+  std::normal_distribution<float> noise(0, float(kNoise));
+  const float exposure = scene.same_exposure ? 1 : float(1 + 0.08 * std::sin(2.0 * k));
+  return paint_srgb(kWidth, kHeight, [&](double x, double y) {
+    const glm::vec3 light = scene.object(k, x, y) ? scene.colour(k, x, y)
+                            : y >= kPageTop       ? page(x, y)
+                                                  : scene.behind(k, x, y);
+    glm::vec3 root = glm::sqrt(exposure * light);
+    for (int c = 0; c < 3; ++c) root[c] = std::max(0.0f, root[c] + noise(random));
+    return root * root;
+  });
+}
+
+/// The page fills the frame's lower part, the box its middle.
+SheetLook look(int width, int height) {
+  SheetLook out{width, height, {}, {}};
+  for (int v = 0; v < height; ++v)
+    for (int u = 0; u < width; ++u) {
+      const double x = (u + 0.5) * kWidth / width - 0.5, y = (v + 0.5) * kHeight / height - 0.5;
+      out.light.push_back(y >= kPageTop ? (page(x, y).x - 0.03f) / 0.77f : -1);
+      out.possible.push_back(x > 60 && x < 180 && y > 30 && y < 150 ? 255 : 0);
+    }
+  return out;
+}
+
+StillBackground background_of(const Scene& scene, double held = 60e6, int count = kPhotos) {
+  StillPhotographs photos;
+  photos.count = std::size_t(count);
+  photos.width = kWidth, photos.height = kHeight;
+  photos.image = [&](std::size_t k) { return photograph(scene, int(k)); };
+  photos.look = [](std::size_t, int width, int height) { return look(width, height); };
+  photos.held = held;
+  return find_still_background(photos, true);
+}
+
+/// A block that sways about the middle.
+bool swaying(int k, double x, double y) {
+  return std::abs(x - 120 - 30 * std::cos(2 * std::numbers::pi * k / kPhotos)) < 12 && y > 50 &&
+         y < 140;
+}
+
+std::size_t at(int x, int y) { return std::size_t(y) * kWidth + std::size_t(x); }
+
+double overlap(const Mask& mask, const Scene& scene, int k) {
+  double both = 0, either = 0;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const bool in = mask.coverage[at(x, y)] >= 128, there = scene.object(k, x, y);
+      both += in && there, either += in || there;
+    }
+  return both / either;
+}
+
+/// Root mean square of what differs from the shelf where the background is known.
+double light_error(const StillBackground& found) {
+  double sum = 0, count = 0;
+  for (int y = 2; y < kPageTop - 4; ++y)
+    for (int x = 2; x < kWidth - 2; ++x) {
+      if (found.level[at(x, y)] != StillBackground::kSure) continue;
+      const glm::vec3 root = glm::sqrt(shelf(x, y));
+      for (int c = 0; c < 3; ++c) {
+        const double code = found.light[3 * at(x, y) + std::size_t(c)] / 65535.0;
+        sum += std::pow(code - double(root[c]), 2), ++count;
+      }
+    }
+  return std::sqrt(sum / count);
+}
+
+double share_of_level(const StillBackground& found, StillBackground::Level level) {
+  double there = 0;
+  for (int y = 0; y < kPageTop - 4; ++y)
+    for (int x = 0; x < kWidth; ++x) there += found.level[at(x, y)] == level;
+  return there / (kWidth * (kPageTop - 4.0));
+}
+
+TEST(StillBackgroundTest, IsFoundBehindWhatMoves) {
+  const Scene scene{swaying};
+  const StillBackground found = background_of(scene);
+  EXPECT_EQ(found.stillness, Stillness::kStill);
+  EXPECT_GT(found.edges_kept, 0.95);
+  EXPECT_LT(light_error(found), kNoise);
+  EXPECT_GT(share_of_level(found, StillBackground::kSure), 0.8);
+  // Nothing is told of what the page hides.
+  EXPECT_EQ(found.level[at(120, kPageTop + 10)], StillBackground::kUnknown);
+}
+
+TEST(StillBackgroundTest, ExposuresMayDiffer) {
+  Scene scene{swaying};
+  scene.same_exposure = false;
+  const StillBackground found = background_of(scene);
+  EXPECT_EQ(found.stillness, Stillness::kStill);
+  EXPECT_LT(light_error(found), 2 * kNoise);
+}
+
+TEST(StillBackgroundTest, SmallerSamplesGiveTheSameLight) {
+  const Scene scene{swaying};
+  const StillBackground found = background_of(scene, 0.25 * kPhotos * kWidth * kHeight);
+  EXPECT_EQ(found.stillness, Stillness::kStill);
+  EXPECT_EQ(found.width, kWidth);
+  EXPECT_LT(light_error(found), 2 * kNoise);
+  EXPECT_GT(share_of_level(found, StillBackground::kSure), 0.6);
+  const SheetMask mask = mask_from_sheet(photograph(scene, 3), look(kWidth, kHeight), false, found);
+  EXPECT_GT(overlap(mask.mask, scene, 3), 0.85);
+}
+
+TEST(StillBackgroundTest, ACameraThatMovesIsTold) {
+  Scene scene{swaying};
+  scene.behind = [](int k, double x, double y) { return shelf(x + 29 * k, y + 5 * k); };
+  const StillBackground found = background_of(scene);
+  EXPECT_EQ(found.stillness, Stillness::kChanges);
+  EXPECT_LT(found.edges_kept, 0.3);
+  EXPECT_TRUE(found.empty());
+}
+
+TEST(StillBackgroundTest, APlainWallTellsNothing) {
+  Scene scene{swaying};
+  scene.behind = [](int, double, double) { return glm::vec3(0.3f); };
+  EXPECT_EQ(background_of(scene).stillness, Stillness::kPlain);
+}
+
+TEST(StillBackgroundTest, MasksAreTighterThanTheSheetAloneMakesThem) {
+  const Scene scene{swaying};
+  const StillBackground found = background_of(scene);
+  for (const int k : {0, 3, 8}) {
+    const ColourImage image = photograph(scene, k);
+    const SheetMask alone = mask_from_sheet(image, look(kWidth, kHeight), false),
+                    both = mask_from_sheet(image, look(kWidth, kHeight), false, found);
+    EXPECT_LT(overlap(alone.mask, scene, k), 0.5);
+    EXPECT_GT(overlap(both.mask, scene, k), 0.93);
+    EXPECT_LT(both.undecided, alone.undecided);
+  }
+}
+
+TEST(StillBackgroundTest, AnObjectThatLooksAlikeFromAllSidesIsKept) {
+  Scene scene;
+  scene.object = [](int, double x, double y) {
+    return std::abs(x - 120) < 18 && y > 50 && y < 140;
+  };
+  scene.colour = [](int, double, double) { return glm::vec3(0.6f, 0.2f, 0.1f); };
+  const StillBackground found = background_of(scene);
+  ASSERT_EQ(found.stillness, Stillness::kStill);
+  EXPECT_EQ(found.level[at(120, 80)], StillBackground::kDoubtful);
+  const SheetMask mask = mask_from_sheet(photograph(scene, 2), look(kWidth, kHeight), false, found);
+  for (int y = 54; y < 136; ++y) EXPECT_GE(mask.mask.coverage[at(120, y)], 128) << y;
+}
+
+}  // namespace
+}  // namespace photohull
