@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/error.h"
 #include "sheet/meet_sheet.h"
 #include "synth/degrade_cameras.h"
 #include "synth/random.h"

@@ -66,7 +66,7 @@ def drafted(text: str) -> tuple[dict[str, str], list[str]]:
     for option, value in FITTING.items():
         if option in words:
             set_option(words, option, value)
-    sheet = command == "synthesize" and "on_sheet" in text
+    sheet = command == "synthesize" and ("on_sheet" in text or "on_turntable" in text)
     for option, value in (SHEET if sheet else DRAFT.get(name, {})).items():
         if not (option == "--resolution" and "--voxel-size" in words):
             set_option(words, option, value)

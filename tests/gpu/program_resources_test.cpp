@@ -9,9 +9,9 @@ using testing::HasSubstr;
 
 TEST(ProgramResources, WhatEveryDeviceHasIsWithinThePromise) {
   ProgramResources r;
-  r.compute = {16, 16, 8};
+  r.compute = {8, 16, 8};
   r.vertex = {0, 16, 0};
-  r.highest_storage_binding = 15;
+  r.highest_storage_binding = 7;
   r.highest_image_unit = 7;
   r.highest_texture_unit = 95;
   r.uniform_components = 1024;
