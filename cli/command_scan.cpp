@@ -12,7 +12,6 @@
 #include "io/image_file.h"
 #include "kept_steps.h"
 #include "option_flags.h"
-#include "pipeline/input_hashes.h"
 #include "pose_photos.h"
 #include "reconstruct_scene.h"
 #include "scene_arguments.h"
@@ -169,24 +168,17 @@ void pose(const Arguments& a, const PoseJob& job, KeptSteps& kept) {
 }
 
 void reconstruct(const Arguments& a, KeptSteps& kept) {
-  StepIdentity identity;
-  identity.add(fs::absolute(a.out).lexically_normal().string());
-  pipeline::ReconstructOptions job = a.job;
-  job.fresh = false;
-  for (const auto& [name, value] : pipeline::named_options(job, a.load))
-    identity.add(name + " " + value);
-  for (const pipeline::InputFile& file : pipeline::hash_inputs(io::load_scene(a.scene(), a.load)))
-    identity.add(file.path.string() + " " + file.xxh3_128);
-  if (has_results(a.out) && is_kept(a, kept, kModel, identity.digest(), "the model is that"))
+  const std::string identity = model_identity(a.job, a.load, a.scene(), a.out);
+  if (has_results(a.out) && is_kept(a, kept, kModel, identity, "the model is that"))
     return tell_results(a.out, a.json);
   kept.begin(kModel);
   try {
     reconstruct_scene(a.job, a.load, a.scene(), a.out, a.json);
   } catch (const Error& failure) {
-    if (failure.kind() == ErrorKind::kDoubted) kept.done(kModel, identity.digest());
+    if (failure.kind() == ErrorKind::kDoubted) kept.done(kModel, identity);
     throw;
   }
-  kept.done(kModel, identity.digest());
+  kept.done(kModel, identity);
 }
 
 void run(Arguments& a) {

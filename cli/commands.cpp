@@ -8,6 +8,7 @@ namespace {
 void add_all(CLI::App& app) {
   add_scan(app);
   add_reconstruct(app);
+  add_batch(app);
   add_view(app);
   add_render(app);
   add_info(app);

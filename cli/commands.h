@@ -23,6 +23,8 @@ using DrawReliability = std::string (*)(const std::string& mesh, const eval::Rel
                                         bool as_svg);
 /// `draw`: nullptr where --reliability-plot is not to be had.
 void add_evaluate(CLI::App& app, DrawReliability draw);
+/// Many reconstructions.
+void add_batch(CLI::App& app);
 void add_convert(CLI::App& app);
 void add_refine_cameras(CLI::App& app);
 void add_calibrate(CLI::App& app);

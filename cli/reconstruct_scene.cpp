@@ -5,7 +5,9 @@
 
 #include "core/error.h"
 #include "core/read_file.h"
+#include "kept_steps.h"
 #include "pipeline/image_scale.h"
+#include "pipeline/input_hashes.h"
 #include "pipeline/stage_weights.h"
 #include "pipeline/write_results.h"
 #include "terminal_progress.h"
@@ -64,6 +66,20 @@ void reconstruct_scene(const pipeline::ReconstructOptions& job, const io::LoadSc
     print_summary(report, out);
   const assess::Verdict& verdict = report.verdict.verdict;
   if (verdict.level == assess::Level::kFailed) throw_failed(verdict.reasons.front());
+}
+
+std::string model_identity(const pipeline::ReconstructOptions& given,
+                           const io::LoadSceneOptions& load, const fs::path& scene,
+                           const fs::path& out) {
+  StepIdentity identity;
+  identity.add(fs::absolute(out).lexically_normal().string());
+  pipeline::ReconstructOptions job = given;
+  job.fresh = false;
+  for (const auto& [name, value] : pipeline::named_options(job, load))
+    identity.add(name + " " + value);
+  for (const pipeline::InputFile& file : pipeline::hash_inputs(io::load_scene(scene, load)))
+    identity.add(file.path.string() + " " + file.xxh3_128);
+  return identity.digest();
 }
 
 bool has_results(const fs::path& folder) {

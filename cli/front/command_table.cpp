@@ -11,6 +11,7 @@ namespace {
 constexpr CommandEntry kCommands[] = {
     {"scan", "photographs to a textured model: pose and reconstruct in one", kMainProgram},
     {"reconstruct", "carve a volume and a mesh from photographs", kMainProgram},
+    {"batch", "reconstruct many scenes or frames, by one process or by many", kMainProgram},
     {"view", "open the page that reconstruct wrote in a browser", kMainProgram},
     {"render", "draw a result: a film of it turning, or stills", kMainProgram},
     {"info", "tell what was understood of a scene", kMainProgram},

@@ -373,6 +373,7 @@ Reconstructor::Reconstructor(ReconstructOptions options) : options_(std::move(op
 
 Reconstruction Reconstructor::run(const Photographs& photographs, Progress& given) const {
   const auto start = std::chrono::steady_clock::now();
+  const double cpu = process_cpu_seconds();
   check_process_limits(options_.threads);
   const auto limit = limit_threads(options_.threads);
   const OneOpenCvThread one_thread;
@@ -390,7 +391,7 @@ Reconstruction Reconstructor::run(const Photographs& photographs, Progress& give
   out.report.device_work = device_work(*run.context);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   out.report.wall_seconds = elapsed.count();
-  out.report.cpu_seconds = process_cpu_seconds();
+  out.report.cpu_seconds = process_cpu_seconds() - cpu;
   out.report.peak_memory_bytes = process_peak_memory();
   return out;
 }

@@ -2,6 +2,8 @@
 
 #include <sys/resource.h>
 
+#include <fstream>
+
 namespace photohull::pipeline {
 
 double process_cpu_seconds() {
@@ -16,5 +18,7 @@ std::int64_t process_peak_memory() {
   getrusage(RUSAGE_SELF, &usage);
   return std::int64_t(usage.ru_maxrss) * 1024;
 }
+
+void forget_peak_memory() { std::ofstream("/proc/self/clear_refs") << 5; }
 
 }  // namespace photohull::pipeline

@@ -22,6 +22,8 @@ struct StageTime {
 double process_cpu_seconds();
 /// Largest resident set of the process so far.
 std::int64_t process_peak_memory();
+/// From now on the peak is that of what comes, where the system can do that.
+void forget_peak_memory();
 
 class StageClock {
  public:

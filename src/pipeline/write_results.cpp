@@ -97,6 +97,7 @@ Report write_all(const Reconstruction& result, const ExportChoice& exports, Resu
                  Progress& given) {
   const auto start = std::chrono::steady_clock::now();
   Report report = result.report;
+  const double cpu = process_cpu_seconds();
   RecordingProgress progress(given);
   StageClock clock(progress);
   clock.run("files", Weights::kFiles, [&] {
@@ -113,7 +114,7 @@ Report write_all(const Reconstruction& result, const ExportChoice& exports, Resu
   report.stages.push_back(clock.stages().back());
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   report.wall_seconds += elapsed.count();
-  report.cpu_seconds = process_cpu_seconds();
+  report.cpu_seconds += process_cpu_seconds() - cpu;
   report.peak_memory_bytes = process_peak_memory();
   for (const std::string& text : progress.warnings()) report.warnings.push_back(text);
   const std::string text = report.to_json();

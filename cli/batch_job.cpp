@@ -1,0 +1,203 @@
+#include "batch_job.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <map>
+#include <new>
+
+#include "cli/front/exit_code.h"
+#include "core/error.h"
+#include "pipeline/stage_clock.h"
+#include "pipeline/stage_weights.h"
+#include "pipeline/write_results.h"
+#include "reconstruct_scene.h"
+#include "terminal_progress.h"
+
+namespace photohull::cli {
+namespace {
+
+using batch::Outcome;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::seconds kTableEvery(5);
+
+/// A piece's share of the batch's progress; says whose warnings they are.
+class PieceProgress : public Progress {
+ public:
+  PieceProgress(TerminalProgress& whole, std::string name, double weight)
+      : Progress(whole.token()), whole_(whole), name_(std::move(name)), left_(weight) {}
+  void stage(const std::string& name, double weight) override {
+    const double share = std::min(weight, left_);
+    left_ -= share;
+    whole_.stage(name_ + ": " + name, share);
+  }
+  void update(double fraction) override { whole_.update(fraction); }
+  void warn(const std::string& message) override { whole_.warn(name_ + ": " + message); }
+  void note(const std::string& message) override { whole_.note(name_ + ": " + message); }
+  /// What its stages did not use.
+  void finish() {
+    whole_.stage(name_, left_);
+    whole_.update(1);
+  }
+
+ private:
+  TerminalProgress& whole_;
+  const std::string name_;
+  double left_;
+};
+
+class Batch {
+ public:
+  Batch(const std::vector<BatchPiece>& pieces, const batch::Store& store,
+        const BatchOptions& options)
+      : pieces_(pieces), store_(store), options_(options), progress_(total(pieces)) {
+    for (const BatchPiece& piece : pieces) rows_.push_back({piece.name, {}});
+  }
+
+  void run() {
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      progress_.check_cancelled();
+      PieceProgress progress(progress_, pieces_[i].name, pipeline::total_weight(pieces_[i].job));
+      work_at(i, progress);
+      progress.finish();
+      if (Clock::now() - told_ > kTableEvery) write_table();
+    }
+    progress_.finish();
+    write_table();
+    tell();
+  }
+
+ private:
+  static double total(const std::vector<BatchPiece>& pieces) {
+    double sum = 0;
+    for (const BatchPiece& piece : pieces) sum += pipeline::total_weight(piece.job);
+    return sum;
+  }
+
+  void work_at(std::size_t i, PieceProgress& progress) {
+    const BatchPiece& piece = pieces_[i];
+    const auto held = store_.hold(piece.name);
+    if (!held) {
+      ++elsewhere_;
+      return;
+    }
+    const Outcome outcome = make(piece, progress);
+    if (options_.sequence && outcome.has_result())
+      store_.publish(piece.name, "volume.vdb", "volume." + piece.name + ".vdb");
+    rows_[i].outcome = outcome;
+    if (options_.json) std::printf("%s\n", to_json(piece.name, outcome).c_str());
+    std::fflush(stdout);
+  }
+
+  /// As it was made before, or now.
+  Outcome make(const BatchPiece& piece, PieceProgress& progress) {
+    const auto start = Clock::now();
+    const double cpu = pipeline::process_cpu_seconds();
+    pipeline::forget_peak_memory();
+    Outcome out;
+    out.scene = piece.scene;
+    try {
+      out.identity = model_identity(piece.job, piece.load, piece.scene, store_.results(piece.name));
+      if (const auto before = store_.outcome(piece.name); before && is_kept(piece, *before, out)) {
+        ++kept_;
+        return *before;
+      }
+      reconstruct(piece, progress, out);
+    } catch (const Cancelled&) {
+      throw;
+    } catch (const Error& e) {
+      out.exit_code = exit_code(e.kind());
+      out.message = e.what();
+    } catch (const std::bad_alloc&) {
+      out.exit_code = exit_code(ErrorKind::kMemory);
+      out.message = "there is not enough memory";
+    }
+    if (!out.has_result()) progress.warn(out.message);
+    const std::chrono::duration<double> elapsed = Clock::now() - start;
+    out.wall_seconds = elapsed.count();
+    out.cpu_seconds = pipeline::process_cpu_seconds() - cpu;
+    out.peak_memory_bytes = pipeline::process_peak_memory();
+    store_.set_outcome(piece.name, out);
+    return out;
+  }
+
+  bool is_kept(const BatchPiece& piece, const Outcome& before, const Outcome& now) const {
+    if (piece.job.fresh || before.identity != now.identity) return false;
+    return before.has_result() ? has_results(store_.results(piece.name)) : !options_.retry;
+  }
+
+  void reconstruct(const BatchPiece& piece, PieceProgress& progress, Outcome& out) {
+    io::LoadSceneOptions load = piece.load;
+    load.most_views = io::kEnoughViews;
+    const pipeline::Report report =
+        pipeline::reconstruct_to_folder(piece.job, pipeline::load_photographs(piece.scene, load),
+                                        store_.results(piece.name), progress);
+    const assess::Verdict& verdict = report.verdict.verdict;
+    out.verdict = assess::to_string(verdict.level);
+    if (!verdict.reasons.empty()) out.message = verdict.reasons.front();
+    if (verdict.level == assess::Level::kFailed) out.exit_code = exit_code(ErrorKind::kDoubted);
+    out.views = int(report.photographs.views);
+    out.voxel_size = report.grid.voxel_size;
+    out.triangles = report.mesh.triangles;
+  }
+
+  void write_table() {
+    for (batch::Row& row : rows_)
+      if (!row.outcome) row.outcome = store_.outcome(row.name);
+    store_.write_table(table_of(rows_));
+    told_ = Clock::now();
+  }
+
+  /// The sum of it. Throws where not all have results.
+  void tell() const {
+    std::map<std::string, int> verdicts;
+    int without = 0, waiting = 0;
+    const batch::Row* first = nullptr;
+    for (const batch::Row& row : rows_) {
+      if (!row.outcome) {
+        ++waiting;
+      } else if (row.outcome->has_result()) {
+        ++verdicts[row.outcome->verdict];
+      } else {
+        if (without++ == 0) first = &row;
+      }
+    }
+    if (!options_.json) {
+      std::printf("%zu scenes, %d of them made before\n", rows_.size(), kept_);
+      for (const auto& [verdict, count] : verdicts)
+        std::printf("verdict %s: %d\n", verdict.c_str(), count);
+      if (elsewhere_ > 0)
+        std::printf(
+            "other processes were at work at %d, of which %d are not made yet; run this "
+            "again for the table of all\n",
+            elsewhere_, waiting);
+      std::printf("  %s\n", store_.table().c_str());
+    }
+    const int failed = verdicts.contains("failed") ? verdicts.at("failed") : 0;
+    if (without > 0)
+      throw Error(concat(without, " of ", rows_.size(), " scenes have no result, the first is ",
+                         first->name, ": ", first->outcome->message));
+    if (failed > 0)
+      throw Error(concat(failed, " of ", rows_.size(), " results failed their own checks; see ",
+                         store_.table().string()),
+                  ErrorKind::kDoubted);
+  }
+
+  const std::vector<BatchPiece>& pieces_;
+  const batch::Store& store_;
+  const BatchOptions& options_;
+  TerminalProgress progress_;
+  std::vector<batch::Row> rows_;
+  Clock::time_point told_ = Clock::now();
+  int kept_ = 0, elsewhere_ = 0;
+};
+
+}  // namespace
+
+void run_batch(const std::vector<BatchPiece>& pieces, const batch::Store& store,
+               const BatchOptions& options) {
+  Batch(pieces, store, options).run();
+}
+
+}  // namespace photohull::cli

@@ -1,0 +1,52 @@
+// The pieces of a batch: what is to be reconstructed, one after another or by many processes.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace photohull::batch {
+
+/// One reconstruction.
+struct Piece {
+  std::string name;                ///< its folder below the batch's; unique among them
+  std::vector<std::string> words;  ///< scene, and options in the command line's words
+  std::string frame;               ///< its number as text; empty: it is no frame
+  std::string from;                ///< where it was asked for: "plants.txt line 3", "SCENE"
+};
+
+/// Numbers of frames, inclusive.
+struct FrameRange {
+  int first = 0, last = 0;
+  int digits = 1;  ///< least width; shorter numbers get zeros in front
+
+  std::string text(int frame) const;
+};
+
+/// "0-299" or "7"; as many digits as the first number is written with ("0000-0299"). Nothing: the
+/// text is neither.
+std::optional<FrameRange> parse_frames(const std::string& text);
+
+inline constexpr const char* kFrameToken = "{frame}";
+
+/// The text with the frame's number in place of every kFrameToken.
+std::string with_frame(std::string text, const std::string& frame);
+
+/// A piece for each scene, called as its folder or file is.
+std::vector<Piece> pieces_of_scenes(const std::vector<std::string>& scenes);
+
+/// One piece a line: a scene and options of reconstruct, words with spaces in quotes. Empty lines
+/// and those that begin with # say nothing. `--name NAME` is the piece's name, which is else that
+/// of its scene. Throws Error naming file and line.
+std::vector<Piece> read_piece_list(const std::filesystem::path& file);
+
+/// Each piece once for each frame: named by the frame, and where there are several pieces by
+/// its own name and the frame.
+std::vector<Piece> pieces_of_frames(const std::vector<Piece>& pieces, const FrameRange& frames);
+
+/// Throws UsageError where there is no piece, where two have the same name, or where a name is
+/// none that a folder can have.
+void check_pieces(const std::vector<Piece>& pieces);
+
+}  // namespace photohull::batch

@@ -1,0 +1,74 @@
+#include "batch/store.h"
+
+#include <unistd.h>
+
+#include <system_error>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "core/read_file.h"
+
+namespace photohull::batch {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kOutcome = "outcome.json";
+
+void make(const fs::path& folder) {
+  std::error_code failure;
+  fs::create_directories(folder, failure);
+  if (failure)
+    throw Error(concat("the folder ", folder.string(), " cannot be made (", failure.message(),
+                       "); give another --out"));
+}
+
+}  // namespace
+
+Store::Store(fs::path folder) : folder_(std::move(folder)) { make(folder_ / ".photohull-batch"); }
+
+fs::path Store::kept(const std::string& name) const { return folder_ / ".photohull-batch" / name; }
+
+std::unique_ptr<FolderLock> Store::hold(const std::string& name) const {
+  make(kept(name));
+  return FolderLock::if_free(kept(name));
+}
+
+std::optional<Outcome> Store::outcome(const std::string& name) const {
+  const fs::path file = kept(name) / kOutcome;
+  std::error_code ignored;
+  if (!fs::is_regular_file(file, ignored)) return std::nullopt;
+  try {
+    return outcome_from_json(read_whole_file(file));
+  } catch (const Error&) {  // gone since, or unreadable: it is made again
+    return std::nullopt;
+  }
+}
+
+void Store::set_outcome(const std::string& name, const Outcome& outcome) const {
+  write_atomically(kept(name) / kOutcome, to_json(name, outcome) + "\n");
+}
+
+void Store::write_table(const std::string& contents) const { write_atomically(table(), contents); }
+
+void Store::publish(const std::string& name, const std::string& from, const std::string& to) const {
+  const fs::path source = results(name) / from, target = folder_ / to;
+  const fs::path beside = folder_ / concat(".", to, ".", ::getpid());
+  std::error_code failure;
+  fs::create_hard_link(source, beside, failure);
+  if (failure) fs::copy_file(source, beside, fs::copy_options::overwrite_existing, failure);
+  if (!failure) fs::rename(beside, target, failure);
+  if (!failure) {
+    // Two names of one file stay two names when the one is renamed to the other.
+    std::error_code ignored;
+    fs::remove(beside, ignored);
+    return;
+  }
+  std::error_code ignored;
+  fs::remove(beside, ignored);
+  throw Error(concat(target.string(), " cannot be made of ", source.string(), " (",
+                     failure.message(), ")"));
+}
+
+}  // namespace photohull::batch
