@@ -187,5 +187,23 @@ TEST(StillBackgroundTest, AnObjectThatLooksAlikeFromAllSidesIsKept) {
   for (int y = 54; y < 136; ++y) EXPECT_GE(mask.mask.coverage[at(120, y)], 128) << y;
 }
 
+/// A frame around a patch of itself that looks the same in all photographs.
+bool framed(int, double x, double y) { return std::abs(x - 120) < 45 && y > 45 && y < 140; }
+bool patch(double x, double y) { return std::abs(x - 120) < 25 && y > 62 && y < 105; }
+
+TEST(StillBackgroundTest, BackgroundThatTheObjectEnclosesIsNotBelieved) {
+  Scene scene{framed};
+  const auto changing = scene.colour;
+  scene.colour = [&](int k, double x, double y) {
+    return patch(x, y) ? glm::vec3(0.6f, 0.2f, 0.1f) : changing(k, x, y);
+  };
+  const StillBackground found = background_of(scene);
+  ASSERT_EQ(found.stillness, Stillness::kStill);
+  ASSERT_EQ(found.level[at(120, 80)], StillBackground::kDoubtful);
+  const SheetMask mask = mask_from_sheet(photograph(scene, 2), look(kWidth, kHeight), false, found);
+  for (int y = 66; y < 102; ++y)
+    for (int x = 98; x < 143; x += 4) EXPECT_GE(mask.mask.coverage[at(x, y)], 128) << x << " " << y;
+}
+
 }  // namespace
 }  // namespace photohull
