@@ -31,7 +31,7 @@ glm::vec3 page(double x, double y) {
 struct Scene {
   std::function<bool(int, double, double)> object;  ///< is it seen there?
   std::function<glm::vec3(int, double, double)> colour = [](int k, double x, double y) {
-    return glm::vec3(0.5 + 0.3 * std::sin(0.6 * x + 2.1 * k), 0.3,
+    return glm::vec3(0.5 + 0.3 * std::sin(0.6 * x + 1.7 * k), 0.3,
                      0.2 + 0.1 * std::cos(0.5 * y + k));
   };
   std::function<glm::vec3(int, double, double)> behind = [](int, double x, double y) {
@@ -184,6 +184,30 @@ TEST(StillBackgroundTest, AnObjectThatLooksAlikeFromAllSidesIsKept) {
   ASSERT_EQ(found.stillness, Stillness::kStill);
   EXPECT_EQ(found.level[at(120, 80)], StillBackground::kDoubtful);
   const SheetMask mask = mask_from_sheet(photograph(scene, 2), look(kWidth, kHeight), false, found);
+  for (int y = 54; y < 136; ++y) EXPECT_GE(mask.mask.coverage[at(120, y)], 128) << y;
+}
+
+/// A block that most photographs show before the same place.
+bool mostly_there(int k, double x, double y) {
+  return k % 3 != 0 && std::abs(x - 120) < 40 && y > 50 && y < 140;
+}
+
+TEST(StillBackgroundTest, IsFoundWhereAThirdOfThePhotographsShowIt) {
+  const Scene scene{mostly_there};
+  const StillBackground found = background_of(scene);
+  EXPECT_EQ(found.level[at(120, 80)], StillBackground::kSure);
+  EXPECT_LT(share_of_level(found, StillBackground::kUnknown), 0.03);
+  EXPECT_LT(light_error(found), kNoise);
+  const SheetMask mask = mask_from_sheet(photograph(scene, 0), look(kWidth, kHeight), false, found);
+  EXPECT_LT(mask.undecided, 0.05);
+}
+
+TEST(StillBackgroundTest, APlainObjectThatMostPhotographsShowIsNotTakenForIt) {
+  Scene scene{mostly_there};
+  scene.colour = [](int, double, double) { return glm::vec3(0.6f, 0.2f, 0.1f); };
+  const StillBackground found = background_of(scene);
+  EXPECT_EQ(found.level[at(120, 80)], StillBackground::kUnknown);
+  const SheetMask mask = mask_from_sheet(photograph(scene, 1), look(kWidth, kHeight), false, found);
   for (int y = 54; y < 136; ++y) EXPECT_GE(mask.mask.coverage[at(120, y)], 128) << y;
 }
 
