@@ -24,7 +24,8 @@ constexpr float kMostDeviation = 0.05f, kAgrees = 0.015f;  // roots of light
 constexpr float kDiffers = 0.03f;
 constexpr int kWindow = 2, kFewestInWindow = 9;  // pixels around a place; in it, beside the page
 constexpr double kAgreeing = 0.5;  // of the window: an outline beside its middle leaves 3/5
-constexpr std::size_t kOther = 3;  // photographs alike, from which on they may be the background's
+constexpr std::ptrdiff_t kOther =
+    3;  // photographs alike, from which on they may be the background's
 constexpr float kMaxCode = 65535;
 constexpr std::uint8_t kPage = 1, kBox = 2;
 
@@ -276,13 +277,16 @@ class StillSearch {
       level_.at<std::uint8_t>(y, x) = StillBackground::kDoubtful;
   }
 
-  /// Are there more that are alike, and like none of those that are in?
+  /// Are there more that are alike, and not like most of those that are in: three, or half as many?
   static bool another_group(const std::vector<std::vector<std::size_t>>& alike,
                             const std::vector<bool>& in) {
+    const auto is_in = [&](std::size_t j) { return in[j]; };
+    const auto size = std::ranges::count(in, true);
     for (std::size_t i = 0; i < alike.size(); ++i) {
-      const auto outside = [&](std::size_t j) { return !in[j]; };
-      if (!in[i] && std::ranges::all_of(alike[i], outside) && alike[i].size() + 1 >= kOther)
-        return true;
+      const auto inside = std::ranges::count_if(alike[i], is_in);
+      const auto outside = std::ptrdiff_t(alike[i].size()) - inside;
+      if (in[i] || 2 * inside >= size) continue;
+      if (outside > 0 && (outside + 1 >= kOther || 2 * (outside + 1) >= size)) return true;
     }
     return false;
   }

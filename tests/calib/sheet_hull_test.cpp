@@ -57,14 +57,15 @@ class SheetHull : public testing::Test {
     return mask;
   }
 
-  /// Is the ball all in the shadow, and nothing that is half as large again?
+  /// Is the ball all in the shadow, and nothing beside one that is twice as large? The hull of
+  /// views from one height alone is pointed above and below, and its cells are rather too many.
   void expect_ball(const Mask& shadow, const Camera& camera) const {
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x) {
         const bool in = shadow.coverage[std::size_t(y) * kWidth + std::size_t(x)] != 0;
         if (meets(camera, x, y)) {
           EXPECT_TRUE(in) << x << " " << y;
-        } else if (!meets(camera, x, y, 1.5)) {
+        } else if (!meets(camera, x, y, 2)) {
           EXPECT_FALSE(in) << x << " " << y;
         }
       }
