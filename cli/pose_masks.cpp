@@ -1,7 +1,5 @@
 #include "pose_masks.h"
 
-#include <algorithm>
-#include <cmath>
 #include <set>
 #include <string>
 
