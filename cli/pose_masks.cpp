@@ -1,7 +1,5 @@
 #include "pose_masks.h"
 
-#include <algorithm>
-#include <cmath>
 #include <set>
 #include <string>
 
@@ -16,14 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr double kTexelsPerMm = 8;
-
-/// Deviation of the Gaussian that makes a pixel's box as wide as the edges that were measured: they
-/// rise from a fifth to four fifths over 1.68 deviations.
-double blur_of(double edge_width) {
-  constexpr double kBox = 1 / 12.0;  // variance of a pixel's area
-  const double sigma = edge_width / 1.68;
-  return std::sqrt(std::max(0.0, sigma * sigma - kBox));
-}
 
 /// Called as the photographs, or with a number before it where two would be called alike.
 std::vector<std::string> mask_names(const std::vector<fs::path>& images) {
@@ -53,14 +43,14 @@ std::vector<fs::path> write_sheet_masks(const fs::path& folder, const std::vecto
     progress.check_cancelled();
     progress.update(double(i) / double(images.size()));
     if (!result.photos[i].posed) continue;
-    const SheetLook look = look_at_sheet(result, i, sheet, picture, blur_of(edge_widths[i]));
-    const SheetMask found =
-        mask_from_sheet(io::read_image(images[i]), look, false, turntable.behind(i));
+    const SheetLook look = look_at_sheet(result, i, sheet, picture, blur_of_edges(edge_widths[i]));
+    SheetMask found = mask_from_sheet(io::read_image(images[i]), look, false, turntable.behind(i));
     undecided += found.undecided > kMuch;
     if (found.mask.empty()) {
       ++missing;
       continue;
     }
+    turntable.keep_to_shadow(i, found.mask);
     files[i] = folder / names[i];
     io::write_png(files[i], found.mask.width, found.mask.height, 1, found.mask.coverage);
   }

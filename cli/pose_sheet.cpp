@@ -98,9 +98,11 @@ SheetPose pose_on_sheet(const PoseJob& job, Progress& progress) {
   SheetPose pose{pose_photographs(read.photos, sheet, job.sheet), {}, ""};
   for (std::size_t i = 0; i < job.images.size(); ++i)
     if (!read.unreadable[i].empty()) pose.result.photos[i].reason = read.unreadable[i];
+  std::vector<double> widths;
+  for (const PosePhoto& photo : read.photos) widths.push_back(photo.view.edge_width);
   if (sheet.is_flat()) {
     progress.stage("background", 0.15);
-    pose.turntable = look_for_turntable(job, sheet, pose.result, progress);
+    pose.turntable = look_for_turntable(job, sheet, pose.result, widths, progress);
   } else {
     pose.turntable.motion.reason = "a strip does not tell where the background behind it begins";
   }
@@ -108,8 +110,6 @@ SheetPose pose_on_sheet(const PoseJob& job, Progress& progress) {
   std::vector<fs::path> masks;
   if (job.make_masks && sheet.is_flat()) {
     progress.stage("masks", 0.4);
-    std::vector<double> widths;
-    for (const PosePhoto& photo : read.photos) widths.push_back(photo.view.edge_width);
     masks = write_sheet_masks(job.out / "masks", job.images, widths, sheet, pose.turntable,
                               pose.result, progress);
   }

@@ -1,24 +1,128 @@
 #include "pose_turntable.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
+#include "calib/sheet_hull.h"
 #include "calib/sheet_look.h"
+#include "core/image_scale.h"
+#include "core/scaled_size.h"
 #include "io/image_file.h"
+#include "masks/sheet_mask.h"
 
 namespace photohull::cli {
 namespace {
 
-constexpr double kTexelsPerMm = 2;  // only the page's outline is asked for
+constexpr double kTexelsPerMm = 4;
+constexpr double kSmall = 4e5;  // pixels of the pictures whose masks tell where the object can be
+constexpr int kRounds = 2;
 
-/// The same with pictures of that many pixels.
-PosedCamera resized(PosedCamera camera, int width, int height) {
-  Intrinsics& k = camera.intrinsics;
-  const double x = double(width) / k.width, y = double(height) / k.height;
-  k.fx *= x, k.fy *= y, k.skew *= x;
-  k.cx = (k.cx + 0.5) * x - 0.5, k.cy = (k.cy + 0.5) * y - 0.5;
-  k.width = width, k.height = height;
-  return camera;
+/// A mask's value where a picture of `width` x `height` pixels has one.
+std::uint8_t value_at(const Mask& mask, int x, int y, int width, int height) {
+  const auto u = std::size_t(x) * std::size_t(mask.width) / std::size_t(width);
+  const auto v = std::size_t(y) * std::size_t(mask.height) / std::size_t(height);
+  return mask.coverage[v * std::size_t(mask.width) + u];
 }
+
+/// Leaves out of `values` what the shadow leaves out, where there is one.
+void keep_to(const Mask& shadow, int width, int height, std::vector<std::uint8_t>& values) {
+  if (shadow.empty()) return;
+  std::size_t i = 0;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x, ++i)
+      if (!value_at(shadow, x, y, width, height)) values[i] = 0;
+}
+
+/// Backgrounds and shadows, in turn.
+class TurntableSearch {
+ public:
+  TurntableSearch(const PoseJob& job, const Sheet& sheet, const PoseResult& result,
+                  const std::vector<double>& edge_widths, Progress& progress)
+      : job_(job),
+        sheet_(sheet),
+        result_(result),
+        scaled_(result),
+        edge_widths_(edge_widths),
+        progress_(progress),
+        picture_(sheet_picture(sheet, kTexelsPerMm)) {}
+
+  TurntableFinding run() {
+    out_.motion = find_turntable(result_);
+    if (!out_.motion.found) return std::move(out_);
+    out_.shadows.resize(job_.images.size());
+    double scale = 1;
+    for (const PosedCamera& c : result_.cameras)
+      scale =
+          std::min(scale, std::sqrt(kSmall / (double(c.intrinsics.width) * c.intrinsics.height)));
+    steps_ = kRounds + 2;
+    find_backgrounds(scale);
+    if (!job_.make_masks || !out_.found()) return std::move(out_);
+    for (int round = 0; round < kRounds; ++round) {
+      out_.shadows = shadows_of_hull(result_, small_masks(scale));
+      find_backgrounds(scale);
+    }
+    if (scale < 1) find_backgrounds(1);
+    return std::move(out_);
+  }
+
+ private:
+  SheetLook look_at(std::size_t photo, int width, int height, double blur) {
+    const auto c = std::size_t(result_.photos[photo].camera);
+    scaled_.cameras[c].intrinsics = scaled_to(result_.cameras[c].intrinsics, width, height);
+    return look_at_sheet(scaled_, photo, sheet_, picture_, blur);
+  }
+
+  /// Of all stations, from pictures of that scale and by the shadows there are.
+  void find_backgrounds(double scale) {
+    std::vector<StillBackground> found;
+    for (const TurntableStation& station : out_.motion.stations) {
+      const Intrinsics& k = result_.cameras[std::size_t(station.camera)].intrinsics;
+      StillPhotographs photos;
+      photos.count = station.photos.size();
+      photos.width = scaled_length(k.width, scale), photos.height = scaled_length(k.height, scale);
+      photos.image = [&](std::size_t i) {
+        progress_.check_cancelled();
+        return io::read_image(job_.images[station.photos[i]], scale);
+      };
+      photos.look = [&](std::size_t i, int width, int height) {
+        SheetLook look = look_at(station.photos[i], width, height, 0);
+        keep_to(out_.shadows[station.photos[i]], width, height, look.possible);
+        return look;
+      };
+      photos.progress = [&](double share) {
+        const double part = (double(found.size()) + share) / double(out_.motion.stations.size());
+        progress_.update((done_ + part) / steps_);
+      };
+      found.push_back(find_still_background(photos, job_.make_masks));
+    }
+    out_.stations = std::move(found);
+    ++done_;
+  }
+
+  std::vector<Mask> small_masks(double scale) {
+    std::vector<Mask> masks(job_.images.size());
+    for (std::size_t i = 0; i < masks.size(); ++i) {
+      progress_.check_cancelled();
+      if (out_.station_of(i) < 0) continue;
+      const ColourImage image = io::read_image(job_.images[i], scale);
+      const SheetLook look =
+          look_at(i, image.width, image.height, blur_of_edges(scale * edge_widths_[i]));
+      masks[i] = mask_from_sheet(image, look, false, out_.behind(i)).mask;
+    }
+    return masks;
+  }
+
+  const PoseJob& job_;
+  const Sheet& sheet_;
+  const PoseResult& result_;
+  PoseResult scaled_;  ///< whose cameras have the pictures' sizes
+  const std::vector<double>& edge_widths_;
+  Progress& progress_;
+  SheetPicture picture_;
+  TurntableFinding out_;
+  double done_ = 0, steps_ = 1;
+};
 
 }  // namespace
 
@@ -64,32 +168,14 @@ const StillBackground& TurntableFinding::behind(std::size_t photo) const {
   return station < 0 ? none : stations[std::size_t(station)];
 }
 
+void TurntableFinding::keep_to_shadow(std::size_t photo, Mask& mask) const {
+  if (!shadows.empty()) keep_to(shadows[photo], mask.width, mask.height, mask.coverage);
+}
+
 TurntableFinding look_for_turntable(const PoseJob& job, const Sheet& sheet,
-                                    const PoseResult& result, Progress& progress) {
-  TurntableFinding out;
-  out.motion = find_turntable(result);
-  if (!out.motion.found) return out;
-  const SheetPicture picture = sheet_picture(sheet, kTexelsPerMm);
-  PoseResult resized_result = result;
-  for (const TurntableStation& station : out.motion.stations) {
-    const PosedCamera& camera = result.cameras[std::size_t(station.camera)];
-    StillPhotographs photos;
-    photos.count = station.photos.size();
-    photos.width = camera.intrinsics.width, photos.height = camera.intrinsics.height;
-    photos.image = [&](std::size_t k) {
-      progress.check_cancelled();
-      return io::read_image(job.images[station.photos[k]]);
-    };
-    photos.look = [&](std::size_t k, int width, int height) {
-      resized_result.cameras[std::size_t(station.camera)] = resized(camera, width, height);
-      return look_at_sheet(resized_result, station.photos[k], sheet, picture, 0);
-    };
-    photos.progress = [&](double share) {
-      progress.update((double(out.stations.size()) + share) / double(out.motion.stations.size()));
-    };
-    out.stations.push_back(find_still_background(photos, job.make_masks));
-  }
-  return out;
+                                    const PoseResult& result,
+                                    const std::vector<double>& edge_widths, Progress& progress) {
+  return TurntableSearch(job, sheet, result, edge_widths, progress).run();
 }
 
 }  // namespace photohull::cli

@@ -18,6 +18,9 @@ const char* to_string(Stillness stillness);
 struct TurntableFinding {
   TurntableMotion motion;
   std::vector<StillBackground> stations;  ///< of each station of the motion, where that was found
+  /// Of each photograph of a station with a still background: where it can show the object, by the
+  /// masks of all of them (shadows_of_hull); scaled copies of the photographs' sizes.
+  std::vector<Mask> shadows;
 
   bool found() const { return photographs() > 0; }
   std::string reason() const;  ///< why it was not found, one sentence
@@ -26,11 +29,16 @@ struct TurntableFinding {
   int station_of(std::size_t photo) const;
   /// The still background of the photograph's station; empty where there is none.
   const StillBackground& behind(std::size_t photo) const;
+  /// Takes everything out of the photograph's mask that its shadow leaves out.
+  void keep_to_shadow(std::size_t photo, Mask& mask) const;
 };
 
-/// Looks at the photographs again where their cameras fit a turntable. The backgrounds' light is
-/// found where the job makes masks.
+/// Looks at the photographs again where their cameras fit a turntable. Where the job makes masks,
+/// the backgrounds' light is found, first by the photographs in which the box does not cover it,
+/// then by those in which the shadow of the object's hull does not, from masks of smaller pictures.
+/// `edge_widths`: pixels, of the tags in each photograph.
 TurntableFinding look_for_turntable(const PoseJob& job, const Sheet& sheet,
-                                    const PoseResult& result, Progress& progress);
+                                    const PoseResult& result,
+                                    const std::vector<double>& edge_widths, Progress& progress);
 
 }  // namespace photohull::cli

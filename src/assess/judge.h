@@ -62,6 +62,13 @@ class Judge {
   void other_photographs();
   void cameras();
   void surface();
+  /// Do views often show something else than others where the surface is, whatever their colours?
+  bool views_disagree() const;
+  /// Nearly all texture is found again, so that confidence is low because colours differ, and the
+  /// surface is right. What is found again tells nothing of lumps that show the background.
+  bool only_colours_differ() const;
+  /// The end of a reason: masks may be the cause, where views disagree.
+  std::string lumps() const;
   /// Why photographs tell too little of the surface.
   std::string why_untold() const;
   /// Silhouettes bound a surface from outside; where photographs put it elsewhere, it lies within.

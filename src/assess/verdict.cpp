@@ -32,6 +32,10 @@ constexpr double kHullOff = 0.18;      // of a hull's matches that are far off
 constexpr double kHullUnconfirmed = 0.36;  // of a hull's textured surface
 constexpr double kHullPatches = 0.19;      // of a hull's surface, in patches where most is so
 constexpr double kEnoughMatched = 0.7;     // of the textured surface
+// Of the places on the surface, where other views show something else. Good scenes have up to 0.06
+// at 96 voxels and more, models with lumps where masks are too large 0.12 and more (decision 16).
+constexpr double kDisagreeing = 0.08;
+constexpr int kFewestTold = 30;            // places, to go by that share
 constexpr double kPlainConfidence = 0.93;  // mean, where there is less texture than that
 constexpr double kOutlying = 3;            // times what is usual: a view's residual
 constexpr int kFewestMatches = 5;          // of a view, to accuse it
@@ -133,6 +137,20 @@ void Judge::cameras() {
   weigh(off, kMoved, moved);
 }
 
+bool Judge::views_disagree() const {
+  return s_.compared.told() >= kFewestTold &&
+         s_.compared.share_told(Place::kDisagreeing) > kDisagreeing;
+}
+
+bool Judge::only_colours_differ() const {
+  return s_.match.matched >= kEnoughMatched && !views_disagree();
+}
+
+std::string Judge::lumps() const {
+  return views_disagree() ? "; lumps where masks are too large do this, too: look at the masks"
+                          : "";
+}
+
 void Judge::surface() {
   if (s_.match.textured < kLeastTexture) {
     // Silhouettes alone may still show all there is. They do not when the few matches there are
@@ -148,16 +166,15 @@ void Judge::surface() {
         concat("on ", percent(unmatched),
                " of the surface there is texture that no second view shows: cameras, focus, "
                "gloss or moving parts may be the cause"));
-  // Where nearly all is found again, confidence is low because colours differ.
-  const double doubted =
-      s_.match.matched < kEnoughMatched ? std::max(0.0, s_.unsure - s_.unseen) : 0;
+  const double doubted = only_colours_differ() ? 0 : std::max(0.0, s_.unsure - s_.unseen);
   if (unmatched <= kUnmatched.doubtful && (doubted == 0 || s_.unsure <= kUnsure.doubtful))
     weigh(unmatched + kUnsureWeight * doubted, kUnconfirmed,
           concat("on ", percent(unmatched + doubted),
                  " of the surface the photographs do not confirm it, for no second view shows "
                  "its texture or confidence is below one half: folds and hollows that few views "
                  "look into do this, noise and blur too; add views that look in, or sharper "
-                 "ones"));
+                 "ones",
+                 lumps()));
   weigh(s_.match.beyond_far, kFarOff,
         concat("two views put ", percent(s_.match.beyond_far),
                " of what they both show more than 0.5 % of the diagonal off the surface: ",
@@ -228,12 +245,12 @@ void Judge::coverage() {
   weigh(s_.unseen, kUnseen,
         concat("no view sees ", percent(s_.unseen), " of the surface: add views there, or use ",
                option_word("unseen", "open")));
-  if (s_.match.matched < kEnoughMatched)  // else colours differ, and the surface is right
+  if (!only_colours_differ())
     weigh(s_.unsure, kUnsure,
           concat("confidence is below one half on ", percent(s_.unsure),
                  " of the surface: other photographs do not show the same there, or it is plain; "
                  "look at them, and at ",
-                 command_word("info", "cameras")));
+                 command_word("info", "cameras"), lumps()));
   weigh(cut_by_box() ? s_.at_box : 0, kAtBox,
         concat(percent(s_.at_box),
                " of the surface lies on the box's sides: the box cuts the object off (make ",

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "calib/seen_height.h"
 #include "calib/sheet_problem.h"
 #include "core/error.h"
 #include "core/median.h"
@@ -167,7 +168,22 @@ class Poser {
   glm::dvec3 box_high() const {
     const glm::dvec2 side = sheet_.free_max - sheet_.free_min;
     const double height = o_.height > 0 ? o_.height / print() : std::max(side.x, side.y);
-    return {sheet_.free_max, sheet_.strip + height};
+    const glm::dvec3 high(sheet_.free_max, sheet_.strip + height);
+    if (o_.height > 0 || !problem_.flat) return high;
+    return lowered_to_seen({box_low(), high}, cameras_used()).max;
+  }
+  /// Of each photograph that counts, millimetres.
+  std::vector<Camera> cameras_used() const {
+    std::vector<Camera> cameras;
+    Distortion distortion;
+    for (const SheetPhoto& photo : problem_.photos) {
+      if (!photo.used) continue;
+      const SheetCamera& from = problem_.cameras[photo.camera];
+      Camera& to = cameras.emplace_back();
+      set_lens(from.lens, problem_.model, from.size.x, from.size.y, to.intrinsics, distortion);
+      to.cam_from_world = pose_of(photo.pose);
+    }
+    return cameras;
   }
   /// How much larger than described the sheet is printed.
   double print() const { return result_.scale * o_.unit; }
@@ -305,7 +321,7 @@ void describe(Described& to, PoseOptions& o) {
             "length of the printed bar as a ruler measures it")
       .zero = "as the board says";
   to.number("height", &o.height, from_to(0, kLargest), "mm", "height of the box above the sheet")
-      .zero = "the longer side of the free space";
+      .zero = "the longer side of the free space, but no more than photographs show";
   to.number("margin", &o.margin, from_to(0, kLargest), "mm",
             "height of the box's lower side above the sheet");
   to.number("unit", &o.unit, above(0, kLargest), "mm", "unit of the scene's world").expects =

@@ -20,7 +20,8 @@ struct PosePhoto {
 struct PoseOptions {
   LensModel lens = LensModel::kBrown;
   double bar = 0;     ///< of the printed bar as measured, mm; 0: as the sheet says
-  double height = 0;  ///< of the box above the sheet, mm; 0: the longer side of the free space
+  double height = 0;  ///< of the box above the sheet, mm; 0: the longer side of the free space, but
+                      ///< no more than photographs show (lowered_to_seen)
   double margin = 1;  ///< from the sheet up to the box, mm
   double unit = 1;    ///< of the world, mm
   bool flat = false;  ///< do not find out whether the sheet is bent

@@ -70,6 +70,12 @@ class Sight {
 
 }  // namespace
 
+double blur_of_edges(double edge_width) {
+  constexpr double kBox = 1 / 12.0;  // variance of a pixel's area
+  const double sigma = edge_width / 1.68;
+  return std::sqrt(std::max(0.0, sigma * sigma - kBox));
+}
+
 SheetLook look_at_sheet(const PoseResult& result, std::size_t photo, const Sheet& sheet,
                         const SheetPicture& picture, double blur) {
   PHOTOHULL_CHECK(result.photos[photo].posed);

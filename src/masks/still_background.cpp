@@ -22,6 +22,10 @@ constexpr double kFewestEdges = 5e-4;  // of the pixels
 constexpr double kStillShare = 0.6;    // of the edges
 constexpr float kMostDeviation = 0.05f, kAgrees = 0.015f;  // roots of light
 constexpr float kDiffers = 0.03f;
+constexpr int kWindow = 2, kFewestInWindow = 9;  // pixels around a place; in it, beside the page
+constexpr double kAgreeing = 0.5;  // of the window: an outline beside its middle leaves 3/5
+constexpr std::ptrdiff_t kOther =
+    3;  // photographs alike, from which on they may be the background's
 constexpr float kMaxCode = 65535;
 constexpr std::uint8_t kPage = 1, kBox = 2;
 
@@ -180,17 +184,20 @@ class StillSearch {
   /// Light of a pixel in the photographs that tell it.
   struct Pixel {
     std::vector<cv::Vec3f> light;
-    bool free = false;  ///< the box does not cover it in them
+    std::vector<const Sample*> samples;  ///< of each
+    bool free = false;                   ///< the box does not cover it in them
   };
 
   void take(int y, int x, Pixel& pixel) const {
-    pixel.light.clear();
-    pixel.free = false;
+    pixel.light.clear(), pixel.samples.clear();
     int free = 0;
     for (const Sample& s : samples_) free += s.covered.at<std::uint8_t>(y, x) == 0;
     pixel.free = free >= kFewest;
     for (const Sample& s : samples_)
-      if (told(s, y, x, pixel.free)) pixel.light.push_back(root_at(s.light, y, x));
+      if (told(s, y, x, pixel.free)) {
+        pixel.light.push_back(root_at(s.light, y, x));
+        pixel.samples.push_back(&s);
+      }
   }
 
   static bool told(const Sample& sample, int y, int x, bool free) {
@@ -206,7 +213,7 @@ class StillSearch {
       Pixel pixel;
       for (int x = 0; x < size_.width; ++x) {
         take(y, x, pixel);
-        if (int(pixel.light.size()) >= kFewest) set_median(pixel, y, x);
+        if (pixel.free) set_median(pixel, y, x);
       }
     });
     std::vector<double> usual;
@@ -216,8 +223,15 @@ class StillSearch {
     noise_ = std::max(0.003f, float(median(std::move(usual))));
     tbb::parallel_for(0, size_.height, [&](int y) {
       Pixel pixel;
-      for (int x = 0; x < size_.width; ++x)
-        if (std::isfinite(deviation_.at<float>(y, x))) set_level(pixel, y, x);
+      for (int x = 0; x < size_.width; ++x) {
+        if (free_.at<std::uint8_t>(y, x)) {
+          if (deviation_.at<float>(y, x) < kMostDeviation)
+            level_.at<std::uint8_t>(y, x) = StillBackground::kSure;
+          continue;
+        }
+        take(y, x, pixel);
+        if (int(pixel.light.size()) >= kFewest) find_alike(pixel, y, x);
+      }
     });
   }
 
@@ -233,26 +247,63 @@ class StillSearch {
     free_.at<std::uint8_t>(y, x) = pixel.free ? 255 : 0;
   }
 
-  /// Light that stays the same in photographs in which the object may be there, too, is the
-  /// background's where some of them show something else, which is the object.
-  void set_level(Pixel& pixel, int y, int x) {
-    float& deviation = deviation_.at<float>(y, x);
-    std::uint8_t& level = level_.at<std::uint8_t>(y, x);
-    if (free_.at<std::uint8_t>(y, x)) {
-      if (deviation < kMostDeviation) level = StillBackground::kSure;
-      return;
-    }
-    take(y, x, pixel);
-    std::vector<float> agreeing;
+  /// Light of a pixel that the object may cover in all photographs: what turns shows something else
+  /// in each of them, so that those whose surroundings of the pixel are alike show the background.
+  /// Nothing is known where there are several such groups, for one of them may be a plain object,
+  /// nor of a group of less than half without others that differ.
+  void find_alike(Pixel& pixel, int y, int x) {
+    const std::size_t n = pixel.light.size();
+    std::vector<std::vector<std::size_t>> alike(n);
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = i + 1; j < n; ++j)
+        if (windows_agree(pixel, i, j, y, x)) alike[i].push_back(j), alike[j].push_back(i);
+    const std::size_t first =
+        std::size_t(std::ranges::max_element(alike, {}, [](const auto& a) { return a.size(); }) -
+                    alike.begin());
+    std::vector<bool> in(n, false);
+    in[first] = true;
+    for (const std::size_t i : alike[first]) in[i] = true;
+    if (int(alike[first].size()) + 1 < kFewest || another_group(alike, in)) return;
+    Pixel group;
+    for (std::size_t i = 0; i < n; ++i)
+      if (in[i]) group.light.push_back(pixel.light[i]);
+    set_median(group, y, x);
     std::size_t others = 0;
-    for (const cv::Vec3f& light : pixel.light) {
-      const float off = difference(light, median_.at<cv::Vec3f>(y, x));
-      if (off < std::max(kAgrees, 4 * noise_)) agreeing.push_back(off);
-      others += off > std::max(kDiffers, 7 * noise_);
+    for (const cv::Vec3f& light : pixel.light)
+      others += difference(light, median_.at<cv::Vec3f>(y, x)) > std::max(kDiffers, 7 * noise_);
+    if (others >= 2)
+      level_.at<std::uint8_t>(y, x) = StillBackground::kSure;
+    else if (2 * group.light.size() > n)
+      level_.at<std::uint8_t>(y, x) = StillBackground::kDoubtful;
+  }
+
+  /// Are there more that are alike, and not like most of those that are in: three, or half as many?
+  static bool another_group(const std::vector<std::vector<std::size_t>>& alike,
+                            const std::vector<bool>& in) {
+    const auto is_in = [&](std::size_t j) { return in[j]; };
+    const auto size = std::ranges::count(in, true);
+    for (std::size_t i = 0; i < alike.size(); ++i) {
+      const auto inside = std::ranges::count_if(alike[i], is_in);
+      const auto outside = std::ptrdiff_t(alike[i].size()) - inside;
+      if (in[i] || 2 * inside >= size) continue;
+      if (outside > 0 && (outside + 1 >= kOther || 2 * (outside + 1) >= size)) return true;
     }
-    if (2 * agreeing.size() <= pixel.light.size()) return;
-    deviation = 1.483f * middle_of(agreeing);
-    level = others >= 2 ? StillBackground::kSure : StillBackground::kDoubtful;
+    return false;
+  }
+
+  /// Do two photographs show the same around the pixel, beside the page?
+  bool windows_agree(const Pixel& pixel, std::size_t i, std::size_t j, int y, int x) const {
+    const float limit = std::max(kAgrees, 4 * noise_);
+    if (difference(pixel.light[i], pixel.light[j]) > limit) return false;
+    const Sample &a = *pixel.samples[i], &b = *pixel.samples[j];
+    int count = 0, agreeing = 0;
+    for (int v = std::max(0, y - kWindow); v <= std::min(size_.height - 1, y + kWindow); ++v)
+      for (int u = std::max(0, x - kWindow); u <= std::min(size_.width - 1, x + kWindow); ++u) {
+        if ((a.covered.at<std::uint8_t>(v, u) | b.covered.at<std::uint8_t>(v, u)) & kPage) continue;
+        ++count;
+        agreeing += difference(root_at(a.light, v, u), root_at(b.light, v, u)) < limit;
+      }
+    return count >= kFewestInWindow && agreeing > kAgreeing * count;
   }
 
   /// Full-sized light: the mean of the photographs that have what the median has.

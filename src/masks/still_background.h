@@ -53,7 +53,8 @@ struct StillBackground {
 /// photographs, each with the one half the series later. With `model`, where they do: the median of
 /// each pixel over the photographs in which it shows no page, by which the others are told, and
 /// their mean [Piccardi04]. Photographs in which the object's box does not cover the pixel go
-/// first; where there are fewer than four, more than half of all must agree. The medians are made
+/// first; where there are fewer than four, the largest group of four or more tells that show the
+/// same around the pixel, if no other group is half as large or has three. The medians are made
 /// of smaller pictures where the photographs have more than `held` pixels together, so that memory
 /// does not grow with their number: 7 bytes for each pixel held, and 40 for each of one photograph.
 /// Exposures may differ. Needs at least two photographs; throws what reading them

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "verdict_signals.h"
 
 namespace photohull::assess {
@@ -97,6 +99,32 @@ TEST(Verdict, SeveralSignsAtOnceAreDoubtful) {
   EXPECT_EQ(with([](Signals& x) { x.match.matched = 0.75; }).level, Level::kGood);
   s.match.matched = 0.72;  // colours alone differ
   EXPECT_EQ(judged(s).level, Level::kGood);
+}
+
+// Lumps where masks are too large have low confidence, while the rest's texture is found again.
+TEST(Verdict, LowConfidenceCountsWhereViewsShowSomethingElse) {
+  const auto lumps = [](double disagreeing) {
+    return with([&](Signals& s) {
+      s.unsure = 0.52, s.unseen = 0.26, s.match.matched = 0.73, s.match.textured = 0.6;
+      s.compared.counts[std::size_t(Place::kDisagreeing)] = int(std::lround(400 * disagreeing));
+      s.compared.counts[std::size_t(Place::kExplained)] = int(std::lround(400 * (1 - disagreeing)));
+    });
+  };
+  expect(lumps(0.12), Level::kDoubtful, "lumps where masks are too large do this, too");
+  EXPECT_EQ(lumps(0.06).level, Level::kGood);
+  const Verdict weaker = with([](Signals& s) {
+    s.unsure = 0.28, s.unseen = 0.02, s.match.matched = 0.73, s.match.textured = 0.6;
+    s.compared.counts[std::size_t(Place::kDisagreeing)] = 12;
+    s.compared.counts[std::size_t(Place::kExplained)] = 88;
+  });
+  expect(weaker, Level::kDoubtful, "of the surface the photographs do not confirm it");
+  // A handful of places tells nothing.
+  EXPECT_EQ(with([](Signals& s) {
+              s.unsure = 0.52;
+              s.compared.counts[std::size_t(Place::kDisagreeing)] = 5;
+              s.compared.counts[std::size_t(Place::kExplained)] = 15;
+            }).level,
+            Level::kGood);
 }
 
 TEST(Verdict, StemsThatMasksOrVoxelsDoNotShow) {

@@ -1,4 +1,5 @@
 // board, synthesize with a sheet, pose and reconstruct, from the command line.
+#include <OpenImageIO/imagebuf.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -132,6 +133,32 @@ TEST_F(PoseCommand, AGapIsToldWithItsPicture) {
   EXPECT_THAT(posed.err, HasSubstr("from one side: as seen from above they span 90 degrees"));
   EXPECT_THAT(posed.err, HasSubstr("; " + path("scene/coverage.png") + " shows where\n"));
   EXPECT_TRUE(fs::exists(folder_ / "scene/coverage.png"));
+}
+
+TEST_F(PoseCommand, AFocalLengthThatNoPhotographTakesIsTold) {
+  photograph_table();
+  fs::create_directories(folder_ / "phone");
+  for (const std::string& name : listing(folder_ / "table/images")) {
+    OIIO::ImageBuf photo(path("table/images/" + name));
+    ASSERT_TRUE(photo.read(0, 0, true, OIIO::TypeDesc::UINT8));
+    photo.specmod().attribute("Exif:FocalLengthIn35mmFilm", 40);
+    ASSERT_TRUE(photo.write(path("phone/" + fs::path(name).stem().string() + ".jpg")));
+  }
+  const auto pose = [&] {
+    return run_photohull({"pose", path("phone"), "--board", path("board.json"), "--out",
+                          path("scene"), "--no-masks", "--focal", "900"});
+  };
+  const std::string warning =
+      "--focal is not used: the photographs state their focal lengths, or cannot be read";
+  const Finished all = pose();
+  ASSERT_EQ(all.code, 0) << all.err;
+  EXPECT_THAT(all.err, HasSubstr(warning));
+  EXPECT_THAT(read("scene/pose.json")["warnings"].dump(), HasSubstr(warning));
+  // One without is enough.
+  fs::copy(folder_ / "table/images/0000.png", folder_ / "phone");
+  const Finished but_one = pose();
+  ASSERT_EQ(but_one.code, 0) << but_one.err;
+  EXPECT_THAT(but_one.err, testing::Not(HasSubstr("is not used")));
 }
 
 TEST_F(PoseCommand, SameInputGivesTheSameBytes) {

@@ -187,5 +187,51 @@ TEST(StillBackgroundTest, AnObjectThatLooksAlikeFromAllSidesIsKept) {
   for (int y = 54; y < 136; ++y) EXPECT_GE(mask.mask.coverage[at(120, y)], 128) << y;
 }
 
+/// A block that most photographs show before the same place.
+bool mostly_there(int k, double x, double y) {
+  return k % 3 != 0 && std::abs(x - 120) < 40 && y > 50 && y < 140;
+}
+
+TEST(StillBackgroundTest, IsFoundWhereAThirdOfThePhotographsShowIt) {
+  Scene scene{mostly_there};
+  scene.colour = [](int k, double x, double y) {  // never twice the same
+    return glm::vec3(0.5 + 0.3 * std::sin(0.6 * x + 1.7 * k), 0.3,
+                     0.2 + 0.1 * std::cos(0.5 * y + k));
+  };
+  const StillBackground found = background_of(scene);
+  EXPECT_EQ(found.level[at(120, 80)], StillBackground::kSure);
+  EXPECT_LT(share_of_level(found, StillBackground::kUnknown), 0.03);
+  EXPECT_LT(light_error(found), kNoise);
+  const SheetMask mask = mask_from_sheet(photograph(scene, 0), look(kWidth, kHeight), false, found);
+  EXPECT_LT(mask.undecided, 0.05);
+}
+
+TEST(StillBackgroundTest, APlainObjectThatMostPhotographsShowIsNotTakenForIt) {
+  Scene scene{mostly_there};
+  scene.colour = [](int, double, double) { return glm::vec3(0.6f, 0.2f, 0.1f); };
+  const StillBackground found = background_of(scene);
+  EXPECT_EQ(found.level[at(120, 80)], StillBackground::kUnknown);
+  const SheetMask mask = mask_from_sheet(photograph(scene, 1), look(kWidth, kHeight), false, found);
+  for (int y = 54; y < 136; ++y) EXPECT_GE(mask.mask.coverage[at(120, y)], 128) << y;
+}
+
+/// A frame around a patch of itself that looks the same in all photographs.
+bool framed(int, double x, double y) { return std::abs(x - 120) < 45 && y > 45 && y < 140; }
+bool patch(double x, double y) { return std::abs(x - 120) < 25 && y > 62 && y < 105; }
+
+TEST(StillBackgroundTest, BackgroundThatTheObjectEnclosesIsNotBelieved) {
+  Scene scene{framed};
+  const auto changing = scene.colour;
+  scene.colour = [&](int k, double x, double y) {
+    return patch(x, y) ? glm::vec3(0.6f, 0.2f, 0.1f) : changing(k, x, y);
+  };
+  const StillBackground found = background_of(scene);
+  ASSERT_EQ(found.stillness, Stillness::kStill);
+  ASSERT_EQ(found.level[at(120, 80)], StillBackground::kDoubtful);
+  const SheetMask mask = mask_from_sheet(photograph(scene, 2), look(kWidth, kHeight), false, found);
+  for (int y = 66; y < 102; ++y)
+    for (int x = 98; x < 143; x += 4) EXPECT_GE(mask.mask.coverage[at(x, y)], 128) << x << " " << y;
+}
+
 }  // namespace
 }  // namespace photohull
