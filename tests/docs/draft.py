@@ -9,6 +9,7 @@ BENCH_FILES = {"--out": "out/bench", "--json": "bench.json"}
 # Options that every run of a command gets, in the place of their values if they are there; None: a flag.
 DRAFT = {
     "reconstruct": {"--resolution": "24"},
+    "batch": {"--resolution": "24"},
     "scan": {"--resolution": "24", "--texture": "256"},
     "synthesize": {"--size": "96x72", "--views": "12"},
     "chart": {"--dry-run": None},
