@@ -10,6 +10,7 @@ void add_all(CLI::App& app) {
   add_reconstruct(app);
   add_view(app);
   add_render(app);
+  add_measure(app);
   add_info(app);
   add_masks(app);
   add_convert(app);

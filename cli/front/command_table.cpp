@@ -13,6 +13,7 @@ constexpr CommandEntry kCommands[] = {
     {"reconstruct", "carve a volume and a mesh from photographs", kMainProgram},
     {"view", "open the page that reconstruct wrote in a browser", kMainProgram},
     {"render", "draw a result: a film of it turning, or stills", kMainProgram},
+    {"measure", "volume, area, height and sizes of a result, with uncertainties", kMainProgram},
     {"info", "tell what was understood of a scene", kMainProgram},
     {"masks", "find the object in photographs, as reconstruct does", kMainProgram},
     {"convert", "write a scene's cameras for another program", kMainProgram},
