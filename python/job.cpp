@@ -47,6 +47,12 @@ class QueuedProgress : public Progress {
   void warn(const std::string& message) override { say(message); }
   void note(const std::string& message) override { say(message); }
 
+  /// The whole job is done, whatever stages it left out.
+  void finish() {
+    const std::lock_guard lock(mutex_);
+    events_.push_back({stage_, 1, std::nullopt});
+  }
+
   std::vector<Event> take() {
     const std::lock_guard lock(mutex_);
     return std::exchange(events_, {});
@@ -135,6 +141,8 @@ void run_job(const py::object& callback, double total_weight,
     if (!raised) raised = worker.failure();
   }
   if (raised) std::rethrow_exception(raised);
+  progress.finish();
+  tell(callback, progress.take());
 }
 
 }  // namespace photohull::python

@@ -176,6 +176,11 @@ py::array translation_of(const SourceView& view) {
   return vector_array(view.camera.cam_from_world.translation);
 }
 
+py::object box_of_scene(const Scene& scene) {
+  const auto& box = scene.photographs.scene.box;
+  return box ? py::object(box_array(*box)) : py::none();
+}
+
 }  // namespace
 
 void describe_scene(Described& to, Scene& scene) {
@@ -185,7 +190,8 @@ void describe_scene(Described& to, Scene& scene) {
 }
 
 void bind_scene(py::module_& module) {
-  py::class_<Scene>(module, "Scene")
+  py::class_<Scene>(module, "Scene",
+                    "Photographs with their cameras; made by photohull.load and photohull.scene.")
       .def("__len__", [](const Scene& s) { return s.photographs.scene.views.size(); })
       .def("__repr__",
            [](const Scene& s) {
@@ -193,19 +199,30 @@ void bind_scene(py::module_& module) {
                            s.photographs.scene.path.string(), ">");
            })
       .def_property_readonly(
-          "names", [](const Scene& s) { return for_views(s, [](auto& v) { return v.name; }); })
-      .def_property_readonly("K", [](const Scene& s) { return for_views(s, intrinsics_of); })
-      .def_property_readonly("R", [](const Scene& s) { return for_views(s, rotation_of); })
-      .def_property_readonly("t", [](const Scene& s) { return for_views(s, translation_of); })
-      .def_property_readonly("box",
-                             [](const Scene& s) -> py::object {
-                               const auto& box = s.photographs.scene.box;
-                               return box ? py::object(box_array(*box)) : py::none();
-                             })
-      .def_property_readonly("warnings",
-                             [](const Scene& s) { return s.photographs.scene.warnings; })
-      .def("image", image_at, py::arg("view"))
-      .def("mask", mask_at, py::arg("view"));
+          "names", [](const Scene& s) { return for_views(s, [](auto& v) { return v.name; }); },
+          "Of the views, in their order.")
+      .def_property_readonly(
+          "K", [](const Scene& s) { return for_views(s, intrinsics_of); },
+          "A (3, 3) float64 camera matrix a view, in pixels; the top-left pixel's centre is (0, "
+          "0).")
+      .def_property_readonly(
+          "R", [](const Scene& s) { return for_views(s, rotation_of); },
+          "A (3, 3) float64 rotation a view: x_camera = R @ x_world + t.")
+      .def_property_readonly(
+          "t", [](const Scene& s) { return for_views(s, translation_of); },
+          "A (3,) float64 translation a view: x_camera = R @ x_world + t.")
+      .def_property_readonly("box", box_of_scene,
+                             "The region of interest, (2, 3) float64, world units, least corner "
+                             "first; None: to be found.")
+      .def_property_readonly(
+          "warnings", [](const Scene& s) { return s.photographs.scene.warnings; },
+          "What is to be known of how the scene was read; sentences.")
+      .def("image", image_at, py::arg("view"),
+           "A view's photograph with its lens distortion: (height, width, 3 or 4) uint8 sRGB, or "
+           "float32 linear light where the file has more than 8 bits.")
+      .def(
+          "mask", mask_at, py::arg("view"),
+          "A view's mask as it was given: (height, width) uint8, 255 object; None: there is none.");
   module.def("load", load);
   module.def("scene",
              [](const py::sequence& images, const py::object& k, const py::object& r,

@@ -35,7 +35,7 @@ class Backprojection:
     >>> mask = np.zeros((9, 9), dtype=np.uint8); mask[3:6, 3:6] = 255
     >>> volume.process_view([9, 9, 4.5, 4.5], np.eye(3), [0, 0, 9], mask)
     >>> int((volume.values() == 1).sum()), int((volume.values() == -1).sum())
-    (16, 48)
+    (40, 24)
     """
 
     def __init__(self, shape, origin, voxel_size, type="carving", default_value=0, labels=None, log=False):

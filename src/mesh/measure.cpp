@@ -92,7 +92,7 @@ double cut_area(const Corners& c, const glm::dvec3& axis, double at, const glm::
     ++crossings;
   }
   if (crossings != 2) return 0;
-  return glm::dot(axis, glm::cross(leave - from, enter - from));
+  return glm::dot(axis, glm::cross(enter - from, leave - from));
 }
 
 std::vector<double> section_positions(double low, double high, int count) {
