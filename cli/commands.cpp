@@ -21,6 +21,7 @@ void add_all(CLI::App& app) {
   add_synthesize(app);
   add_evaluate(app, nullptr);
   add_devices(app);
+  add_doctor(app);
 }
 
 }  // namespace

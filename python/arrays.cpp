@@ -41,8 +41,8 @@ bool has_type(const py::array& array) {
 
 /// In the order of C, copied where it is not.
 template <typename T>
-py::array_t<T, py::array::c_style> in_order(const py::array& array) {
-  return py::array_t<T, py::array::c_style>(array);
+py::array_t<T, py::array::c_style | py::array::forcecast> in_order(const py::array& array) {
+  return py::array_t<T, py::array::c_style | py::array::forcecast>(array);
 }
 
 struct Layout {

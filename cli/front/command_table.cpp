@@ -29,6 +29,7 @@ constexpr CommandEntry kCommands[] = {
      kLabProgram},
     {"bench", "measure parts of the program by themselves", kLabProgram},
     {"devices", "list the EGL devices and which one 'auto' takes", kMainProgram},
+    {"doctor", "tell of this machine what a report of a fault needs, and test it", kMainProgram},
 };
 
 }  // namespace

@@ -87,8 +87,9 @@ def test_scripts_of_pages_run(page, folder_of_plant, sphere, tmp_path, monkeypat
     view = ([1000, 1000, 32, 24], np.eye(3), [0, 0, 1000], np.ones((48, 64), np.uint8))
     scripts = scripts_of(page)
     assert scripts
+    names = {"views": [view]}
     for script in scripts:
-        exec(compile(script, page, "exec"), {"views": [view]})  # pylint: disable=exec-used
+        exec(compile(script, page, "exec"), names)  # pylint: disable=exec-used
     said = capsys.readouterr().out
     assert not folder_of_plant or re.search(r"volume [\d.]+ \+- [\d.]+", said)
 
