@@ -60,15 +60,34 @@ void print_libraries() {
   std::printf("libraries   %s\n", line.c_str());
 }
 
-void print_devices(const std::string& wanted) {
-  const std::vector<gpu::DeviceInfo> devices = gpu::list_devices();
-  for (const gpu::DeviceInfo& d : devices)
+struct Devices {
+  std::vector<gpu::DeviceInfo> all;
+  int chosen = -1;
+  std::string fault;  ///< why none is chosen
+};
+
+/// Throws UsageError where what is wanted is no device.
+Devices look_for_devices(const std::string& wanted) {
+  Devices found;
+  try {
+    found.all = gpu::list_devices();
+    found.chosen = gpu::choose_device(found.all, wanted).index;
+  } catch (const UsageError&) {
+    throw;
+  } catch (const Error& failure) {
+    found.fault = failure.what();
+  }
+  return found;
+}
+
+void print_devices(const Devices& devices) {
+  for (const gpu::DeviceInfo& d : devices.all)
     if (d.problem.empty())
       std::printf("device %d    %s (%s), OpenGL %s%s\n", d.index, d.renderer.c_str(),
                   d.vendor.c_str(), d.version.c_str(), d.software ? ", software" : "");
     else
       std::printf("device %d    not usable: %s\n", d.index, d.problem.c_str());
-  std::printf("takes       device %d\n", gpu::choose_device(devices, wanted).index);
+  if (devices.fault.empty()) std::printf("takes       device %d\n", devices.chosen);
 }
 
 void print_variables() {
@@ -78,10 +97,12 @@ void print_variables() {
 }
 
 void run(const gpu::DeviceOptions& options) {
+  const Devices devices = look_for_devices(options.device);
   print_libraries();
   print_system();
   print_variables();
-  print_devices(options.device);
+  print_devices(devices);
+  if (!devices.fault.empty()) throw Error(devices.fault);
   const SelfTest test = run_self_test(options.device);
   if (!test.fault.empty()) throw Error("the self-test failed: " + test.fault);
   std::printf("self-test   passed in %.1f s: a ball was carved with %.1f %% of its volume\n",
