@@ -1,14 +1,15 @@
 """photohull.romi against a plain NumPy version of the same votes: CPU and wall seconds, and how far they differ.
 
-    PYTHONPATH=build/release/python python3 -m bench romi
+    python3 -m bench romi
 
 A made-up plant of thin stems stands in the volume; its masks are drawn for cameras on two rings around it. NumPy's time
 for all views is that of the first --numpy-views of them, times the number of views, for each costs the same."""
 import argparse
 import sys
 import time
+from pathlib import Path
 
-from bench.runner import ROOT
+from bench.runner import PROGRAM, ROOT
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from reference import project_back  # noqa: E402
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--package", type=Path, default=PROGRAM.parent / "python", help="default: build/release/python")
     parser.add_argument("--views", type=int, default=72)
     parser.add_argument("--size", default="1440x1080", help="of the masks, pixels (default: %(default)s)")
     parser.add_argument("--shape", default="300x300x450", help="of the volume, voxels (default: %(default)s)")
@@ -53,6 +55,7 @@ def drawn(points, of_view, width: int, height: int) -> np.ndarray:
 
 
 def run(options: argparse.Namespace) -> int:
+    sys.path.insert(0, str(options.package))
     from photohull.romi import Backprojection
     width, height = map(int, options.size.split("x"))
     shape = tuple(map(int, options.shape.split("x")))

@@ -156,6 +156,14 @@ def test_an_interrupt_stops_the_job(sphere):
     assert photohull.reconstruct(sphere, **QUICK).mesh.faces.size > 0
 
 
+def test_an_interrupt_stops_a_job_without_a_callback(sphere):
+    timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+    with pytest.raises(KeyboardInterrupt):
+        timer.start()
+        photohull.reconstruct(sphere, method="refine", resolution=200)
+    assert photohull.reconstruct(sphere, **QUICK).mesh.faces.size > 0
+
+
 def test_other_threads_run_meanwhile(sphere):
     counted, done = [0], threading.Event()
 
