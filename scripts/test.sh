@@ -110,6 +110,7 @@ installation() {
   "$scratch/prefix/bin/photohull" --version | grep -F "$(project_version)"
   "$scratch/prefix/bin/photohull" --version --json | grep -F OpenVDB
   "$scratch/prefix/bin/photohull" chart --help | grep -F -- --draw-only
+  man --warnings -l "$scratch/prefix/share/man/man1/photohull-measure.1" | grep -F -- --sections
   # The library, as another program finds and uses it.
   cmake -S examples -B "$scratch/examples" -DCMAKE_PREFIX_PATH="$scratch/prefix"
   cmake --build "$scratch/examples"
@@ -139,7 +140,7 @@ else
   scripts/setup.sh
 fi
 install_missing ffmpeg colmap # films, and cameras without a sheet: 14 MB
-[ $with_all = no ] || install_missing clang clang-format clang-tidy shellcheck dpkg-dev file python3 chromium opencv-doc
+[ $with_all = no ] || install_missing clang clang-format clang-tidy shellcheck dpkg-dev file man-db groff python3 chromium opencv-doc
 [ $with_all = no ] || command -v npm >/dev/null || install_missing npm
 started=$SECONDS
 
