@@ -11,6 +11,7 @@ void add_all(CLI::App& app) {
   add_batch(app);
   add_view(app);
   add_render(app);
+  add_measure(app);
   add_info(app);
   add_masks(app);
   add_convert(app);
@@ -21,6 +22,7 @@ void add_all(CLI::App& app) {
   add_synthesize(app);
   add_evaluate(app, nullptr);
   add_devices(app);
+  add_doctor(app);
 }
 
 }  // namespace

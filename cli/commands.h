@@ -37,6 +37,8 @@ void add_synthesize(CLI::App& app);
 void add_devices(CLI::App& app);
 void add_view(CLI::App& app);
 void add_render(CLI::App& app);
+void add_measure(CLI::App& app);
+void add_doctor(CLI::App& app);
 
 /// All of these.
 Commands main_commands();

@@ -1,11 +1,12 @@
-# libphotohull.so: the modules that a reconstruction is made of, for other programs (src/api). It
+# libphotohull.so: the modules that a reconstruction is made of, and those of synthetic scenes, for
+# other programs (src/api) and for Python's package. It
 # exports what is in namespace photohull; the libraries that it is linked with are its own matter.
 # `cmake --install` puts it, its headers and photohullConfig.cmake into place.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(PHOTOHULL_LIBRARY_MODULES core raycast gpu io io_mesh photo masks views cameras projtex visibility carving volume
-  mesh texture eval assess render refine page pipeline)
+  mesh texture eval assess sheet synth render refine page pipeline)
 set(modules)
 set(objects)
 foreach(module ${PHOTOHULL_LIBRARY_MODULES})

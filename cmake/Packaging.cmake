@@ -4,6 +4,13 @@ include(GNUInstallDirs)
 if(TARGET photohull)
   install(TARGETS photohull photohull-main photohull-lab RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
+# Manual pages and completions for bash, zsh and fish, which the programs tell.
+find_package(Python3 3.10 QUIET COMPONENTS Interpreter)
+if(TARGET photohull AND Python3_FOUND)
+  install(CODE "execute_process(COMMAND \"${Python3_EXECUTABLE}\" \"${PROJECT_SOURCE_DIR}/scripts/make_manual.py\"
+    \"${CMAKE_BINARY_DIR}/photohull\" \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}\"
+    COMMAND_ERROR_IS_FATAL ANY)")
+endif()
 install(FILES README.md CHANGELOG.md BIBLIOGRAPHY.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
 # The program holds a copy of ECharts (third_party/echarts): its licence and notices go along.

@@ -69,7 +69,7 @@ cpp_files() {
 
 formatting() {
   local file files
-  files=$(cpp_files src cli tests bench | xargs -P "$jobs" -n 50 clang-format --dry-run -Werror 2>&1 |
+  files=$(cpp_files src cli python tests bench | xargs -P "$jobs" -n 50 clang-format --dry-run -Werror 2>&1 |
     sed -n 's/^\(.*\):[0-9]*:[0-9]*: error: code should be clang-formatted.*/\1/p' | sort -u)
   for file in $files; do say "to mend: clang-format -i $file"; done
   [ -z "$files" ]
@@ -88,7 +88,7 @@ shell_scripts() { shellcheck -x scripts/*.sh .ci/run; }
 # Prints the [Key] and [Key; Key] that comments cite, once each. A citation may span lines.
 cited_keys() {
   # shellcheck disable=SC2016
-  find src shaders cli tests -type f -print0 | xargs -0 perl -0777 -ne '
+  find src shaders cli python tests -type f -print0 | xargs -0 perl -0777 -ne '
     s{\s*\n\s*//[/ ]*}{ }g;
     my $key = qr/[A-Z][A-Za-z]+\d\d[a-z]?/;
     while (/\[($key(?:[;,] ?$key)*)\]/g) { print "$_\n" for split /[;,] ?/, $1 }' | sort -u
@@ -99,7 +99,7 @@ citations() {
   for key in $(cited_keys); do
     grep -qF "[$key]" BIBLIOGRAPHY.md && continue
     say "BIBLIOGRAPHY.md has no entry [$key], which is cited in:"
-    grep -rlw "$key" src shaders cli tests
+    grep -rlw "$key" src shaders cli python tests
     status=1
   done
   return $status
@@ -110,10 +110,12 @@ installation() {
   "$scratch/prefix/bin/photohull" --version | grep -F "$(project_version)"
   "$scratch/prefix/bin/photohull" --version --json | grep -F OpenVDB
   "$scratch/prefix/bin/photohull" chart --help | grep -F -- --draw-only
+  man --warnings -l "$scratch/prefix/share/man/man1/photohull-measure.1" | grep -F -- --sections
   # The library, as another program finds and uses it.
   cmake -S examples -B "$scratch/examples" -DCMAKE_PREFIX_PATH="$scratch/prefix"
   cmake --build "$scratch/examples"
   "$scratch/examples/reconstruct_in_memory" datasets/templeSparseRing | grep -F "signed distance"
+  PYTHONPATH="$scratch/prefix/lib/python3/dist-packages" /usr/bin/python3 -c "import photohull; print(photohull.devices())"
 }
 
 project_version() { sed -n 's/^project(photohull VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt; }
@@ -128,6 +130,9 @@ debian_package() {
   dpkg-deb -f "$scratch"/package/photohull_*.deb Depends | grep -F libopenvdb
 }
 
+# Python's package, which is built where these are there.
+install_missing python3-dev python3-numpy python3-pytest pybind11-dev
+
 # Every test runs once: unit tests are built where they run.
 if [ $with_all = yes ]; then
   scripts/setup.sh --target program_tests
@@ -135,7 +140,7 @@ else
   scripts/setup.sh
 fi
 install_missing ffmpeg colmap # films, and cameras without a sheet: 14 MB
-[ $with_all = no ] || install_missing clang clang-format clang-tidy shellcheck dpkg-dev file python3 chromium opencv-doc
+[ $with_all = no ] || install_missing clang clang-format clang-tidy shellcheck dpkg-dev file man-db groff python3 chromium opencv-doc
 [ $with_all = no ] || command -v npm >/dev/null || install_missing npm
 started=$SECONDS
 

@@ -14,6 +14,7 @@ constexpr CommandEntry kCommands[] = {
     {"batch", "reconstruct many scenes or frames, by one process or by many", kMainProgram},
     {"view", "open the page that reconstruct wrote in a browser", kMainProgram},
     {"render", "draw a result: a film of it turning, or stills", kMainProgram},
+    {"measure", "volume, area, height and sizes of a result, with uncertainties", kMainProgram},
     {"info", "tell what was understood of a scene", kMainProgram},
     {"masks", "find the object in photographs, as reconstruct does", kMainProgram},
     {"convert", "write a scene's cameras for another program", kMainProgram},
@@ -29,6 +30,7 @@ constexpr CommandEntry kCommands[] = {
      kLabProgram},
     {"bench", "measure parts of the program by themselves", kLabProgram},
     {"devices", "list the EGL devices and which one 'auto' takes", kMainProgram},
+    {"doctor", "tell of this machine what a report of a fault needs, and test it", kMainProgram},
 };
 
 }  // namespace

@@ -132,11 +132,11 @@ Report write_all(const Reconstruction& result, const ExportChoice& exports, Resu
 }  // namespace
 
 Report write(const Reconstruction& result, const std::filesystem::path& folder, Progress& progress,
-             const std::vector<std::string>& formats) {
+             const std::vector<std::string>& formats, const MeshFileOptions& mesh_files) {
   for (const std::string& format : formats) find_mesh_writer("formats", format);
   ResultFiles files(folder,
                     file_names(formats, result.evidence.has_value(), result.shown.has_value()));
-  return write_all(result, {formats, {}}, files, progress);
+  return write_all(result, {formats, mesh_files}, files, progress);
 }
 
 Report reconstruct_to_folder(const ReconstructOptions& options, const Photographs& photographs,

@@ -17,7 +17,7 @@ namespace photohull::pipeline {
 /// names of the files. Throws Error when that fails; earlier results then stay as they were (but
 /// see ResultFiles::commit), and no half-written file is left.
 Report write(const Reconstruction& result, const std::filesystem::path& folder, Progress& progress,
-             const std::vector<std::string>& formats = {});
+             const std::vector<std::string>& formats = {}, const MeshFileOptions& mesh_files = {});
 
 /// Reconstructs into a folder, which is made and tried before the work, and which keeps the levels
 /// of a refinement that are done until the job has ended well. Throws as Reconstructor::run and

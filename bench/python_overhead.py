@@ -1,0 +1,60 @@
+"""What the same reconstruction costs from Python and from the command line, in CPU and wall seconds.
+
+    python3 -m bench python_overhead
+
+Both write the same folder, in turn; of --repeat runs the one that took least counts."""
+import argparse
+import os
+import subprocess
+import time
+from pathlib import Path
+
+from bench.runner import PROGRAM, ROOT, add_keep, add_program, work_folder
+
+SCRIPT = """import sys, photohull
+scene, out, method, resolution = sys.argv[1:]
+photohull.reconstruct(scene, method=method, resolution=int(resolution)).write(out)"""
+
+# What photohull sets for itself, so that the C library keeps freed memory.
+KEPT_MEMORY = {"GLIBC_TUNABLES": "glibc.malloc.hugetlb=1:glibc.malloc.mmap_threshold=33554432:"
+                                 "glibc.malloc.trim_threshold=268435456"}
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    add_program(parser)
+    add_keep(parser)
+    parser.add_argument("--python", default="/usr/bin/python3", help="default: %(default)s")
+    parser.add_argument("--package", type=Path, default=PROGRAM.parent / "python", help="default: build/release/python")
+    parser.add_argument("--scene", type=Path, default=ROOT / "datasets/templeSparseRing")
+    parser.add_argument("--method", default="refine")
+    parser.add_argument("--resolution", type=int, default=128)
+    parser.add_argument("--repeat", type=int, default=5)
+
+
+def cost(words: list, environment: dict) -> tuple[float, float]:
+    before, started = os.times(), time.perf_counter()
+    subprocess.run(words, env=os.environ | environment, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    after = os.times()
+    return (after.children_user + after.children_system - before.children_user - before.children_system,
+            time.perf_counter() - started)
+
+
+def run(options: argparse.Namespace) -> int:
+    job = [options.method, str(options.resolution)]
+    python = {"PYTHONPATH": str(options.package)} | KEPT_MEMORY
+    with work_folder(options.keep) as folder:
+        ways = {
+            "command line": ([options.program, "reconstruct", options.scene, "--out", folder / "cli", "--method", job[0],
+                              "--resolution", job[1], "--fresh"], {}),
+            "Python": ([options.python, "-c", SCRIPT, options.scene, folder / "python", *job], python),
+            "command line, start alone": ([options.program.with_name("photohull-main"), "--version"], {}),
+            "Python, start alone": ([options.python, "-c", "import photohull"], python),
+        }
+        costs = {way: [] for way in ways}
+        for _ in range(options.repeat):
+            for way, (words, environment) in ways.items():
+                costs[way].append(cost(words, environment))
+    print("| from | CPU s | wall s |\n|---|---|---|")
+    for way, all_of_it in costs.items():
+        print(f"| {way} | {min(cpu for cpu, _ in all_of_it):.2f} | {min(wall for _, wall in all_of_it):.2f} |")
+    return 0
