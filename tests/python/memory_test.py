@@ -5,7 +5,7 @@ import os
 import photohull
 
 RUNS = int(os.environ.get("PHOTOHULL_RUNS", "30"))
-MOST_GROWTH = 24 << 20  # bytes; what one run takes for its arrays would be as much in five
+MOST_GROWTH = 24 << 20  # bytes; a result and its dense volume that were kept would be as much within a few runs
 
 
 def resident():
