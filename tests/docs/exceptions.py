@@ -3,7 +3,6 @@
 # Not run at all: what stands there is no whole command, or needs a program that may not be there.
 FRAGMENTS = {
     r"photohull (pose|scan) (\.\./shared/|out/NAME)": "COLMAP may not be installed; tests/cli/pose_colmap_gl_test.cpp runs it where it is",
-    r"(srun|parallel) .*photohull batch ": "the engines may not be there; tests/cli/batch_gl_test.cpp starts several processes",
     r"photohull reconstruct \.\.\. ": "its arguments are left out",
 }
 
