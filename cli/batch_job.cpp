@@ -56,12 +56,12 @@ class Batch {
   }
 
   void run() {
-    for (std::size_t i = 0; i < pieces_.size(); ++i) {
-      progress_.check_cancelled();
-      PieceProgress progress(progress_, pieces_[i].name, pipeline::total_weight(pieces_[i].job));
-      work_at(i, progress);
-      progress.finish();
-      if (Clock::now() - told_ > kTableEvery) write_table();
+    try {
+      make_all();
+    } catch (const Cancelled&) {
+      progress_.finish();
+      write_table();
+      throw;
     }
     progress_.finish();
     write_table();
@@ -73,6 +73,16 @@ class Batch {
     double sum = 0;
     for (const BatchPiece& piece : pieces) sum += pipeline::total_weight(piece.job);
     return sum;
+  }
+
+  void make_all() {
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      progress_.check_cancelled();
+      PieceProgress progress(progress_, pieces_[i].name, pipeline::total_weight(pieces_[i].job));
+      work_at(i, progress);
+      progress.finish();
+      if (Clock::now() - told_ > kTableEvery) write_table();
+    }
   }
 
   void work_at(std::size_t i, PieceProgress& progress) {

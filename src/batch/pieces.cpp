@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "core/option_word.h"
 
 namespace photohull::batch {
 namespace {
@@ -53,17 +54,18 @@ std::optional<std::vector<std::string>> words_of(const std::string& line) {
   return words;
 }
 
-/// Takes "--name NAME" or "--name=NAME" out of the words.
+/// Takes the name out of the words, which are those of a command line: "--name NAME",
+/// "--name=NAME".
 std::string take_name(std::vector<std::string>& words, const std::string& from) {
-  constexpr std::string_view flag = "--name";
+  const std::string flag = std::string(2, '-') + "name";
   for (std::size_t i = 0; i < words.size(); ++i) {
     std::string name;
     std::size_t taken = 1;
     if (words[i] == flag) {
-      if (i + 1 == words.size()) throw Error(from + ": --name has no name after it");
+      if (i + 1 == words.size()) throw Error(concat(from, ": ", flag, " has no name after it"));
       name = words[i + 1];
       taken = 2;
-    } else if (words[i].starts_with("--name=")) {
+    } else if (words[i].starts_with(flag + "=")) {
       name = words[i].substr(flag.size() + 1);
     } else {
       continue;
@@ -149,20 +151,22 @@ std::vector<Piece> pieces_of_frames(const std::vector<Piece>& pieces, const Fram
 }
 
 void check_pieces(const std::vector<Piece>& pieces) {
-  if (pieces.empty()) throw UsageError("there is no scene: give some, or a --list of them");
+  if (pieces.empty())
+    throw UsageError(
+        concat("there is no scene: give some, or a list of them by ", option_word("list")));
   std::map<std::string, std::string> seen;
   for (const Piece& piece : pieces) {
     const bool legal = !piece.name.empty() && piece.name.front() != '.' &&
                        piece.name.find('/') == std::string::npos && piece.name.size() < 200;
     if (!legal)
       throw UsageError(concat(piece.from, ": '", piece.name,
-                              "' cannot be the name of a folder; give another by --name in a "
-                              "--list of the scenes"));
+                              "' cannot be the name of a folder; give another by ",
+                              option_word("name"), " in a list of the scenes"));
     const auto [at, added] = seen.emplace(piece.name, piece.from);
     if (!added)
       throw UsageError(concat(at->second, " and ", piece.from, " are both called '", piece.name,
-                              "'; give them names of their own by --name in a --list of the "
-                              "scenes"));
+                              "'; give them names of their own by ", option_word("name"),
+                              " in a list of the scenes"));
   }
 }
 

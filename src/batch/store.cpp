@@ -6,6 +6,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/option_word.h"
 #include "core/read_file.h"
 
 namespace photohull::batch {
@@ -21,7 +22,7 @@ void make(const fs::path& folder) {
   fs::create_directories(folder, failure);
   if (failure)
     throw Error(concat("the folder ", folder.string(), " cannot be made (", failure.message(),
-                       "); give another --out"));
+                       "); give another ", option_word("out")));
 }
 
 }  // namespace

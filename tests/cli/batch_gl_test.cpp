@@ -171,6 +171,7 @@ TEST_F(BatchCommand, StopsWhenAsked) {
   const Finished run =
       run_photohull(batch(list_of(40), "all"), {.signal_after = "s1", .signal = SIGINT});
   EXPECT_EQ(run.code, 130);
+  EXPECT_THAT(table("all"), HasSubstr("\ns39,"));
   EXPECT_THAT(succeed(batch(list_of(2), "all")).out, HasSubstr("2 scenes, "));
 }
 
