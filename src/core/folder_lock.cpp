@@ -13,8 +13,8 @@ namespace photohull {
 
 namespace {
 
-/// Holds the folder by its descriptor, which is -1 where the folder cannot be opened. False: another
-/// job holds it.
+/// Holds the folder by its descriptor, which is -1 where the folder cannot be opened. False:
+/// another job holds it.
 bool hold(const std::filesystem::path& folder, int& descriptor) {
   descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0 || ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK)
