@@ -15,8 +15,8 @@ namespace photohull::cli {
 void reconstruct_scene(const pipeline::ReconstructOptions& job, const io::LoadSceneOptions& load,
                        const std::filesystem::path& scene, const std::string& out, bool json);
 
-/// What the model goes by, as a digest: program, options, the scene's files and photographs, and where
-/// it goes. Throws as io::load_scene does.
+/// What the model goes by, as a digest: program, options, the scene's files and photographs, and
+/// where it goes. Throws as io::load_scene does.
 std::string model_identity(const pipeline::ReconstructOptions& job,
                            const io::LoadSceneOptions& load, const std::filesystem::path& scene,
                            const std::filesystem::path& out);
