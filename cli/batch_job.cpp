@@ -174,7 +174,8 @@ class Batch {
       }
     }
     if (!options_.json) {
-      std::printf("%zu scenes, %d of them made before\n", rows_.size(), kept_);
+      std::printf("%zu %s, %d of them made before\n", rows_.size(),
+                  rows_.size() == 1 ? "scene" : "scenes", kept_);
       for (const auto& [verdict, count] : verdicts)
         std::printf("verdict %s: %d\n", verdict.c_str(), count);
       if (elsewhere_ > 0)

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kOutcome = "outcome.json";
+constexpr const char *kOutcome = "outcome.json", *kLock = "lock";
 
 void make(const fs::path& folder) {
   std::error_code failure;
@@ -31,9 +31,9 @@ Store::Store(fs::path folder) : folder_(std::move(folder)) { make(folder_ / ".ph
 
 fs::path Store::kept(const std::string& name) const { return folder_ / ".photohull-batch" / name; }
 
-std::unique_ptr<FolderLock> Store::hold(const std::string& name) const {
+std::unique_ptr<FileLock> Store::hold(const std::string& name) const {
   make(kept(name));
-  return FolderLock::if_free(kept(name));
+  return FileLock::if_free(kept(name) / kLock);
 }
 
 std::optional<Outcome> Store::outcome(const std::string& name) const {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "batch/outcome.h"
-#include "core/folder_lock.h"
+#include "core/file_lock.h"
 
 namespace photohull::batch {
 
@@ -22,7 +22,7 @@ class Store {
   std::filesystem::path results(const std::string& name) const { return folder_ / name; }
   /// The right to work at a piece: nobody else has it, until it is let go or the process ends,
   /// however it does. Null: somebody else has it.
-  std::unique_ptr<FolderLock> hold(const std::string& name) const;
+  std::unique_ptr<FileLock> hold(const std::string& name) const;
   std::optional<Outcome> outcome(const std::string& name) const;
   void set_outcome(const std::string& name, const Outcome& outcome) const;
   /// The file batch.csv, as a whole.

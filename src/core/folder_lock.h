@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 #include <string>
 
 namespace photohull {
@@ -13,14 +12,11 @@ class FolderLock {
  public:
   /// Throws Error when another job holds the folder, which is the value of `option`.
   FolderLock(const std::filesystem::path& folder, const std::string& option);
-  /// Null when another job holds the folder.
-  static std::unique_ptr<FolderLock> if_free(const std::filesystem::path& folder);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
 
  private:
-  explicit FolderLock(int descriptor) : descriptor_(descriptor) {}
   int descriptor_ = -1;
 };
 

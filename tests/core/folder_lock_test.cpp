@@ -28,16 +28,6 @@ TEST(FolderLock, HoldsTheFolderWhileItLives) {
   EXPECT_TRUE(std::filesystem::is_empty(path));
 }
 
-TEST(FolderLock, MayBeAskedForWithoutAFault) {
-  const ScratchFolder folder;
-  std::filesystem::create_directory(folder / "a");
-  auto first = FolderLock::if_free(folder / "a");
-  ASSERT_TRUE(first);
-  EXPECT_FALSE(FolderLock::if_free(folder / "a"));
-  first.reset();
-  EXPECT_TRUE(FolderLock::if_free(folder / "a"));
-}
-
 TEST(FolderLock, OtherFoldersAreFree) {
   const ScratchFolder folder;
   std::filesystem::create_directory(folder / "a");
