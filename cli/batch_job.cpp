@@ -47,6 +47,46 @@ class PieceProgress : public Progress {
   double left_;
 };
 
+/// What the store knows of the rows that have no outcome.
+void fill(std::vector<batch::Row>& rows, const batch::Store& store) {
+  for (batch::Row& row : rows)
+    if (!row.outcome) row.outcome = store.outcome(row.name);
+}
+
+/// The sum of it, `more` said of their number. Throws where not all have good results; where some
+/// are not made yet, returns how many.
+int tell(const std::vector<batch::Row>& rows, const std::string& more, bool json,
+         const batch::Store& store) {
+  std::map<std::string, int> verdicts;
+  int without = 0, waiting = 0;
+  const batch::Row* first = nullptr;
+  for (const batch::Row& row : rows) {
+    if (!row.outcome) {
+      ++waiting;
+    } else if (row.outcome->has_result()) {
+      ++verdicts[row.outcome->verdict];
+    } else {
+      if (without++ == 0) first = &row;
+    }
+  }
+  if (!json) {
+    std::printf("%zu %s%s\n", rows.size(), rows.size() == 1 ? "scene" : "scenes", more.c_str());
+    for (const auto& [verdict, count] : verdicts)
+      std::printf("verdict %s: %d\n", verdict.c_str(), count);
+    if (waiting > 0) std::printf("not made yet: %d\n", waiting);
+    std::printf("  %s\n", store.table().c_str());
+  }
+  const int failed = verdicts.contains("failed") ? verdicts.at("failed") : 0;
+  if (without > 0)
+    throw Error(concat(without, " of ", rows.size(), " scenes have no result, the first is ",
+                       first->name, ": ", first->outcome->message));
+  if (failed > 0)
+    throw Error(concat(failed, " of ", rows.size(), " results failed their own checks; see ",
+                       store.table().string()),
+                ErrorKind::kDoubted);
+  return waiting;
+}
+
 class Batch {
  public:
   Batch(const std::vector<BatchPiece>& pieces, const batch::Store& store,
@@ -65,7 +105,7 @@ class Batch {
     }
     progress_.finish();
     write_table();
-    tell();
+    tell(rows_, made_before(), options_.json, store_);
   }
 
  private:
@@ -76,28 +116,40 @@ class Batch {
   }
 
   void make_all() {
-    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    std::vector<std::size_t> in_other_hands;
+    for (std::size_t i = 0; i < pieces_.size() && !enough(); ++i) {
       progress_.check_cancelled();
       PieceProgress progress(progress_, pieces_[i].name, pipeline::total_weight(pieces_[i].job));
-      work_at(i, progress);
+      if (!work_at(i, progress)) in_other_hands.push_back(i);
       progress.finish();
       if (Clock::now() - told_ > kTableEvery) write_table();
     }
+    for (const std::size_t i : in_other_hands) {
+      if (enough()) return;
+      PieceProgress progress(progress_, pieces_[i].name, 0);
+      if (!work_at(i, progress)) ++elsewhere_;
+    }
   }
 
-  void work_at(std::size_t i, PieceProgress& progress) {
+  bool enough() const { return options_.most > 0 && made_ >= options_.most; }
+
+  /// False where somebody else is at work at it.
+  bool work_at(std::size_t i, PieceProgress& progress) {
     const BatchPiece& piece = pieces_[i];
-    const auto held = store_.hold(piece.name);
-    if (!held) {
-      ++elsewhere_;
-      return;
+    if (auto made = store_.outcome(piece.name); made && is_settled(piece, *made)) {
+      ++kept_;
+      rows_[i].outcome = std::move(made);
+      return true;
     }
+    const auto held = store_.hold(piece.name);
+    if (!held) return false;
     const Outcome outcome = make(piece, progress);
     if (options_.sequence && outcome.has_result())
       store_.publish(piece.name, "volume.vdb", "volume." + piece.name + ".vdb");
     rows_[i].outcome = outcome;
     if (options_.json) std::printf("%s\n", to_json(piece.name, outcome).c_str());
     std::fflush(stdout);
+    return true;
   }
 
   /// As it was made before, or now.
@@ -107,10 +159,13 @@ class Batch {
     pipeline::forget_peak_memory();
     Outcome out;
     out.scene = piece.scene;
+    out.plan = options_.plan;
     try {
       out.identity = model_identity(piece.job, piece.load, piece.scene, store_.results(piece.name));
-      if (const auto before = store_.outcome(piece.name); before && is_kept(piece, *before, out)) {
+      if (auto before = store_.outcome(piece.name); before && is_kept(piece, *before, out)) {
         ++kept_;
+        before->plan = options_.plan;
+        store_.set_outcome(piece.name, *before);
         return *before;
       }
       reconstruct(piece, progress, out);
@@ -129,7 +184,14 @@ class Batch {
     out.cpu_seconds = pipeline::process_cpu_seconds() - cpu;
     out.peak_memory_bytes = pipeline::process_peak_memory();
     store_.set_outcome(piece.name, out);
+    ++made_;
     return out;
+  }
+
+  /// Was it made, or found to be made, for the same plan?
+  bool is_settled(const BatchPiece& piece, const Outcome& made) const {
+    if (piece.job.fresh || options_.plan.empty() || made.plan != options_.plan) return false;
+    return made.has_result() || !options_.retry;
   }
 
   bool is_kept(const BatchPiece& piece, const Outcome& before, const Outcome& now) const {
@@ -153,46 +215,17 @@ class Batch {
   }
 
   void write_table() {
-    for (batch::Row& row : rows_)
-      if (!row.outcome) row.outcome = store_.outcome(row.name);
-    store_.write_table(table_of(rows_));
+    fill(rows_, store_);
+    if (options_.table) store_.write_table(table_of(rows_));
     told_ = Clock::now();
   }
 
-  /// The sum of it. Throws where not all have results.
-  void tell() const {
-    std::map<std::string, int> verdicts;
-    int without = 0, waiting = 0;
-    const batch::Row* first = nullptr;
-    for (const batch::Row& row : rows_) {
-      if (!row.outcome) {
-        ++waiting;
-      } else if (row.outcome->has_result()) {
-        ++verdicts[row.outcome->verdict];
-      } else {
-        if (without++ == 0) first = &row;
-      }
-    }
-    if (!options_.json) {
-      std::printf("%zu %s, %d of them made before\n", rows_.size(),
-                  rows_.size() == 1 ? "scene" : "scenes", kept_);
-      for (const auto& [verdict, count] : verdicts)
-        std::printf("verdict %s: %d\n", verdict.c_str(), count);
-      if (elsewhere_ > 0)
-        std::printf(
-            "other processes were at work at %d, of which %d are not made yet; run this "
-            "again for the table of all\n",
-            elsewhere_, waiting);
-      std::printf("  %s\n", store_.table().c_str());
-    }
-    const int failed = verdicts.contains("failed") ? verdicts.at("failed") : 0;
-    if (without > 0)
-      throw Error(concat(without, " of ", rows_.size(), " scenes have no result, the first is ",
-                         first->name, ": ", first->outcome->message));
-    if (failed > 0)
-      throw Error(concat(failed, " of ", rows_.size(), " results failed their own checks; see ",
-                         store_.table().string()),
-                  ErrorKind::kDoubted);
+  std::string made_before() const {
+    std::string text = concat(", ", kept_, " of them made before");
+    if (elsewhere_ > 0)
+      text += concat("; other processes were at work at ", elsewhere_,
+                     ", run this again for the table of all");
+    return text;
   }
 
   const std::vector<BatchPiece>& pieces_;
@@ -201,7 +234,7 @@ class Batch {
   TerminalProgress progress_;
   std::vector<batch::Row> rows_;
   Clock::time_point told_ = Clock::now();
-  int kept_ = 0, elsewhere_ = 0;
+  int made_ = 0, kept_ = 0, elsewhere_ = 0;
 };
 
 }  // namespace
@@ -209,6 +242,19 @@ class Batch {
 void run_batch(const std::vector<BatchPiece>& pieces, const batch::Store& store,
                const BatchOptions& options) {
   Batch(pieces, store, options).run();
+}
+
+void merge_batch(const std::vector<std::string>& names, const batch::Store& store, bool json) {
+  std::vector<batch::Row> rows;
+  for (const std::string& name : names) rows.push_back({name, {}});
+  fill(rows, store);
+  store.write_table(table_of(rows));
+  const int waiting = tell(rows, "", json, store);
+  if (waiting == 0) return;
+  const auto first =
+      std::find_if(rows.begin(), rows.end(), [](const auto& row) { return !row.outcome; });
+  throw Error(concat(waiting, " of ", rows.size(), " scenes are not made yet, the first is ",
+                     first->name, "; 'photohull run ", store.folder().string(), "' makes them"));
 }
 
 }  // namespace photohull::cli

@@ -20,12 +20,22 @@ struct BatchOptions {
   bool json = false;      ///< a line of JSON on standard output for each piece
   bool retry = false;     ///< make anew what had no result before, though nothing has changed
   bool sequence = false;  ///< volumes by the names that sequences have: volume.0007.vdb
+  int most = 0;           ///< end after so many that were free and not made; 0: go through all
+  /// Id of the plan: what was made by it is kept without a look at its photographs. Empty: all are
+  /// looked at.
+  std::string plan;
+  bool table = true;  ///< write the table, for these are all pieces of the batch
 };
 
-/// Makes every piece that is neither made nor in other hands, and the table of all. A piece that
-/// fails does not keep the others from being made. Throws Error when all have been gone through and
+/// Makes every piece that is neither made nor in other hands; comes back once to those that were,
+/// for their process may have been killed. Then makes the table. A piece that fails does not keep
+/// the others from being made. Throws Error when all have been gone through and
 /// some have no result, of the kind kDoubted when some only failed their own checks; Cancelled.
 void run_batch(const std::vector<BatchPiece>& pieces, const batch::Store& store,
                const BatchOptions& options);
+
+/// The table of what is there, and the sum of it. Throws as run_batch does, and Error where pieces
+/// are not made yet.
+void merge_batch(const std::vector<std::string>& names, const batch::Store& store, bool json);
 
 }  // namespace photohull::cli

@@ -9,6 +9,11 @@ void add_all(CLI::App& app) {
   add_scan(app);
   add_reconstruct(app);
   add_batch(app);
+  add_plan(app);
+  add_run(app);
+  add_status(app);
+  add_merge(app);
+  add_submit(app);
   add_view(app);
   add_render(app);
   add_measure(app);

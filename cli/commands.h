@@ -25,6 +25,12 @@ using DrawReliability = std::string (*)(const std::string& mesh, const eval::Rel
 void add_evaluate(CLI::App& app, DrawReliability draw);
 /// Many reconstructions.
 void add_batch(CLI::App& app);
+/// The same in parts, for many processes.
+void add_plan(CLI::App& app);
+void add_run(CLI::App& app);
+void add_status(CLI::App& app);
+void add_merge(CLI::App& app);
+void add_submit(CLI::App& app);
 void add_convert(CLI::App& app);
 void add_refine_cameras(CLI::App& app);
 void add_calibrate(CLI::App& app);

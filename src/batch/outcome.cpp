@@ -21,6 +21,7 @@ std::string field(const std::string& text) {
 std::string to_json(const std::string& name, const Outcome& o) {
   return json{{"name", name},
               {"identity", o.identity},
+              {"plan", o.plan},
               {"scene", o.scene},
               {"verdict", o.verdict},
               {"message", o.message},
@@ -39,6 +40,7 @@ std::optional<Outcome> outcome_from_json(const std::string& text) {
     const json j = json::parse(text);
     Outcome o;
     j.at("identity").get_to(o.identity);
+    j.at("plan").get_to(o.plan);
     j.at("scene").get_to(o.scene);
     j.at("verdict").get_to(o.verdict);
     j.at("message").get_to(o.message);

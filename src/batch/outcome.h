@@ -11,6 +11,7 @@ namespace photohull::batch {
 /// How a piece ended.
 struct Outcome {
   std::string identity;  ///< of what it was made of; empty where its scene could not be read
+  std::string plan;      ///< id of the plan that it was last looked at for; empty: none
   std::string scene;
   /// "good", "doubtful" or "failed" by the result's own checks; empty: there is no result.
   std::string verdict;

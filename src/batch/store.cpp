@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char *kOutcome = "outcome.json", *kLock = "lock";
+constexpr const char *kOutcome = "outcome.json", *kLock = "lock", *kPlan = ".plan.json";
 
 void make(const fs::path& folder) {
   std::error_code failure;
@@ -27,9 +27,22 @@ void make(const fs::path& folder) {
 
 }  // namespace
 
+Store Store::existing(const fs::path& folder) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(folder / ".photohull-batch" / kPlan, ignored))
+    throw Error(concat(folder.string(),
+                       ": no batch was planned or made in this folder; 'photohull plan' and "
+                       "'photohull batch' do that"));
+  return Store(folder);
+}
+
 Store::Store(fs::path folder) : folder_(std::move(folder)) { make(folder_ / ".photohull-batch"); }
 
 fs::path Store::kept(const std::string& name) const { return folder_ / ".photohull-batch" / name; }
+
+void Store::set_plan(const Plan& plan) const { write_atomically(kept(kPlan), to_json(plan)); }
+
+Plan Store::plan() const { return plan_from_json(read_whole_file(kept(kPlan)), kept(kPlan)); }
 
 std::unique_ptr<FileLock> Store::hold(const std::string& name) const {
   make(kept(name));

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "batch/outcome.h"
+#include "batch/plan.h"
 #include "core/file_lock.h"
 
 namespace photohull::batch {
@@ -19,7 +20,14 @@ class Store {
   /// Makes the folder. Throws Error where it cannot.
   explicit Store(std::filesystem::path folder);
 
+  /// The one of a batch that was planned. Throws Error where there is none.
+  static Store existing(const std::filesystem::path& folder);
+
+  const std::filesystem::path& folder() const { return folder_; }
   std::filesystem::path results(const std::string& name) const { return folder_ / name; }
+  void set_plan(const Plan& plan) const;
+  /// Throws Error where there is none, or a damaged one.
+  Plan plan() const;
   /// The right to work at a piece: nobody else has it, until it is let go or the process ends,
   /// however it does. Null: somebody else has it.
   std::unique_ptr<FileLock> hold(const std::string& name) const;

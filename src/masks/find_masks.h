@@ -1,6 +1,8 @@
 // Masks made from the background.
 #pragma once
 
+#include <functional>
+
 #include "masks/masks.h"
 
 namespace photohull {
@@ -12,5 +14,9 @@ namespace photohull {
 /// size and what the loader throws.
 void find_masks(const Scene& scene, const ViewLoader& loader, bool cut,
                 std::vector<MaskOrigin>& origins, PreparedViews& prepared);
+
+/// find_masks, or what else comes to the same.
+using MaskFinder = std::function<void(const Scene& scene, const ViewLoader& loader, bool cut,
+                                      std::vector<MaskOrigin>& origins, PreparedViews& prepared)>;
 
 }  // namespace photohull

@@ -1,17 +1,10 @@
 #include "pipeline/given_words.h"
 
-#include <algorithm>
-#include <string_view>
-
 #include "core/option_word.h"
+#include "core/shell_word.h"
 
 namespace photohull::pipeline {
 namespace {
-
-bool is_plain(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-         std::string_view("_-./=,:+@%").find(c) != std::string_view::npos;
-}
 
 std::string words_of(const Option& option) {
   if (std::holds_alternative<bool*>(option.place)) return " " + option_word(option.name);
@@ -26,13 +19,6 @@ std::string words_of(const Option& option) {
 }
 
 }  // namespace
-
-std::string shell_word(const std::string& text) {
-  if (!text.empty() && std::all_of(text.begin(), text.end(), is_plain)) return text;
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
 
 std::string given_words(ReconstructOptions options, io::LoadSceneOptions load) {
   ReconstructOptions defaults;

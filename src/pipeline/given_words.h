@@ -7,9 +7,6 @@
 
 namespace photohull::pipeline {
 
-/// Text as one word of a command line, quoted for a shell where it must be.
-std::string shell_word(const std::string& text);
-
 /// The options that are not at their defaults, each preceded by a space: " --method hull
 /// --tune 'a=1'", in the program's words (core/option_word.h).
 std::string given_words(ReconstructOptions options, io::LoadSceneOptions load);

@@ -1,4 +1,4 @@
-// Words that identities of jobs are made of (job_identity.h, camera_cache.h).
+// Words that identities of jobs are made of (job_identity.h, camera_cache.h, mask_cache.h).
 #pragma once
 
 #include <filesystem>

@@ -11,6 +11,7 @@
 #include "photo/noise.h"
 #include "pipeline/checks.h"
 #include "pipeline/image_scale.h"
+#include "pipeline/mask_cache.h"
 #include "pipeline/mask_policy.h"
 #include "pipeline/place_lattice.h"
 #include "views/prepare_views.h"
@@ -37,14 +38,14 @@ struct Decoded {
 };
 
 Decoded decode(const Photographs& photographs, const Scene& full, std::span<const double> scales,
-               Progress& progress) {
+               const MaskFinder& masks, Progress& progress) {
   PrepareOptions options;
   options.masks = mask_policy(photographs.load.masks);
   options.strict = photographs.load.strict;
   Decoded out{full, {}};
   scale_scene(scales, out.scene);
-  out.prepared =
-      prepare_views(out.scene, reduced_loader(photographs.reader, full, scales), options, progress);
+  out.prepared = prepare_views(out.scene, reduced_loader(photographs.reader, full, scales), options,
+                               progress, masks);
   return out;
 }
 
@@ -54,7 +55,10 @@ Decoded decode(const Photographs& photographs, const Scene& full, std::span<cons
 Decoded decode_as_needed(const Photographs& photographs, ReadScene& read,
                          const ReconstructOptions& options, Progress& progress) {
   std::vector<double>& scales = read.reading.scales;
-  Decoded out = decode(photographs, read.scene, scales, progress);
+  MaskFinder masks = find_masks;
+  if (!options.checkpoint.empty())
+    masks = find_masks_once(options.checkpoint, options.fresh, progress);
+  Decoded out = decode(photographs, read.scene, scales, masks, progress);
   if (options.image_scale || !(options.resolution || read.reading.short_of_memory) ||
       *std::min_element(scales.begin(), scales.end()) == 1)
     return out;
@@ -64,7 +68,7 @@ Decoded decode_as_needed(const Photographs& photographs, ReadScene& read,
   if (reading.scales == scales) return out;
   out = {};
   scales = std::move(reading.scales);
-  return decode(photographs, read.scene, scales, progress);
+  return decode(photographs, read.scene, scales, masks, progress);
 }
 
 /// The background of a photograph taken from within the box is what is looked for.

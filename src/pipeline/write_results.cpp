@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/option_word.h"
+#include "core/shell_word.h"
 #include "io/image_file.h"
 #include "io/mesh/mesh_writers.h"
 #include "io/mesh/write_mesh.h"

@@ -7,8 +7,6 @@
 
 #include "core/error.h"
 #include "core/left_out.h"
-#include "masks/find_masks.h"
-#include "masks/masks.h"
 #include "views/undistort.h"
 
 namespace photohull {
@@ -89,7 +87,7 @@ void describe(Described& to, PrepareOptions& o) {
 void PrepareOptions::validate() const { check_options(*this); }
 
 PreparedViews prepare_views(Scene& scene, const ViewLoader& loader, const PrepareOptions& options,
-                            Progress& progress) {
+                            Progress& progress, const MaskFinder& find) {
   options.validate();
   std::size_t count = scene.views.size();
   if (count == 0) throw Error(concat(scene.path.string(), ": lists no pictures"));
@@ -120,7 +118,7 @@ PreparedViews prepare_views(Scene& scene, const ViewLoader& loader, const Prepar
                                      "(255)"));
   check_masks(result);
   result.masks.resize(count);
-  if (use_masks) find_masks(scene, loader, options.cut_masks, origins, result);
+  if (use_masks) find(scene, loader, options.cut_masks, origins, result);
   describe_masks(origins, result);
 
   progress.check_cancelled();

@@ -6,6 +6,7 @@
 #include "core/progress.h"
 #include "core/scene.h"
 #include "core/view_loader.h"
+#include "masks/find_masks.h"
 
 namespace photohull {
 
@@ -37,9 +38,10 @@ void describe(Described& to, PrepareOptions& options);
 /// lens distortion. Undistorted pictures keep the focal length in pixels at the principal point
 /// and are resampled in linear light; views without distortion keep their bytes as decoded.
 /// Views whose pictures cannot be decoded leave the scene, with a warning, as core/left_out.h has
-/// it. Throws Error when too many do, for a picture or mask whose size is wrong, for masks that are
-/// all empty or look inverted, and what the loader throws for masks; Cancelled when asked to stop.
+/// it. `find` makes masks where none are given. Throws Error when too many do, for a picture or
+/// mask whose size is wrong, for masks that are all empty or look inverted, and what the loader
+/// throws for masks; Cancelled when asked to stop.
 PreparedViews prepare_views(Scene& scene, const ViewLoader& loader, const PrepareOptions& options,
-                            Progress& progress);
+                            Progress& progress, const MaskFinder& find = find_masks);
 
 }  // namespace photohull

@@ -14,6 +14,12 @@
 #include "volume/fill_tree.h"
 #include "volume/write_vdb.h"
 
+#ifdef OPENVDB_USE_EXPLICIT_INSTANTIATION
+// The library's own code of it serves: half of the time to compile this file went into another.
+extern template void openvdb::tools::VolumeToMesh::operator()<openvdb::FloatGrid>(
+    const openvdb::FloatGrid&);
+#endif
+
 namespace photohull {
 namespace {
 

@@ -5,12 +5,15 @@
 namespace photohull::batch {
 namespace {
 
-Outcome good() { return {"1234", "scans/a, b", "good", "", 0, 24, 0.5, 1000, 1.5, 2.25, 1 << 20}; }
+Outcome good() {
+  return {"1234", "5-6", "scans/a, b", "good", "", 0, 24, 0.5, 1000, 1.5, 2.25, 1 << 20};
+}
 
 TEST(Outcome, ComesBackFromItsText) {
   const auto back = outcome_from_json(to_json("a", good()));
   ASSERT_TRUE(back);
   EXPECT_EQ(back->identity, "1234");
+  EXPECT_EQ(back->plan, "5-6");
   EXPECT_EQ(back->scene, "scans/a, b");
   EXPECT_TRUE(back->has_result());
   EXPECT_EQ(back->views, 24);

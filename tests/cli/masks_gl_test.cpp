@@ -11,6 +11,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using testing::Each;
 using testing::HasSubstr;
+using testing::Not;
 
 class MasksCommand : public SphereScene {
  protected:
@@ -59,6 +60,36 @@ TEST_F(MasksCommand, OnePlateServesAFixedCamera) {
   const Finished lacking = run_photohull(masks({"--masks", out(), "--compare", path("cutouts")}));
   EXPECT_EQ(lacking.code, 1);
   EXPECT_THAT(lacking.err, testing::HasSubstr("there is no mask for view5.png"));
+}
+
+TEST_F(MasksCommand, MadeMasksAreKeptForTheNextRun) {
+  write_plates();
+  const auto reconstruct = [&](const Arguments& more) {
+    Arguments all = {"reconstruct", scene(), "--background", path("empty"),
+                     "--method",    "hull",  "--out",        out()};
+    all.insert(all.end(), more.begin(), more.end());
+    return succeed(all).err;
+  };
+  const std::string taken = "the masks are those that the run before made",
+                    file = out() + "/.photohull-masks";
+  EXPECT_THAT(reconstruct({}), Not(HasSubstr(taken)));
+  const std::string mesh = read_bytes(out() + "/mesh.ply"), kept = read_bytes(file);
+  EXPECT_THAT(reconstruct({}), HasSubstr(taken));
+  EXPECT_EQ(read_bytes(out() + "/mesh.ply"), mesh);
+  EXPECT_THAT(reconstruct({"--resolution", "30"}), HasSubstr(taken));
+  EXPECT_EQ(read_bytes(file), kept);
+  // Not where they are asked for anew, or of another background.
+  EXPECT_THAT(reconstruct({"--fresh"}), Not(HasSubstr(taken)));
+  fs::copy_file(plate(1), plate(0), fs::copy_options::overwrite_existing);
+  fs::last_write_time(plate(0), fs::file_time_type::clock::now() + std::chrono::seconds(5));
+  EXPECT_THAT(reconstruct({}), Not(HasSubstr(taken)));
+  // What is left of a file is not taken.
+  for (const std::string& left :
+       {kept.substr(0, kept.size() / 2), std::string("{}"), std::string()}) {
+    write_bytes(file, left);
+    EXPECT_THAT(reconstruct({}), HasSubstr(".photohull-masks: damaged")) << left.size();
+    EXPECT_EQ(read_bytes(out() + "/mesh.ply"), mesh);
+  }
 }
 
 TEST_F(MasksCommand, PhotographsAreNotOverwritten) {

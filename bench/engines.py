@@ -1,0 +1,136 @@
+"""Whether a plan ends as it would undisturbed when its processes are killed, with each engine; and what processes lose.
+
+    python3 -m bench engines [--runs 50] [--engines local,parallel,mpi,slurm] [--out FILE]
+
+A plan of 16 hulls of one rendered scene is submitted to each engine, with three processes. At random moments one of the
+processes, or two at once, are killed (SIGKILL); the seed is the run's number. The same command submits it once more where
+it did not end well. What is there at the end is compared with an undisturbed batch, byte by byte, without reports, which
+tell the time. Slurm runs on this machine alone, by tests/cli/with_slurm.sh; OpenMPI's mpirun, GNU parallel and Slurm have
+to be installed.
+
+The second table has the wall time of the same plan by one process with two threads, and by 2 and 4 processes with one
+thread each. Both are in docs/measurements/benchmarks.md."""
+import argparse
+import os
+import random
+import shutil
+import signal
+import subprocess
+import threading
+import time
+from pathlib import Path
+from statistics import median
+
+from bench import page
+from bench.runner import ROOT, SYNTHETIC, Photohull, add_program, keep_json, listed, work_folder
+
+PIECES = 16
+FILES = ("volume.vdb", "mesh.ply", "preview.png")
+ENGINES = ("local", "parallel", "mpi", "slurm")
+SLURM = ROOT / "tests/cli/with_slurm.sh"
+MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1"}
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    add_program(parser)
+    parser.add_argument("--runs", type=int, default=50, help="disturbed runs of each engine")
+    parser.add_argument("--repeat", type=int, default=3, help="runs of each number of processes")
+    parser.add_argument("--engines", type=listed, default=list(ENGINES), help=f"of {', '.join(ENGINES)}")
+    parser.add_argument("--out", type=Path, help="file for the figures")
+
+
+def plan(photohull: Photohull, scene: Path, out: Path) -> Path:
+    """A new plan of PIECES hulls, which differ in their voxels."""
+    shutil.rmtree(out, ignore_errors=True)
+    pieces = out.parent / "pieces.txt"
+    pieces.write_text("".join(f'"{scene}" --name s{i} --resolution {24 + 2 * i}\n' for i in range(PIECES)), encoding="utf-8")
+    photohull.call("plan", "--list", pieces, "--out", out, "--method", "hull", "--refine-cameras", "off", "--report-page", "off")
+    return out
+
+
+def results(out: Path) -> dict[str, bytes]:
+    return {f"s{i}/{name}": (out / f"s{i}" / name).read_bytes() for i in range(PIECES) for name in FILES}
+
+
+def workers(job: Path) -> list[int]:
+    """Processes that run the job's pieces."""
+    found = []
+    for entry in Path("/proc").iterdir():
+        if entry.name.isdigit():
+            try:
+                words = (entry / "cmdline").read_bytes().split(b"\0")
+            except OSError:
+                continue
+            if b"run" in words and str(job).encode() in words and b"photohull" in words[0]:
+                found.append(int(entry.name))
+    return found
+
+
+def disturb(job: Path, seed: int, ended: threading.Event, kills: list[int]) -> None:
+    """Kills a process, or two at once, at a few random moments."""
+    dice = random.Random(seed)
+    for _ in range(dice.randint(1, 3)):
+        if ended.wait(dice.uniform(0.3, 3.0)):
+            return
+        for process in dice.sample(found := workers(job), min(len(found), dice.randint(1, 2))):
+            try:
+                os.kill(process, signal.SIGKILL)
+                kills.append(process)
+            except ProcessLookupError:
+                pass
+
+
+def submit(photohull: Photohull, engine: str, job: Path, folder: Path) -> int:
+    words = [photohull.program, "submit", job, "--with", engine, "--workers", "3"]
+    if engine == "slurm":
+        shutil.rmtree(folder / "slurm", ignore_errors=True)
+        words = [SLURM, folder / "slurm", *words]
+    return subprocess.run(list(map(str, words)), env=os.environ | MPI, capture_output=True, check=False).returncode
+
+
+def disturbed_runs(photohull: Photohull, engine: str, scene: Path, folder: Path, runs: int, calm: dict[str, bytes]) -> dict:
+    kills, again, wrong = [], 0, 0
+    for seed in range(runs):
+        job = plan(photohull, scene, folder / engine)
+        ended = threading.Event()
+        killer = threading.Thread(target=disturb, args=(job, seed, ended, kills))
+        killer.start()
+        submit(photohull, engine, job, folder)
+        ended.set()
+        killer.join()
+        if not photohull.json("status", job)["complete"]:
+            again += 1
+            submit(photohull, engine, job, folder)
+        wrong += results(job) != calm
+    return {"engine": engine, "runs": runs, "kills": len(kills), "again": again, "different": wrong}
+
+
+def processes(photohull: Photohull, scene: Path, folder: Path, count: int, threads: int) -> float:
+    """Wall seconds of a whole plan."""
+    job = plan(photohull, scene, folder / "processes")
+    start = time.perf_counter()
+    running = [subprocess.Popen([photohull.program, "run", job, "--threads", str(threads)], stdout=subprocess.DEVNULL,
+                                stderr=subprocess.DEVNULL) for _ in range(count)]
+    for process in running:
+        process.wait()
+    return time.perf_counter() - start
+
+
+def run(options: argparse.Namespace) -> None:
+    photohull = Photohull(options.program)
+    with work_folder(None) as folder:
+        scene = photohull.synthesize(SYNTHETIC / "pawn.json", folder / "pawn", "--size", "320x240")
+        layouts = [(1, 2), (2, 1), (4, 1)]
+        times = {layout: [] for layout in layouts}
+        for _ in range(options.repeat):  # in turn, for the machine's speed changes
+            for layout in layouts:
+                times[layout].append(processes(photohull, scene, folder, *layout))
+        shares = [{"processes": count, "threads": threads, "wall_s": median(times[count, threads]),
+                   "ratio": median(t / one for t, one in zip(times[count, threads], times[layouts[0]]))}
+                  for count, threads in layouts]
+        print(page.table_of(page.data("benchmarks")["processes"], {"processes": shares}))
+        photohull.call("run", plan(photohull, scene, folder / "calm"))
+        calm = results(folder / "calm")
+        rows = [disturbed_runs(photohull, engine, scene, folder, options.runs, calm) for engine in options.engines]
+    print(page.table_of(page.data("benchmarks")["kills"], {"kills": rows}))
+    keep_json(options.out, {"processes": shares, "kills": rows})

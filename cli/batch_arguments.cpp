@@ -1,0 +1,130 @@
+#include "batch_arguments.h"
+
+#include <filesystem>
+
+#include "cli/front/parse_faults.h"
+#include "core/error.h"
+#include "core/option_word.h"
+#include "option_flags.h"
+#include "scene_arguments.h"
+
+namespace photohull::cli {
+namespace {
+
+/// Puts the frame's number where the options that hold for all pieces ask for it.
+void name_frame(BatchPiece& piece, const std::string& frame) {
+  Described described;
+  describe(described, piece.job, piece.load);
+  for (const Option& option : described.options()) {
+    const std::string text = text_of(option);
+    if (text.find(batch::kFrameToken) != std::string::npos)
+      read_option(option, batch::with_frame(text, frame));
+  }
+}
+
+/// A piece's own words, on top of what holds for all of them.
+BatchPiece parse_piece(const batch::Piece& given, BatchPiece piece, const std::string& out) {
+  CLI::App parser("", "batch");
+  add_scene(parser, piece.scene);
+  Described described;
+  describe(described, piece.job, piece.load);
+  add_flags(parser, described);
+  std::vector<const char*> words = {"batch"};
+  for (const std::string& word : given.words) words.push_back(word.c_str());
+  try {
+    parser.parse(int(words.size()), words.data());
+    check_scene(piece.scene);
+    piece.job.validate();
+    piece.load.validate();
+    check_output(piece.scene, piece.load, out);
+  } catch (const CLI::ParseError& e) {
+    throw UsageError(given.from + ": " + parse_fault(parser, e));
+  } catch (const Error& e) {
+    throw Error(given.from + ": " + e.what(), e.kind());
+  }
+  return piece;
+}
+
+/// The scene, and all options that are not at their defaults.
+std::vector<std::string> words_of(BatchPiece piece) {
+  pipeline::ReconstructOptions usual_job;
+  io::LoadSceneOptions usual_load;
+  Described given, usual;
+  describe(given, piece.job, piece.load);
+  describe(usual, usual_job, usual_load);
+  std::vector<std::string> words = {piece.scene};
+  for (const Option& option : given.options()) {
+    const std::string text = text_of(option);
+    if (text == text_of(*usual.find(option.name))) continue;
+    const std::string flag = option_word(option.name);
+    const auto* texts = std::get_if<std::vector<std::string>*>(&option.place);
+    if (std::holds_alternative<bool*>(option.place)) {
+      words.push_back(flag);
+    } else if (texts && !option.list) {
+      for (const std::string& each : **texts) words.push_back(flag + "=" + each);
+    } else {
+      words.push_back(flag + "=" + text);
+    }
+  }
+  return words;
+}
+
+}  // namespace
+
+void BatchArguments::add_to(CLI::App& command) {
+  command.add_option("scenes", scenes, "scenes, as for reconstruct");
+  command.add_option("--list", list,
+                     "file with a scene a line, after it options for this scene alone, and --name "
+                     "NAME for its folder's name");
+  command.add_option("--frames", frames,
+                     "first and last frame, such as 0000-0299: each scene once for each, with the "
+                     "frame's number in place of {frame} in its name and options");
+  command
+      .add_option("--out", out,
+                  "folder for the results, in a folder each; made when it does not exist")
+      ->required();
+  Described described;
+  describe(described, job, load);
+  add_flags(command, described);
+}
+
+std::vector<BatchPiece> BatchArguments::pieces() const {
+  if (out.empty()) throw UsageError("--out is empty: give a folder for the results");
+  job.validate();
+  std::vector<batch::Piece> given = batch::pieces_of_scenes(scenes);
+  if (!list.empty()) {
+    const std::vector<batch::Piece> listed = batch::read_piece_list(list);
+    given.insert(given.end(), listed.begin(), listed.end());
+  }
+  if (!frames.empty()) {
+    const auto range = batch::parse_frames(frames);
+    if (!range)
+      throw UsageError("--frames " + frames +
+                       ": give the first and the last, such as 0-299 or 0000-0299");
+    given = batch::pieces_of_frames(given, *range);
+  }
+  check_pieces(given);
+  std::vector<BatchPiece> pieces;
+  for (const batch::Piece& one : given) {
+    BatchPiece piece{one.name, {}, job, load};
+    if (!frames.empty()) name_frame(piece, one.frame);
+    pieces.push_back(parse_piece(one, std::move(piece), out));
+  }
+  return pieces;
+}
+
+void keep_plan(const std::vector<BatchPiece>& pieces, bool sequence, const batch::Store& store) {
+  batch::Plan plan{batch::new_plan_id(), std::filesystem::current_path(), sequence, {}};
+  for (const BatchPiece& piece : pieces)
+    plan.pieces.push_back({piece.name, words_of(piece), {}, {}});
+  store.set_plan(plan);
+}
+
+std::vector<BatchPiece> planned_pieces(const batch::Plan& plan, const std::string& out) {
+  std::vector<BatchPiece> pieces;
+  for (const batch::Piece& piece : plan.pieces)
+    pieces.push_back(parse_piece(piece, {piece.name, {}, {}, {}}, out));
+  return pieces;
+}
+
+}  // namespace photohull::cli
