@@ -8,6 +8,7 @@
 
 #include "cli/front/exit_code.h"
 #include "core/error.h"
+#include "page/make_batch_page.h"
 #include "pipeline/stage_clock.h"
 #include "pipeline/stage_weights.h"
 #include "pipeline/write_results.h"
@@ -53,6 +54,20 @@ void fill(std::vector<batch::Row>& rows, const batch::Store& store) {
     if (!row.outcome) row.outcome = store.outcome(row.name);
 }
 
+/// batch.csv and index.html.
+void write_overview(const std::vector<batch::Row>& rows, const batch::Store& store) {
+  store.write_table(table_of(rows));
+  std::vector<page::ShownPiece> pieces;
+  for (const batch::Row& row : rows) {
+    std::error_code ignored;
+    const std::filesystem::path folder = store.results(row.name);
+    pieces.push_back({to_json(row.name, row.outcome),
+                      std::filesystem::exists(folder / "preview.png", ignored),
+                      std::filesystem::exists(folder / "report.html", ignored)});
+  }
+  store.write_page(page::make_batch_page(pieces));
+}
+
 /// The sum of it, `more` said of their number. Throws where not all have good results; where some
 /// are not made yet, returns how many.
 int tell(const std::vector<batch::Row>& rows, const std::string& more, bool json,
@@ -74,7 +89,7 @@ int tell(const std::vector<batch::Row>& rows, const std::string& more, bool json
     for (const auto& [verdict, count] : verdicts)
       std::printf("verdict %s: %d\n", verdict.c_str(), count);
     if (waiting > 0) std::printf("not made yet: %d\n", waiting);
-    std::printf("  %s\n", store.table().c_str());
+    std::printf("  %s\n  %s\n", store.table().c_str(), store.page().c_str());
   }
   const int failed = verdicts.contains("failed") ? verdicts.at("failed") : 0;
   if (without > 0)
@@ -216,7 +231,7 @@ class Batch {
 
   void write_table() {
     fill(rows_, store_);
-    if (options_.table) store_.write_table(table_of(rows_));
+    if (options_.table) write_overview(rows_, store_);
     told_ = Clock::now();
   }
 
@@ -248,7 +263,7 @@ void merge_batch(const std::vector<std::string>& names, const batch::Store& stor
   std::vector<batch::Row> rows;
   for (const std::string& name : names) rows.push_back({name, {}});
   fill(rows, store);
-  store.write_table(table_of(rows));
+  write_overview(rows, store);
   const int waiting = tell(rows, "", json, store);
   if (waiting == 0) return;
   const auto first =

@@ -35,6 +35,11 @@ std::string to_json(const std::string& name, const Outcome& o) {
       .dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
+std::string to_json(const std::string& name, const std::optional<Outcome>& outcome) {
+  if (outcome) return to_json(name, *outcome);
+  return json{{"name", name}}.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
 std::optional<Outcome> outcome_from_json(const std::string& text) {
   try {
     const json j = json::parse(text);

@@ -27,6 +27,8 @@ struct Outcome {
 };
 
 std::string to_json(const std::string& name, const Outcome& outcome);
+/// Without one: the name alone.
+std::string to_json(const std::string& name, const std::optional<Outcome>& outcome);
 /// Nothing: the text is damaged, or of another version of this file.
 std::optional<Outcome> outcome_from_json(const std::string& text);
 

@@ -66,6 +66,8 @@ void Store::set_outcome(const std::string& name, const Outcome& outcome) const {
 
 void Store::write_table(const std::string& contents) const { write_atomically(table(), contents); }
 
+void Store::write_page(const std::string& contents) const { write_atomically(page(), contents); }
+
 void Store::publish(const std::string& name, const std::string& from, const std::string& to) const {
   const fs::path source = results(name) / from, target = folder_ / to;
   const fs::path beside = folder_ / concat(".", to, ".", ::getpid());

@@ -36,6 +36,9 @@ class Store {
   /// The file batch.csv, as a whole.
   void write_table(const std::string& table) const;
   std::filesystem::path table() const { return folder_ / "batch.csv"; }
+  /// The file index.html, as a whole.
+  void write_page(const std::string& page) const;
+  std::filesystem::path page() const { return folder_ / "index.html"; }
   /// Makes the piece's file `from` (such as volume.vdb) the batch's file `to` as well: the same
   /// file by another name, or a copy where the file system has no such names. Throws Error where it
   /// can do neither.

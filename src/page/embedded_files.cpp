@@ -26,10 +26,22 @@ __asm__(PHOTOHULL_BEGIN(photohull_report_script)         //
         PHOTOHULL_FILE(PHOTOHULL_WEB "/main.js")         //
         PHOTOHULL_END(photohull_report_script));
 
+__asm__(PHOTOHULL_BEGIN(photohull_batch_template) PHOTOHULL_FILE(PHOTOHULL_WEB "/batch.html")
+            PHOTOHULL_END(photohull_batch_template));
+__asm__(PHOTOHULL_BEGIN(photohull_batch_style) PHOTOHULL_FILE(PHOTOHULL_WEB "/batch.css")
+            PHOTOHULL_END(photohull_batch_style));
+__asm__(PHOTOHULL_BEGIN(photohull_batch_script)       //
+        PHOTOHULL_FILE(PHOTOHULL_WEB "/elements.js")  //
+        PHOTOHULL_FILE(PHOTOHULL_WEB "/batch.js")     //
+        PHOTOHULL_END(photohull_batch_script));
+
 PHOTOHULL_DECLARE(photohull_three_js);
 PHOTOHULL_DECLARE(photohull_report_template);
 PHOTOHULL_DECLARE(photohull_report_style);
 PHOTOHULL_DECLARE(photohull_report_script);
+PHOTOHULL_DECLARE(photohull_batch_template);
+PHOTOHULL_DECLARE(photohull_batch_style);
+PHOTOHULL_DECLARE(photohull_batch_script);
 
 namespace photohull::page {
 
@@ -40,6 +52,13 @@ std::string_view page_template() {
 std::string_view page_style() { return {photohull_report_style_begin, photohull_report_style_end}; }
 std::string_view page_script() {
   return {photohull_report_script_begin, photohull_report_script_end};
+}
+std::string_view batch_template() {
+  return {photohull_batch_template_begin, photohull_batch_template_end};
+}
+std::string_view batch_style() { return {photohull_batch_style_begin, photohull_batch_style_end}; }
+std::string_view batch_script() {
+  return {photohull_batch_script_begin, photohull_batch_script_end};
 }
 
 }  // namespace photohull::page

@@ -110,14 +110,14 @@ class Page:
         self.call("Emulation.setEmulatedMedia", features=features)
         self.flights = 0.0 if still else 0.9
 
-    def load(self, path: Path) -> float:
+    def load(self, path: Path, ready: str = "document.getElementById('viewport')?.getAttribute('aria-busy') === 'false'") -> float:
         """Seconds until the page says that it is ready."""
         start = time.monotonic()
         self.loaded = False
         self.call("Page.navigate", url=path.absolute().as_uri())
         while not self.loaded:
             self.note(self.receive())
-        self.wait("document.getElementById('viewport')?.getAttribute('aria-busy') === 'false'")
+        self.wait(ready)
         return time.monotonic() - start
 
     def evaluate(self, expression: str) -> Any:

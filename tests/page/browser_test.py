@@ -270,6 +270,49 @@ class ReconstructionPage(PageCase):
         self.check_loads_nothing()
 
 
+class BatchPage(unittest.TestCase):
+    """Of a batch with a name that wants to be markup, and a scene that is not there."""
+
+    def setUp(self) -> None:
+        self.folder = tempfile.TemporaryDirectory(prefix="photohull_batch_")
+        out = Path(self.folder.name) / "out"
+        pieces = Path(self.folder.name) / "list.txt"
+        pieces.write_text(f"\"{SCENE}\" --name \"<b>it's 1\"\n\"{SCENE}\" --name second --resolution 40\nnowhere --name lost\n", encoding="utf-8")
+        subprocess.run([PHOTOHULL, "batch", "--list", str(pieces), "--out", str(out), "--method", "hull", "--resolution", "48",
+                        "--refine-cameras", "off"], check=False, capture_output=True)
+        self.page = Page(CHROMIUM)
+        self.page.size(1000, 800)
+        self.page.load(out / "index.html", "document.querySelectorAll('article').length === 3")
+
+    def tearDown(self) -> None:
+        self.page.close()
+        self.folder.cleanup()
+
+    def names(self) -> list[str]:
+        return self.page.evaluate("[...document.querySelectorAll('article h2')].map(e => e.textContent)")
+
+    def test_shows_all_and_chooses_among_them(self) -> None:
+        self.assertEqual(self.names(), ["<b>it's 1", "second", "lost"])
+        self.page.wait("[...document.images].every(image => image.complete)")
+        self.assertEqual(self.page.evaluate("[...document.images].map(image => image.naturalWidth > 100)"), [True, True])
+        self.assertIn("1 no result", self.page.evaluate("document.getElementById('summary').textContent"))
+        self.assertEqual(self.page.evaluate("document.querySelectorAll('#timeline a.without').length"), 1)
+        self.page.evaluate("document.getElementById('filter-without').click()")
+        self.assertEqual(self.names(), ["lost"])
+        self.page.evaluate("document.querySelector('#timeline a').click()")  # which is asked for, whatever was chosen
+        self.assertEqual(len(self.names()), 3)
+        self.page.evaluate("document.getElementById('search').value = 'SEC'")
+        self.page.evaluate("document.getElementById('search').dispatchEvent(new Event('input'))")
+        self.assertEqual(self.names(), ["second"])
+        self.assertEqual(self.page.errors, [])
+        link = self.page.evaluate("document.querySelector('article h2 a').href")
+        self.assertTrue(link.endswith("/out/second/report.html"), link)
+        if picture := os.environ.get("PHOTOHULL_PICTURE"):
+            self.page.evaluate("document.getElementById('search').value = ''")
+            self.page.evaluate("document.getElementById('search').dispatchEvent(new Event('input'))")
+            Path(picture).write_bytes(self.page.screenshot("body"))
+
+
 if __name__ == "__main__":
     if not CHROMIUM:
         print("There is no chromium here; scripts/test.sh installs it.")

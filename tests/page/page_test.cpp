@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/image.h"
+#include "page/make_batch_page.h"
 #include "sample_page.h"
 #include "unpacked.h"
 
@@ -35,6 +36,19 @@ std::string inside(const std::string& page, const std::string& id) {
 std::string sample_page(const TriMesh& mesh) {
   return page::make_page(sample_report(mesh), "photohull reconstruct " + std::string(kHostileName),
                          sample_shown(mesh));
+}
+
+TEST(BatchPage, KeepsNamesFromBecomingMarkup) {
+  const page::ShownPiece pieces[] = {
+      {R"({"name": "</script><script>alert(1)</script>"})", true, false},
+      {R"({"name": "b", "verdict": "good"})", true, true}};
+  const std::string page = page::make_batch_page(pieces);
+  EXPECT_EQ(count_of(page, "<script"), 2u);
+  EXPECT_THAT(inside(page, "data"),
+              HasSubstr("\"verdict\":\"good\",\"preview\":true,\"page\":true"));
+  EXPECT_THAT(page, Not(HasSubstr("@@")));
+  const page::ShownPiece damaged[] = {{"[1]", false, false}};
+  EXPECT_THROW(page::make_batch_page(damaged), Error);
 }
 
 TEST(ReportPage, KeepsTextsOfTheSceneFromBecomingMarkup) {
