@@ -21,7 +21,10 @@ namespace {
 using batch::Outcome;
 using Clock = std::chrono::steady_clock;
 
+/// The table is written this often, and rarer where that takes long: many processes that share a
+/// file system would else do little but look for each other's results.
 constexpr std::chrono::seconds kTableEvery(5);
+constexpr int kTableShare = 50;  ///< of the time goes into tables at most: one in so many
 
 /// A piece's share of the batch's progress; says whose warnings they are.
 class PieceProgress : public Progress {
@@ -137,7 +140,7 @@ class Batch {
       PieceProgress progress(progress_, pieces_[i].name, pipeline::total_weight(pieces_[i].job));
       if (!work_at(i, progress)) in_other_hands.push_back(i);
       progress.finish();
-      if (Clock::now() - told_ > kTableEvery) write_table();
+      if (Clock::now() > next_table_) write_table();
     }
     for (const std::size_t i : in_other_hands) {
       if (enough()) return;
@@ -230,9 +233,11 @@ class Batch {
   }
 
   void write_table() {
+    const auto start = Clock::now();
     fill(rows_, store_);
     if (options_.table) write_overview(rows_, store_);
-    told_ = Clock::now();
+    const auto end = Clock::now();
+    next_table_ = end + std::max<Clock::duration>(kTableEvery, kTableShare * (end - start));
   }
 
   std::string made_before() const {
@@ -248,7 +253,7 @@ class Batch {
   const BatchOptions& options_;
   TerminalProgress progress_;
   std::vector<batch::Row> rows_;
-  Clock::time_point told_ = Clock::now();
+  Clock::time_point next_table_ = Clock::now() + kTableEvery;
   int made_ = 0, kept_ = 0, elsewhere_ = 0;
 };
 
