@@ -8,6 +8,7 @@
 #include <ctime>
 
 #include "core/error.h"
+#include "gpu/buffer_pool.h"
 #include "gpu/egl_devices.h"
 #include "gpu/gl.h"
 #include "gpu/gl_error.h"
@@ -60,11 +61,13 @@ Context::Context(int egl_device_index) : egl_(std::make_unique<Egl>()) {
   }
   set_current_limits(&limits_);
   set_current_traffic(&traffic_);
+  start_buffer_pool();
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
 }
 
 Context::~Context() {
+  end_buffer_pool();
   programs_.clear();
   set_current_limits(nullptr);
   set_current_traffic(nullptr);
@@ -78,6 +81,7 @@ void Context::check_errors(const char* where) const {
 void Context::release_deleted() {
   constexpr unsigned kUnits = 8;
   for (unsigned unit = 0; unit < kUnits; ++unit) glBindTextureUnit(unit, 0);
+  empty_buffer_pool();
   Program::compute(*this, "gpu_nothing.comp.glsl")->dispatch(*this, "gpu_nothing", 1);
   malloc_trim(0);
 }
