@@ -12,6 +12,8 @@ using glm::vec4;
 #endif
 
 constexpr int kViewsBinding = 0;  // GpuView, one a camera
+constexpr int kUniformViewsBinding = 2;  // or kMostUniformViews of them, as uniforms (UNIFORM_VIEWS)
+constexpr int kMostUniformViews = 170;   // that every device has room for
 constexpr int kImagesUnit = 0;    // array texture of the photographs
 
 struct GpuView {

@@ -53,8 +53,8 @@ Coverage::LackingPixels Coverage::lacking_pixels(double inside) const {
     const auto texels = [&](int pixels, int size) {
       std::vector<std::array<int, 2>> ends;
       for (int i = 0; i < pixels; ++i)
-        ends.push_back({std::min(int(i * scale), size - 1),
-                        std::min(int((i + 1) * scale), size - 1)});
+        ends.push_back(
+            {std::min(int(i * scale), size - 1), std::min(int((i + 1) * scale), size - 1)});
       return ends;
     };
     const auto columns = texels(s->width, map.size.x), rows = texels(s->height, map.size.y);
@@ -64,9 +64,9 @@ Coverage::LackingPixels Coverage::lacking_pixels(double inside) const {
       const float* high = map.depths.data() + std::ptrdiff_t(rows[y][0]) * map.size.x;
       const float* low = map.depths.data() + std::ptrdiff_t(rows[y][1]) * map.size.x;
       for (const auto& [left, right] : columns) {
-        const bool bare = s->pixels[at] <= -inside &&
-                          (std::isinf(high[left]) || std::isinf(high[right]) ||
-                           std::isinf(low[left]) || std::isinf(low[right]));
+        const bool bare =
+            s->pixels[at] <= -inside && (std::isinf(high[left]) || std::isinf(high[right]) ||
+                                         std::isinf(low[left]) || std::isinf(low[right]));
         pixels[at++] = bare;
         any = any || bare;
       }

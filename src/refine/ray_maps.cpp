@@ -25,8 +25,9 @@ constexpr float kLeastTexture = 0.5f;
 /// At the voxel nearest to a point that is not far below 0.
 double value_at(const SparseVolume& v, const glm::dvec3& p) { return v.at(glm::ivec3(p + 0.5)); }
 
-constexpr double kAcross = 0.8;  // of the distance to the hull's surface, that a step along a ray is
-constexpr int kMostClear = 16;   // bricks
+constexpr double kAcross =
+    0.8;                        // of the distance to the hull's surface, that a step along a ray is
+constexpr int kMostClear = 16;  // bricks
 
 /// How far empty space reaches about each brick of a hull: that many bricks to every side, at most
 /// kMostClear, are outside; 0 where the brick is not.

@@ -51,9 +51,8 @@ NearDistances::NearDistances(const SparseVolume& volume)
       if (std::abs(volume.distance[i]) < kNear) f(i);
   };
   const std::size_t bricks = volume.bricks.size();
-  tbb::parallel_for(std::size_t(0), bricks, [&](std::size_t b) {
-    for_near(b, [&](std::size_t i) { near_.mark(i); });
-  });
+  tbb::parallel_for(std::size_t(0), bricks,
+                    [&](std::size_t b) { for_near(b, [&](std::size_t i) { near_.mark(i); }); });
   near_.count();
   values_.resize(near_.marked());
   tbb::parallel_for(std::size_t(0), bricks, [&](std::size_t b) {

@@ -54,9 +54,8 @@ class Voter {
   SparseVolume fuse() {
     std::vector<glm::ivec3> bricks = bricks_of_hull();
     std::vector<float> values(bricks.size() * kBrickVoxels);
-    for_each_voxel(bricks, [&](std::size_t i, const glm::ivec3& voxel) {
-      values[i] = hull_.at(voxel);
-    });
+    for_each_voxel(bricks,
+                   [&](std::size_t i, const glm::ivec3& voxel) { values[i] = hull_.at(voxel); });
     for_some(values.size(), [&](std::size_t first, std::size_t end) {
       Asked asked;
       for (std::size_t i = first; i < end; ++i)
@@ -220,16 +219,15 @@ class Voter {
         const double x = asked.x[i], y = asked.y[i], z = asked.z[i];
         const double q = m[0].z * x + m[1].z * y + m[2].z * z + m[3].z;
         depth[i] = q;
-        column[i] =
-            ((m[0].x * x + m[1].x * y + m[2].x * z + m[3].x) / q + 0.5) / map.stride;
+        column[i] = ((m[0].x * x + m[1].x * y + m[2].x * z + m[3].x) / q + 0.5) / map.stride;
         row[i] = ((m[0].y * x + m[1].y * y + m[2].y * z + m[3].y) / q + 0.5) / map.stride;
       }
       for (std::size_t i = 0; i < asked.count; ++i) {
         if (!(depth[i] > 1 && column[i] >= 0 && row[i] >= 0 && column[i] < map.width &&
               row[i] < map.height))
           continue;
-        const std::size_t at = std::size_t(int(row[i])) * std::size_t(map.width) +
-                               std::size_t(int(column[i]));
+        const std::size_t at =
+            std::size_t(int(row[i])) * std::size_t(map.width) + std::size_t(int(column[i]));
         if (!(map.weight[at] > 0)) continue;
         const double ahead = (map.depth[at] - depth[i]) / options_.band;
         if (ahead < -1) continue;

@@ -75,7 +75,8 @@ class Flood {
       const float* values = volume_.distance.data() + slot * kBrickVoxels;
       for (std::size_t x = 0; x < open_[slot].size(); ++x) {
         std::uint64_t word = 0;
-        for (int i = 0; i < 64; ++i) word |= std::uint64_t(!(values[64 * x + std::size_t(i)] < 0)) << i;
+        for (int i = 0; i < 64; ++i)
+          word |= std::uint64_t(!(values[64 * x + std::size_t(i)] < 0)) << i;
         open_[slot][x] = word;
       }
     });

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "gpu/buffer.h"
 #include "gpu/program.h"
 #include "projtex/photographs.h"
 #include "refine/kernels/device_choice.h"
@@ -85,7 +86,7 @@ PatchMatcher::PatchMatcher(gpu::Context& context, const projtex::ImageSet& image
     : context_(context),
       images_(images),
       gpu_views_(projtex::to_gpu_views(cameras, images)),
-      views_(Buffer::of(gpu_views_)),
+      views_(gpu_views_),
       rules_(rules),
       launch_(launch) {}
 
@@ -143,7 +144,8 @@ void PatchMatcher::match(const Batch& batch, Matches& out) const {
   const bool shared = alike && batch.choices.size() == 1;
   const auto program = gpu::Program::compute(
       context_, "refine_match_patches.comp.glsl",
-      concat(shared ? concat("#define SHARED_VIEWS ", batch.choices[0].views.size(), "\n") : "",
+      concat(shared ? concat("#define SHARED_VIEWS ", batch.choices[0].views.size(), "\n")
+                    : std::string(views_.defines()),
              "#define PATCH_RADIUS ", rules_.radius, "\n", bent ? "#define PATCH_BENT\n" : "",
              batch.textures_alone ? "#define TEXTURES_ALONE\n" : ""));
   const std::size_t count = batch.indices.size(), offsets = std::size_t(out.range.count);
@@ -164,7 +166,7 @@ void PatchMatcher::match(const Batch& batch, Matches& out) const {
   const std::size_t score_count = batch.textures_alone ? 0 : count * offsets;
   const Buffer scores(score_count * sizeof(float)), textures(count * sizeof(float));
   uniforms.bind_uniform(shaders::kMatchParametersBinding);
-  views_.bind_storage(shaders::kViewsBinding);
+  views_.bind();
   surfels.bind_storage(shaders::kMatchSurfelsBinding);
   if (shared)
     choices.bind_uniform(shaders::kMatchSharedViewsBinding);
@@ -176,8 +178,9 @@ void PatchMatcher::match(const Batch& batch, Matches& out) const {
   images_.texture().bind(shaders::kImagesUnit);
   program->dispatch(context_, launch_, gpu::group_count(count * offsets, shaders::kPatchGroup));
   for (const std::uint32_t i : batch.indices)
-    out.samples += (batch.textures_alone ? 1 : std::int64_t(offsets) * batch.choice(i).views.size()) *
-                   taps_of(rules_.radius);
+    out.samples +=
+        (batch.textures_alone ? 1 : std::int64_t(offsets) * batch.choice(i).views.size()) *
+        taps_of(rules_.radius);
   const std::size_t first = batch.indices.front();
   if (batch.indices.back() - first + 1 == count) {  // all of them: they follow each other
     if (score_count > 0)

@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "gpu/buffer.h"
 #include "gpu/context.h"
 #include "projtex/gpu_views.h"
 #include "projtex/image_set.h"
+#include "refine/kernels/device_views.h"
 #include "refine/match.h"
 #include "refine/view_choice.h"
 
@@ -49,7 +49,8 @@ class PatchMatcher {
   /// surfel's.
   Matches match_alike(std::span<const PatchSurfel> surfels, std::span<const ViewChoice> choices,
                       std::span<const std::uint32_t> choice_of, const OffsetRange& range) const;
-  /// Matches::texture and samples alone, of flat patches where the surfels are: nothing is compared.
+  /// Matches::texture and samples alone, of flat patches where the surfels are: nothing is
+  /// compared.
   Matches textures(std::span<const PatchSurfel> surfels, std::span<const ViewChoice> choices) const;
   /// The same for surfels that share few choices.
   Matches textures_alike(std::span<const PatchSurfel> surfels, std::span<const ViewChoice> choices,
@@ -64,7 +65,7 @@ class PatchMatcher {
   gpu::Context& context_;
   const projtex::ImageSet& images_;
   std::vector<shaders::GpuView> gpu_views_;
-  gpu::Buffer views_;
+  DeviceViews views_;
   PatchRules rules_;
   const char* launch_;
 };
