@@ -12,8 +12,6 @@ using glm::vec4;
 #endif
 
 constexpr int kViewsBinding = 0;  // GpuView, one a camera
-constexpr int kUniformViewsBinding = 2;  // or kMostUniformViews of them, as uniforms (UNIFORM_VIEWS)
-constexpr int kMostUniformViews = 170;   // that every device has room for
 constexpr int kImagesUnit = 0;    // array texture of the photographs
 
 struct GpuView {
@@ -24,6 +22,9 @@ struct GpuView {
   vec4 size;    // xy: image size in pixels; zw: reciprocal size of the array texture in pixels
   vec4 detail;  // x: fine detail beside other views of the same (ImageSet::sharpness), at most 1
 };
+
+// GpuViews as uniforms in place of those at kViewsBinding (UNIFORM_VIEWS), as many as every device has room for.
+constexpr int kUniformViewsBinding = 2, kMostUniformViews = 170;
 
 #ifdef __cplusplus
 static_assert(sizeof(GpuView) == 96);

@@ -2,15 +2,27 @@
 #pragma once
 
 #include <cstddef>
+#include <deque>
 
 namespace photohull::gpu {
 
-/// Makes this thread keep the stores of deleted buffers, for the context that is current on it; so
-/// does Context. What an earlier context left is forgotten.
-void start_buffer_pool();
-/// Deletes what is kept, and keeps nothing more.
-void end_buffer_pool();
-/// Deletes what is kept.
+/// What a context keeps. Its members are buffer_pool.cpp's.
+struct BufferPool {
+  struct Store {
+    unsigned id = 0;
+    std::size_t bytes = 0;
+  };
+  std::deque<Store> kept;        ///< of deleted buffers, the longest unused first
+  std::size_t bytes = 0;         ///< of these
+  Store staging;                 ///< through which results are read
+  const void* mapped = nullptr;  ///< that one, in the host's memory
+};
+
+/// For Context: where this thread keeps stores; null: nowhere.
+void set_current_pool(BufferPool* pool);
+/// Is it the one that is current on this thread?
+bool is_current(const BufferPool& pool);
+/// Deletes what the current one keeps.
 void empty_buffer_pool();
 
 /// A buffer that holds `bytes` at least, of undefined content. Throws Error when the device cannot

@@ -32,7 +32,9 @@ std::int64_t cpu_ns() {
 
 }  // namespace
 
-struct Context::Egl : EglHandles {};
+struct Context::Egl : EglHandles {
+  BufferPool pool;
+};
 
 std::unique_ptr<Context> Context::create(const std::string& device_selection, int threads) {
   if (threads > 0) setenv("LP_NUM_THREADS", std::to_string(threads).c_str(), 1);
@@ -61,13 +63,16 @@ Context::Context(int egl_device_index) : egl_(std::make_unique<Egl>()) {
   }
   set_current_limits(&limits_);
   set_current_traffic(&traffic_);
-  start_buffer_pool();
+  set_current_pool(&egl_->pool);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
 }
 
 Context::~Context() {
-  end_buffer_pool();
+  if (is_current(egl_->pool)) {
+    empty_buffer_pool();
+    set_current_pool(nullptr);
+  }
   programs_.clear();
   set_current_limits(nullptr);
   set_current_traffic(nullptr);
