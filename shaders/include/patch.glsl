@@ -48,9 +48,8 @@ TangentPatch tangent_patch(vec3 centre, vec3 normal, GpuView reference, float vo
   return t;
 }
 
-// A view's image of a patch; the mip level is that of the tap's area.
-PatchFootprint footprint(int v, TangentPatch t) {
-  GpuView view = views[v];
+// The image of a patch in the view whose photograph lies in a layer; the mip level is that of the tap's area.
+PatchFootprint footprint(GpuView view, int layer, TangentPatch t) {
   vec3 p = project(view, t.centre);
   vec2 pixel = p.xy / p.z;
   vec3 by_s = (view.row_s.xyz - pixel.x * view.row_q.xyz) / p.z, by_t = (view.row_t.xyz - pixel.y * view.row_q.xyz) / p.z;
@@ -61,7 +60,7 @@ PatchFootprint footprint(int v, TangentPatch t) {
   f.dv = dv * view.size.zw;
   f.dn = vec2(dot(by_s, t.normal), dot(by_t, t.normal)) * view.size.zw;
   f.origin = texture_coordinate(view, pixel);
-  f.layer = float(v);
+  f.layer = float(layer);
   return f;
 }
 

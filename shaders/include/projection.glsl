@@ -1,7 +1,11 @@
 // Projective texture mapping of one point (Segal et al. 1992).
 #include "shared/view.h"
 
+#ifdef UNIFORM_VIEWS
+layout(std140, binding = kUniformViewsBinding) uniform Views { GpuView views[kMostUniformViews]; };
+#else
 layout(std430, binding = kViewsBinding) readonly buffer Views { GpuView views[]; };
+#endif
 
 // Homogeneous texture coordinates (s, t, q) of a point in voxel coordinates.
 vec3 project(GpuView view, vec3 voxel) {

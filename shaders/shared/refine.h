@@ -3,6 +3,7 @@
 #define PHOTOHULL_SHADERS_REFINE_H
 
 #include "shared/surface_points.h"
+#include "shared/view.h"
 
 #ifdef __cplusplus
 #include <glm/glm.hpp>
@@ -23,6 +24,7 @@ constexpr int kMatchChoicesBinding = 2;     // MatchChoice
 constexpr int kMatchScoresBinding = 3;
 constexpr int kMatchBendsBinding = 4;       // curvature along uu, uv, vv of tangent_patch
 constexpr int kMatchTexturesBinding = 5;
+constexpr int kMatchSharedViewsBinding = 1;  // SharedViews
 constexpr int kFitParametersBinding = 0;
 constexpr int kFitSurfelsBinding = 1;       // SurfacePoint
 constexpr int kFitChoicesBinding = 2;       // MatchChoice
@@ -56,7 +58,7 @@ struct MatchParameters {
 
 struct MatchSurfel {
   vec4 position;  // xyz: voxel coordinates; w: what its offsets are multiplied with
-  vec4 normal;    // xyz: unit and outward
+  vec4 normal;    // xyz: unit and outward; w: the number of its MatchChoice
 };
 
 // The views that a surfel is matched in, by number; -1 in the places behind the last one. Such arrays lie
@@ -66,6 +68,12 @@ struct MatchChoice {
   int seen;                  // views that see the surfel
   int count;                 // views that it is matched in
   int hidden[kHiddenViews];  // the most frontal views that something hides it from
+};
+
+// The views of a choice that all surfels have.
+struct SharedViews {
+  GpuView views[kMatchViews];
+  ivec4 layers[kMatchViews];  // x: their numbers
 };
 
 // Fitting planes to the images after matching.

@@ -23,6 +23,9 @@ struct GpuView {
   vec4 detail;  // x: fine detail beside other views of the same (ImageSet::sharpness), at most 1
 };
 
+// GpuViews as uniforms in place of those at kViewsBinding (UNIFORM_VIEWS), as many as every device has room for.
+constexpr int kUniformViewsBinding = 2, kMostUniformViews = 170;
+
 #ifdef __cplusplus
 static_assert(sizeof(GpuView) == 96);
 }  // namespace photohull::shaders

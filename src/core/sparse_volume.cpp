@@ -8,23 +8,38 @@ Box GridSpec::bounds() const {
 }
 
 float SparseVolume::at(const glm::ivec3& voxel) const {
-  const glm::ivec3 size = grid.voxels();
-  for (int axis = 0; axis < 3; ++axis)
-    if (voxel[axis] < 0 || voxel[axis] >= size[axis]) return kBand;
+  const glm::uvec3 at(voxel), size(grid.voxels());  // what is below 0 becomes large
+  if (at.x >= size.x || at.y >= size.y || at.z >= size.z) return kBand;
   const std::uint32_t slot = table[grid.brick_index(voxel / kBrickEdge)];
   if (slot == kOutside) return kBand;
   if (slot == kInside) return -kBand;
-  return distance[std::size_t(slot) * kBrickVoxels + voxel_offset(voxel % kBrickEdge)];
+  return distance[std::size_t(slot) * kBrickVoxels + std::size_t(voxel_offset(voxel & 7))];
 }
 
 double SparseVolume::interpolated(const glm::dvec3& p) const {
-  const glm::dvec3 low = glm::floor(p), share = p - low;
-  double sum = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::ivec3 step(corner & 1, (corner >> 1) & 1, corner >> 2);
-    const glm::dvec3 w = glm::mix(1.0 - share, share, glm::dvec3(step));
-    sum += w.x * w.y * w.z * double(at(glm::ivec3(low) + step));
+  const glm::dvec3 low = glm::floor(p), share = p - low, rest = 1.0 - share;
+  const glm::ivec3 voxel(low), local = voxel & 7;
+  std::array<float, 8> corners;  // x fastest
+  const glm::uvec3 at(voxel), size(grid.voxels());
+  if (at.x < size.x && at.y < size.y && at.z < size.z && local.x < 7 && local.y < 7 &&
+      local.z < 7) {  // all of them in one brick
+    const std::uint32_t slot = table[grid.brick_index(voxel / kBrickEdge)];
+    if (slot == kOutside) return kBand;
+    if (slot == kInside) return -kBand;
+    const float* first =
+        distance.data() + std::size_t(slot) * kBrickVoxels + std::size_t(voxel_offset(local));
+    constexpr int kX = 64, kY = 8, kZ = 1;
+    corners = {first[0],  first[kX],      first[kY],      first[kX + kY],
+               first[kZ], first[kX + kZ], first[kY + kZ], first[kX + kY + kZ]};
+  } else {
+    for (int corner = 0; corner < 8; ++corner)
+      corners[std::size_t(corner)] =
+          this->at(voxel + glm::ivec3(corner & 1, (corner >> 1) & 1, corner >> 2));
   }
+  double sum = 0;
+  for (int corner = 0; corner < 8; ++corner)
+    sum += (corner & 1 ? share.x : rest.x) * (corner & 2 ? share.y : rest.y) *
+           (corner & 4 ? share.z : rest.z) * double(corners[std::size_t(corner)]);
   return sum;
 }
 

@@ -4,29 +4,29 @@
 
 #include "core/error.h"
 #include "core/option_word.h"
+#include "gpu/buffer_pool.h"
 #include "gpu/gl.h"
 #include "gpu/gl_error.h"
 #include "gpu/limits.h"
 #include "gpu/traffic.h"
 
 namespace photohull::gpu {
+namespace {
 
-Buffer::Buffer(std::size_t bytes, const void* data) : bytes_(bytes) {
-  glCreateBuffers(1, &id_);
-  // A zero-sized store is illegal in GL, an empty list is not: keep at least one vector.
-  glNamedBufferStorage(id_, GLsizeiptr(std::max<std::size_t>(bytes, 16)),
-                       bytes >= 16 ? data : nullptr, GL_DYNAMIC_STORAGE_BIT);
-  const unsigned error = pending_error();
-  if (error != GL_NO_ERROR) {
-    glDeleteBuffers(1, &id_);
-    throw_gl_error(error, concat("a buffer of ", bytes >> 20, " MiB"));
-  }
-  if (data && bytes >= 16) count_upload(bytes);
-  if (data && bytes > 0 && bytes < 16) write(0, bytes, data);
+/// What the buffer was made for: its store may be larger. An empty range is illegal in GL, an empty
+/// list is not: a vector at least.
+void bind_range(GLenum target, unsigned binding, unsigned id, std::size_t bytes) {
+  glBindBufferRange(target, binding, id, 0, GLsizeiptr(std::max<std::size_t>(bytes, 16)));
+}
+
+}  // namespace
+
+Buffer::Buffer(std::size_t bytes, const void* data) : id_(take_store(bytes)), bytes_(bytes) {
+  if (data) write(0, bytes, data);
 }
 
 Buffer::~Buffer() {
-  if (id_) glDeleteBuffers(1, &id_);
+  if (id_) give_store(id_, bytes_);
 }
 
 void Buffer::bind_storage(unsigned binding) const {
@@ -36,11 +36,11 @@ void Buffer::bind_storage(unsigned binding) const {
                        " MiB that this graphics device gives a kernel in one block; lower ",
                        option_word("resolution"), ", use fewer ", option_word("views"),
                        " or give another ", option_word("device")));
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, id_);
+  bind_range(GL_SHADER_STORAGE_BUFFER, binding, id_, bytes_);
 }
 
 void Buffer::bind_uniform(unsigned binding) const {
-  glBindBufferBase(GL_UNIFORM_BUFFER, binding, id_);
+  bind_range(GL_UNIFORM_BUFFER, binding, id_, bytes_);
 }
 
 void Buffer::write(std::size_t offset, std::size_t size, const void* data) {
@@ -54,13 +54,16 @@ void Buffer::read(std::size_t offset, std::size_t size, void* data) const {
   PHOTOHULL_CHECK_OP(offset + size, <=, bytes_);
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   if (size == 0) return;
-  glGetNamedBufferSubData(id_, GLintptr(offset), GLsizeiptr(size), data);
+  read_store(id_, offset, size, data);
   count_download(size);
   check_gl("reading a buffer");
 }
 
 void Buffer::fill(unsigned word) {
-  glClearNamedBufferData(id_, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
+  const std::size_t words = (bytes_ + 3) / 4;
+  if (words > 0)
+    glClearNamedBufferSubData(id_, GL_R32UI, 0, GLsizeiptr(4 * words), GL_RED_INTEGER,
+                              GL_UNSIGNED_INT, &word);
 }
 
 }  // namespace photohull::gpu

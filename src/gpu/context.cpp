@@ -8,6 +8,7 @@
 #include <ctime>
 
 #include "core/error.h"
+#include "gpu/buffer_pool.h"
 #include "gpu/egl_devices.h"
 #include "gpu/gl.h"
 #include "gpu/gl_error.h"
@@ -31,7 +32,9 @@ std::int64_t cpu_ns() {
 
 }  // namespace
 
-struct Context::Egl : EglHandles {};
+struct Context::Egl : EglHandles {
+  BufferPool pool;
+};
 
 std::unique_ptr<Context> Context::create(const std::string& device_selection, int threads) {
   if (threads > 0) setenv("LP_NUM_THREADS", std::to_string(threads).c_str(), 1);
@@ -60,11 +63,16 @@ Context::Context(int egl_device_index) : egl_(std::make_unique<Egl>()) {
   }
   set_current_limits(&limits_);
   set_current_traffic(&traffic_);
+  set_current_pool(&egl_->pool);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
 }
 
 Context::~Context() {
+  if (is_current(egl_->pool)) {
+    empty_buffer_pool();
+    set_current_pool(nullptr);
+  }
   programs_.clear();
   set_current_limits(nullptr);
   set_current_traffic(nullptr);
@@ -78,6 +86,7 @@ void Context::check_errors(const char* where) const {
 void Context::release_deleted() {
   constexpr unsigned kUnits = 8;
   for (unsigned unit = 0; unit < kUnits; ++unit) glBindTextureUnit(unit, 0);
+  empty_buffer_pool();
   Program::compute(*this, "gpu_nothing.comp.glsl")->dispatch(*this, "gpu_nothing", 1);
   malloc_trim(0);
 }

@@ -1,6 +1,11 @@
 #include "refine/coverage.h"
 
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "projtex/photographs.h"
 
@@ -35,6 +40,54 @@ Coverage::Votes Coverage::votes(const glm::dvec3& point, double inside) const {
     votes.before += covered && q.z + kBefore < depth;
   }
   return votes;
+}
+
+Coverage::LackingPixels Coverage::lacking_pixels(double inside) const {
+  LackingPixels out(maps_.size());
+  tbb::parallel_for(std::size_t(0), maps_.size(), [&](std::size_t v) {
+    const SilhouetteDistance* s = silhouettes_[v].distance;
+    if (!s) return;
+    const visibility::HostDepthMap& map = maps_[v];
+    const auto scale = double(map.texels_per_pixel);
+    // A pixel is at most as wide as a texel: it touches those at its ends.
+    const auto texels = [&](int pixels, int size) {
+      std::vector<std::array<int, 2>> ends;
+      for (int i = 0; i < pixels; ++i)
+        ends.push_back(
+            {std::min(int(i * scale), size - 1), std::min(int((i + 1) * scale), size - 1)});
+      return ends;
+    };
+    const auto columns = texels(s->width, map.size.x), rows = texels(s->height, map.size.y);
+    std::vector<std::uint8_t> pixels(s->pixels.size(), 0);
+    bool any = false;
+    for (std::size_t y = 0, at = 0; y < rows.size(); ++y) {
+      const float* high = map.depths.data() + std::ptrdiff_t(rows[y][0]) * map.size.x;
+      const float* low = map.depths.data() + std::ptrdiff_t(rows[y][1]) * map.size.x;
+      for (const auto& [left, right] : columns) {
+        const bool bare =
+            s->pixels[at] <= -inside && (std::isinf(high[left]) || std::isinf(high[right]) ||
+                                         std::isinf(low[left]) || std::isinf(low[right]));
+        pixels[at++] = bare;
+        any = any || bare;
+      }
+    }
+    if (any) out[v] = std::move(pixels);
+  });
+  return out;
+}
+
+int Coverage::most_lack(const glm::dvec3& point, const LackingPixels& lacking) const {
+  int lack = 0;
+  for (std::size_t v = 0; v < cameras_.size(); ++v) {
+    if (lacking[v].empty()) continue;
+    const glm::dvec3 q = cameras_[v].projection * glm::dvec4(point, 1);
+    if (q.z <= 1) continue;
+    const SilhouetteDistance& s = *silhouettes_[v].distance;
+    const double x = q.x / q.z + 0.5, y = q.y / q.z + 0.5;
+    if (!(x >= 0 && y >= 0 && x < s.width && y < s.height)) continue;
+    lack += lacking[v][std::size_t(int(y)) * std::size_t(s.width) + std::size_t(int(x))];
+  }
+  return lack;
 }
 
 }  // namespace photohull::refine

@@ -1,6 +1,7 @@
 // What of the silhouettes a set of voxels covers.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -27,6 +28,13 @@ class Coverage {
   /// What the views say of a point (voxel coordinates); foreground counts from `inside` pixels
   /// within the silhouette on.
   Votes votes(const glm::dvec3& point, double inside) const;
+
+  /// The pixels of every view where Votes::lack may count, a byte each; none of a view in which it
+  /// nowhere does.
+  using LackingPixels = std::vector<std::vector<std::uint8_t>>;
+  LackingPixels lacking_pixels(double inside) const;
+  /// At least Votes::lack of a point, and most often just that, for a fraction of the time.
+  int most_lack(const glm::dvec3& point, const LackingPixels& lacking) const;
 
  private:
   std::span<const carving::Silhouette> silhouettes_;

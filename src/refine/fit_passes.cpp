@@ -46,7 +46,7 @@ class FitPass {
     const std::vector<Settled> before = settled.at(grid_, positions_);
     for (std::size_t k = 0; k < choices_.size(); ++k)
       if (is_settled(before[k]) && before[k] != Settled::kFlat) choices_[k].views.clear();
-    Matches matches = match_vertices(job, grid_, mesh_, {}, choices_, {});
+    Matches matches = vertex_textures(job, grid_, mesh_, choices_);
     texture_ = std::move(matches.texture);
     fits_ = fit_patches(job.context, surfels(), job.photographs, choices_, options_.fit);
     samples_ = matches.samples + samples_of(choices_, options_.fit);

@@ -3,6 +3,7 @@
 #include <malloc.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "refine/kernels/match_patches.h"
 #include "render/surface_points.h"
@@ -22,6 +23,32 @@ std::vector<PatchSurfel> surfels_of(const GridSpec& grid, const TriMesh& mesh, s
   for (const render::SurfacePoint& point : render::to_voxels(grid, mesh, first, count))
     out.push_back({point.position, point.normal});
   return out;
+}
+
+PatchMatcher matcher_of(const RefineJob& job, const GridSpec& grid) {
+  return {job.context, job.photographs.images, projtex::to_grid(job.photographs.cameras, grid),
+          patch_rules(job.options.match, job.photographs.noise_sigma), "refine_match_patches"};
+}
+
+/// What take(first, count) says of parts of the vertices.
+template <typename Take>
+Matches in_parts(const TriMesh& mesh, const Take& take) {
+  const std::size_t total = mesh.positions.size();
+  Matches all;
+  for (std::size_t first = 0; first < total; first += kPart) {
+    Matches part = take(first, std::min(kPart, total - first));
+    if (first == 0) {
+      const std::size_t counted = part.texture.size();
+      all = std::move(part);
+      all.scores.reserve(all.scores.size() / counted * total);
+      all.texture.reserve(total);
+      continue;
+    }
+    all.scores.insert(all.scores.end(), part.scores.begin(), part.scores.end());
+    all.texture.insert(all.texture.end(), part.texture.begin(), part.texture.end());
+    all.samples += part.samples;
+  }
+  return all;
 }
 
 }  // namespace
@@ -53,24 +80,22 @@ void give_back(const TriMesh& mesh) {
 Matches match_vertices(const RefineJob& job, const GridSpec& grid, const TriMesh& mesh,
                        std::span<const glm::vec3> bends, std::span<const ViewChoice> choices,
                        const OffsetRange& range) {
-  const PatchMatcher matcher(
-      job.context, job.photographs.images, projtex::to_grid(job.photographs.cameras, grid),
-      patch_rules(job.options.match, job.photographs.noise_sigma), "refine_match_patches");
-  const std::size_t total = mesh.positions.size();
-  Matches all;
+  const PatchMatcher matcher = matcher_of(job, grid);
+  Matches all = in_parts(mesh, [&](std::size_t first, std::size_t count) {
+    return matcher.match(surfels_of(grid, mesh, first, count),
+                         bends.empty() ? bends : bends.subspan(first, count),
+                         choices.subspan(first, count), range);
+  });
   all.range = range;
-  all.scores.reserve(total * std::size_t(range.count));
-  all.texture.reserve(total);
-  for (std::size_t first = 0; first < total; first += kPart) {
-    const std::size_t count = std::min(kPart, total - first);
-    const Matches part = matcher.match(surfels_of(grid, mesh, first, count),
-                                       bends.empty() ? bends : bends.subspan(first, count),
-                                       choices.subspan(first, count), range);
-    all.scores.insert(all.scores.end(), part.scores.begin(), part.scores.end());
-    all.texture.insert(all.texture.end(), part.texture.begin(), part.texture.end());
-    all.samples += part.samples;
-  }
   return all;
+}
+
+Matches vertex_textures(const RefineJob& job, const GridSpec& grid, const TriMesh& mesh,
+                        std::span<const ViewChoice> choices) {
+  const PatchMatcher matcher = matcher_of(job, grid);
+  return in_parts(mesh, [&](std::size_t first, std::size_t count) {
+    return matcher.textures(surfels_of(grid, mesh, first, count), choices.subspan(first, count));
+  });
 }
 
 }  // namespace photohull::refine

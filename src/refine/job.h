@@ -51,5 +51,8 @@ void give_back(const TriMesh& mesh);
 Matches match_vertices(const RefineJob& job, const GridSpec& grid, const TriMesh& mesh,
                        std::span<const glm::vec3> bends, std::span<const ViewChoice> choices,
                        const OffsetRange& range);
+/// PatchMatcher::textures of the same.
+Matches vertex_textures(const RefineJob& job, const GridSpec& grid, const TriMesh& mesh,
+                        std::span<const ViewChoice> choices);
 
 }  // namespace photohull::refine

@@ -3,7 +3,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "core/viewing_depth.h"
 #include "refine/ray_partners.h"
@@ -20,8 +22,40 @@ constexpr double kLeastStride = 1.5;  // pixels between rays: closer ones show t
 // search space that no surface bounds: plain background fits anywhere.
 constexpr float kLeastTexture = 0.5f;
 
-double value_at(const SparseVolume& v, const glm::dvec3& p) {
-  return v.at(glm::ivec3(glm::floor(p + 0.5)));
+/// At the voxel nearest to a point that is not far below 0.
+double value_at(const SparseVolume& v, const glm::dvec3& p) { return v.at(glm::ivec3(p + 0.5)); }
+
+constexpr double kAcross =
+    0.8;                        // of the distance to the hull's surface, that a step along a ray is
+constexpr int kMostClear = 16;  // bricks
+
+/// How far empty space reaches about each brick of a hull: that many bricks to every side, at most
+/// kMostClear, are outside; 0 where the brick is not.
+std::vector<std::uint8_t> clear_space(const SparseVolume& hull) {
+  const glm::ivec3 n = hull.grid.bricks;
+  std::vector<std::uint8_t> clear(hull.table.size());
+  for (std::size_t i = 0; i < clear.size(); ++i)
+    clear[i] = hull.table[i] == SparseVolume::kOutside ? kMostClear : 0;
+  // Chessboard distances, axis by axis: the least over what lies k bricks away, but at least k.
+  std::array<std::size_t, 3> strides{1, std::size_t(n.x), std::size_t(n.x) * std::size_t(n.y)};
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::size_t stride = strides[std::size_t(axis)];
+    std::vector<std::uint8_t> line(std::size_t(n[axis]));
+    for (std::size_t first = 0; first < clear.size(); ++first) {
+      if (first / stride % line.size() != 0) continue;  // not where a line begins
+      for (std::size_t i = 0; i < line.size(); ++i) line[i] = clear[first + i * stride];
+      for (std::size_t i = 0; i < line.size(); ++i) {
+        std::uint8_t least = line[i];
+        for (std::size_t k = 1; k < least; ++k) {
+          const auto at = [&](std::size_t j) { return std::max(line[j], std::uint8_t(k)); };
+          if (i >= k) least = std::min(least, at(i - k));
+          if (i + k < line.size()) least = std::min(least, at(i + k));
+        }
+        clear[first + i * stride] = least;
+      }
+    }
+  }
+  return clear;
 }
 
 /// Where a ray enters the surface, about `t` voxels along it.
@@ -55,6 +89,7 @@ class RayMapper {
       : hull_(hull),
         surface_(surface),
         options_(options),
+        clear_(clear_space(hull)),
         cameras_(projtex::to_grid(photographs.cameras, hull.grid)),
         partners_(choose_partners(cameras_, {glm::dvec3(0), glm::dvec3(hull.grid.voxels())},
                                   options.nearest_partner, options.tiles)),
@@ -109,11 +144,34 @@ class RayMapper {
       t = std::max(t, std::min(s, e));
       end = std::min(end, std::max(s, e));
     }
+    const glm::dvec3 inverse = 1.0 / d;
     while (t < end) {
+      const glm::dvec3 at = from + t * d + 0.5;
+      const glm::ivec3 brick = glm::ivec3(at) / kBrickEdge;
+      if (const int clear = clear_at(brick); clear > 0) {
+        // The same steps as below, as far as the space about the brick is sure to be outside.
+        double left = end;
+        for (int a = 0; a < 3; ++a) {
+          if (std::abs(d[a]) < 1e-12) continue;
+          const int side = d[a] > 0 ? brick[a] + clear : brick[a] - clear + 1;
+          left = std::min(left, t + (side * kBrickEdge - at[a]) * inverse[a]);
+        }
+        constexpr double kStep = SparseVolume::kBand * kAcross;
+        t += std::max(1.0, std::ceil((left - t) / kStep)) * kStep;
+        continue;
+      }
       const double value = value_at(hull_, from + t * d);
       if (value <= 0.3 && !visit(t)) return;
-      t += std::max(0.5, std::abs(value) * 0.8);
+      t += std::max(0.5, std::abs(value) * kAcross);
     }
+  }
+
+  /// clear_space of a brick; 0 beside the grid.
+  int clear_at(const glm::ivec3& brick) const {
+    const glm::ivec3 n = hull_.grid.bricks;
+    const bool on_grid = unsigned(brick.x) < unsigned(n.x) && unsigned(brick.y) < unsigned(n.y) &&
+                         unsigned(brick.z) < unsigned(n.z);
+    return on_grid ? clear_[hull_.grid.brick_index(brick)] : 0;
   }
 
   /// A ray that ended where it met the surface goes on to where it leaves the hull.
@@ -237,6 +295,7 @@ class RayMapper {
   const SparseVolume& hull_;
   const SparseVolume* surface_;
   const VoteOptions& options_;
+  std::vector<std::uint8_t> clear_;  // by the hull's table: clear_space
   std::vector<projtex::GridCamera> cameras_;
   std::vector<ViewPartners> partners_;
   RaySearch search_;

@@ -25,7 +25,7 @@ OffsetRange away_from_camera(int count) { return {0, -1, count}; }
 
 double step_of(const Ray& ray, int count) { return std::max(1.0, ray.length / count); }
 
-glm::dvec3 place(const Ray& ray, const Finding& found) {
+glm::dvec3 place(const Ray& ray, const RayPlane& found) {
   return ray.from + found.along * ray.direction;
 }
 
@@ -51,7 +51,7 @@ class Guesses {
   }
 
   /// Planes about `found` in turning directions, until there are enough.
-  void fill(const Finding& found, double scale, std::size_t seed) {
+  void fill(const RayPlane& found, double scale, std::size_t seed) {
     const glm::dvec3 helper =
         std::abs(ray_.direction.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
     const glm::dvec3 u = glm::normalize(glm::cross(ray_.direction, helper));
@@ -81,7 +81,7 @@ class Lattice {
       at_[std::size_t(rays[i].y) * width + rays[i].x] = int(i);
   }
 
-  Guesses guesses(std::size_t i, std::span<const Finding> findings, int round) const {
+  Guesses guesses(std::size_t i, std::span<const RayPlane> findings, int round) const {
     const Ray& ray = rays_[i];
     Guesses out(ray);
     std::array<int, 6> found;
@@ -97,14 +97,14 @@ class Lattice {
       }
     }
     for (const int k : found) add(k, findings, out);
-    Finding self = findings[i];
+    RayPlane self = findings[i];
     if (self.along < 0) self.along = 0.5 * ray.length, self.normal = -ray.direction;
     out.fill(self, std::ldexp(1.0, -round), i + std::size_t(round));
     return out;
   }
 
   /// The best score of a ray and of those whose planes it tries; -1: none found anything.
-  float best_about(std::size_t i, std::span<const Finding> findings, int round) const {
+  float best_about(std::size_t i, std::span<const RayPlane> findings, int round) const {
     float best = findings[i].score;
     for (const glm::ivec2& d : neighbours(rays_[i], round))
       if (const int k = neighbour(rays_[i], d.x, d.y, findings); k >= 0)
@@ -120,18 +120,18 @@ class Lattice {
   }
 
   /// That many rays away, with a finding; -1: none.
-  int neighbour(const Ray& ray, int dx, int dy, std::span<const Finding> findings) const {
+  int neighbour(const Ray& ray, int dx, int dy, std::span<const RayPlane> findings) const {
     const int x = ray.x + dx, y = ray.y + dy;
     if (x < 0 || y < 0 || x >= width_ || y >= height_) return -1;
     const int k = at_[std::size_t(y) * width_ + x];
     return k >= 0 && findings[std::size_t(k)].along >= 0 ? k : -1;
   }
 
-  glm::dvec3 at(int k, std::span<const Finding> findings) const {
+  glm::dvec3 at(int k, std::span<const RayPlane> findings) const {
     return place(rays_[std::size_t(k)], findings[std::size_t(k)]);
   }
 
-  void add(int k, std::span<const Finding> findings, Guesses& out) const {
+  void add(int k, std::span<const RayPlane> findings, Guesses& out) const {
     if (k >= 0) out.add_plane(at(k, findings), findings[std::size_t(k)].normal);
   }
 
@@ -179,13 +179,13 @@ void RaySearch::scores_along(std::span<const Ray> rays, const ViewPartners& part
   const std::size_t batch = kMostThreads / std::size_t(count);
   for (std::size_t first = 0; first < rays.size(); first += batch) {
     std::vector<PatchSurfel> surfels;
-    std::vector<ViewChoice> choices;
+    std::vector<std::uint32_t> tiles;
     for (const Ray& ray : rays.subspan(first, std::min(batch, rays.size() - first))) {
       surfels.push_back(
           {glm::vec3(ray.from), glm::vec3(-ray.direction), float(step_of(ray, count))});
-      choices.push_back(partners.tiles[std::size_t(ray.tile)]);
+      tiles.push_back(std::uint32_t(ray.tile));
     }
-    const Matches s = matcher_.match(surfels, {}, choices, away_from_camera(count));
+    const Matches s = matcher_.match_alike(surfels, partners.tiles, tiles, away_from_camera(count));
     for (std::size_t i = 0; i < surfels.size(); ++i)
       decide(first + i, s.scores.data() + i * std::size_t(count));
   }
@@ -196,13 +196,13 @@ std::vector<float> RaySearch::textures(std::span<const Ray> rays,
   std::vector<float> out;
   for (std::size_t first = 0; first < rays.size(); first += kMostThreads) {
     std::vector<PatchSurfel> surfels;
-    std::vector<ViewChoice> choices;
+    std::vector<std::uint32_t> tiles;
     for (const Ray& ray : rays.subspan(first, std::min(kMostThreads, rays.size() - first))) {
       surfels.push_back(
           {glm::vec3(ray.from + 0.5 * ray.length * ray.direction), glm::vec3(-ray.direction)});
-      choices.push_back(partners.tiles[std::size_t(ray.tile)]);
+      tiles.push_back(std::uint32_t(ray.tile));
     }
-    const Matches s = matcher_.match(surfels, {}, choices, away_from_camera(1));
+    const Matches s = matcher_.textures_alike(surfels, partners.tiles, tiles);
     out.insert(out.end(), s.texture.begin(), s.texture.end());
   }
   return out;
@@ -238,7 +238,7 @@ void RaySearch::spread(std::span<const Ray> rays, int width, int height,
     if (!findings[i].known) unknown.push_back(i);
   constexpr std::size_t batch = kMostThreads / kGuesses;
   for (int round = 0; round < options_.rounds; ++round) {
-    const std::vector<Finding> before(findings.begin(), findings.end());
+    const std::vector<RayPlane> before(findings.begin(), findings.end());
     std::vector<std::size_t> trying;
     for (const std::size_t i : unknown)
       if (lattice.best_about(i, before, round) >= options_.least_score - kHopeful)
@@ -247,17 +247,17 @@ void RaySearch::spread(std::span<const Ray> rays, int width, int height,
       const auto part = std::span<const std::size_t>(trying).subspan(
           first, std::min(batch, trying.size() - first));
       std::vector<PatchSurfel> surfels(part.size() * kGuesses);
-      std::vector<ViewChoice> choices(surfels.size());
+      std::vector<std::uint32_t> tiles(surfels.size());
       tbb::parallel_for(std::size_t(0), part.size(), [&](std::size_t i) {
         const Guesses guesses = lattice.guesses(part[i], before, round);
         const Ray& ray = rays[part[i]];
         for (std::size_t k = 0; k < kGuesses; ++k) {
           surfels[i * kGuesses + k] = {glm::vec3(ray.from + guesses[k].along * ray.direction),
                                        glm::vec3(guesses[k].normal)};
-          choices[i * kGuesses + k] = partners.tiles[std::size_t(ray.tile)];
+          tiles[i * kGuesses + k] = std::uint32_t(ray.tile);
         }
       });
-      const Matches s = matcher_.match(surfels, {}, choices, away_from_camera(1));
+      const Matches s = matcher_.match_alike(surfels, partners.tiles, tiles, away_from_camera(1));
       tbb::parallel_for(std::size_t(0), part.size(), [&](std::size_t i) {
         Finding& found = findings[part[i]];
         const Ray& ray = rays[part[i]];

@@ -26,11 +26,15 @@ struct Ray {
   int tile = 0;                 ///< of its view: which views it is matched with
 };
 
-/// What a ray found: a small plane that the views show alike.
-struct Finding {
-  double along = -1;         ///< voxels from the ray's start; negative: nothing
-  glm::dvec3 normal{0};      ///< unit, towards the camera
-  float score = -1;          ///< [-1, 1]
+/// A small plane across a ray.
+struct RayPlane {
+  double along = -1;     ///< voxels from the ray's start; negative: nothing
+  glm::dvec3 normal{0};  ///< unit, towards the camera
+  float score = -1;      ///< [-1, 1]
+};
+
+/// What a ray found: a plane that the views show alike.
+struct Finding : RayPlane {
   bool known = false;        ///< given, not searched for
   bool moved = false;        ///< to a plane that shows the views more alike than any that was swept
   std::vector<float> swept;  ///< scores of patches that face the camera

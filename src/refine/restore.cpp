@@ -18,7 +18,8 @@ class Restorer {
       : volume_(volume),
         hull_(hull),
         options_(options),
-        coverage_(context, volume.grid, skin(volume), cameras, silhouettes) {}
+        coverage_(context, volume.grid, skin(volume), cameras, silhouettes),
+        lacking_(coverage_.lacking_pixels(options.least_inside)) {}
 
   /// Voxels that came back, as a volume with the hull's distances at them and their neighbours.
   SparseVolume run(std::size_t& restored) const {
@@ -55,6 +56,7 @@ class Restorer {
 
  private:
   bool is_missed(const ivec3& voxel) const {
+    if (coverage_.most_lack(glm::dvec3(voxel), lacking_) < options_.least_views) return false;
     const Coverage::Votes votes = coverage_.votes(glm::dvec3(voxel), options_.least_inside);
     return votes.lack >= options_.least_views && votes.before <= options_.most_before * votes.lack;
   }
@@ -89,6 +91,7 @@ class Restorer {
   const SparseVolume& hull_;
   const RestoreOptions& options_;
   Coverage coverage_;
+  Coverage::LackingPixels lacking_;
 };
 
 }  // namespace

@@ -46,13 +46,19 @@ VertexGraph make_graph(const TriMesh& mesh) {
 NearDistances::NearDistances(const SparseVolume& volume)
     : table_(volume.table), near_(volume.bricks.size()) {
   constexpr float kNear = kStillReach + 2 * kStill;
-  const auto is_near = [&](std::size_t i) { return std::abs(volume.distance[i]) < kNear; };
-  for (std::size_t i = 0; i < volume.distance.size(); ++i)
-    if (is_near(i)) near_.mark(i);
+  const auto for_near = [&](std::size_t brick, auto&& f) {
+    for (std::size_t i = brick * kBrickVoxels; i < (brick + 1) * kBrickVoxels; ++i)
+      if (std::abs(volume.distance[i]) < kNear) f(i);
+  };
+  const std::size_t bricks = volume.bricks.size();
+  tbb::parallel_for(std::size_t(0), bricks,
+                    [&](std::size_t b) { for_near(b, [&](std::size_t i) { near_.mark(i); }); });
   near_.count();
-  values_.reserve(near_.marked());
-  for (std::size_t i = 0; i < volume.distance.size(); ++i)
-    if (is_near(i)) values_.push_back(volume.distance[i]);
+  values_.resize(near_.marked());
+  tbb::parallel_for(std::size_t(0), bricks, [&](std::size_t b) {
+    std::size_t rank = near_.rank(b * kBrickVoxels);
+    for_near(b, [&](std::size_t i) { values_[rank++] = volume.distance[i]; });
+  });
 }
 
 std::optional<float> NearDistances::at(std::size_t brick, int v) const {

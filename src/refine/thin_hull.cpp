@@ -19,6 +19,9 @@ constexpr float kShell = 1.0f;        // voxels outside the part whose distances
 constexpr float kNoticeable = 0.02f;  // voxels
 
 bool is_thin(const SparseVolume& hull, const ivec3& voxel, float depth) {
+  // Where it is not, this shows at the cube's corners and in the middle of its edges and faces.
+  for (int n = 0; n < 27; ++n)
+    if (hull.at(voxel + kAround * (ivec3(n / 9, n / 3 % 3, n % 3) - 1)) < -depth) return false;
   for (int x = -kAround; x <= kAround; ++x)
     for (int y = -kAround; y <= kAround; ++y)
       for (int z = -kAround; z <= kAround; ++z)
@@ -52,26 +55,32 @@ bool is_torn(const SparseVolume& hull, const SparseVolume& volume, const ivec3& 
 std::size_t keep_thin_hull(const SparseVolume& hull, const ThinHullOptions& options,
                            SparseVolume& volume) {
   if (options.depth == 0) return 0;
-  std::vector<std::size_t> back(volume.bricks.size(), 0);
-  const SparseVolume before = volume;
+  struct Change {
+    std::size_t index;  // of volume.distance
+    float value;
+  };
+  std::vector<std::vector<Change>> changes(volume.bricks.size());
   tbb::parallel_for(std::size_t(0), volume.bricks.size(), [&](std::size_t slot) {
     const std::uint32_t of_hull = hull.table[hull.grid.brick_index(volume.bricks[slot])];
     if (of_hull >= hull.bricks.size()) return;  // all of it outside or inside
     for (int i = 0; i < kBrickVoxels; ++i) {
       const float bound = hull.distance[std::size_t(of_hull) * kBrickVoxels + std::size_t(i)];
       const std::size_t index = slot * kBrickVoxels + std::size_t(i);
-      const float own = before.distance[index];
+      const float own = volume.distance[index];
       if (bound < -float(options.depth) || bound > kShell || own > float(options.reach) ||
-          own < bound + kNoticeable)
+          own < bound + kNoticeable || own < 0)  // nothing is torn that is there
         continue;
       const ivec3 voxel = volume.bricks[slot] * kBrickEdge + ivec3(i >> 6, (i >> 3) & 7, i & 7);
-      if (!is_torn(hull, before, voxel) || !is_thin(hull, voxel, float(options.depth))) continue;
-      volume.distance[index] = bound;
-      back[slot] += own > 0 && bound < 0;
+      if (is_thin(hull, voxel, float(options.depth)) && is_torn(hull, volume, voxel))
+        changes[slot].push_back({index, bound});
     }
   });
   std::size_t count = 0;
-  for (const std::size_t n : back) count += n;
+  for (const std::vector<Change>& part : changes)
+    for (const auto& [index, value] : part) {
+      count += volume.distance[index] > 0 && value < 0;
+      volume.distance[index] = value;
+    }
   return count;
 }
 

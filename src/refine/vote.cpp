@@ -5,7 +5,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 #include "refine/ray_maps.h"
 #include "refine/voxel_set.h"
@@ -52,11 +54,16 @@ class Voter {
   SparseVolume fuse() {
     std::vector<glm::ivec3> bricks = bricks_of_hull();
     std::vector<float> values(bricks.size() * kBrickVoxels);
-    for_each_voxel(bricks, [&](std::size_t i, const glm::ivec3& voxel) {
-      const float hull = hull_.at(voxel);
-      values[i] = hull > 1 ? hull
-                           : std::max(hull, float(vote(glm::dvec3(voxel), options_.least_weight,
-                                                       -SparseVolume::kBand)));
+    for_each_voxel(bricks,
+                   [&](std::size_t i, const glm::ivec3& voxel) { values[i] = hull_.at(voxel); });
+    for_some(values.size(), [&](std::size_t first, std::size_t end) {
+      Asked asked;
+      for (std::size_t i = first; i < end; ++i)
+        if (!(values[i] > 1)) asked.add(i, voxel_of(bricks, i));
+      for (std::size_t k = 0; const Say& say : ask(asked)) {
+        float& value = values[asked.index[k++]];
+        value = std::max(value, vote(say, options_.least_weight, -SparseVolume::kBand));
+      }
     });
     return volume_of(std::move(bricks), std::move(values));
   }
@@ -64,10 +71,13 @@ class Voter {
   SparseVolume label(gpu::Context& context, const LabelOptions& options) {
     std::vector<glm::ivec3> bricks = bricks_of_hull();
     std::vector<float> told(bricks.size() * kBrickVoxels), evidence(told.size());
-    for_each_voxel(bricks, [&](std::size_t i, const glm::ivec3& voxel) {
-      const Say say = ask(glm::dvec3(voxel));
-      told[i] = say.total > 0 ? float(say.sum / say.total * options_.band) : 0;
-      evidence[i] = float(say.sum);
+    for_some(told.size(), [&](std::size_t first, std::size_t end) {
+      Asked asked;
+      for (std::size_t i = first; i < end; ++i) asked.add(i, voxel_of(bricks, i));
+      for (std::size_t i = first; const Say& say : ask(asked)) {
+        told[i] = say.total > 0 ? float(say.sum / say.total * options_.band) : 0;
+        evidence[i++] = float(say.sum);
+      }
     });
     const double usual = usual_claim(evidence);
     for_each_voxel(bricks, [&](std::size_t i, const glm::ivec3& voxel) {
@@ -117,6 +127,21 @@ class Voter {
     return bricks;
   }
 
+  /// Calls visit(first, end) for parts of `count` things that can be asked about at once, in
+  /// parallel.
+  template <typename Visit>
+  static void for_some(std::size_t count, const Visit& visit) {
+    tbb::parallel_for(std::size_t(0), (count + kAtOnce - 1) / kAtOnce, [&](std::size_t part) {
+      visit(part * kAtOnce, std::min(count, (part + 1) * kAtOnce));
+    });
+  }
+
+  /// The i-th voxel of the bricks.
+  static glm::ivec3 voxel_of(const std::vector<glm::ivec3>& bricks, std::size_t i) {
+    const int v = int(i % kBrickVoxels);
+    return bricks[i / kBrickVoxels] * kBrickEdge + glm::ivec3(v >> 6, (v >> 3) & 7, v & 7);
+  }
+
   /// Calls visit(index, voxel) for all voxels of the bricks, in parallel.
   template <typename Visit>
   static void for_each_voxel(const std::vector<glm::ivec3>& bricks, const Visit& visit) {
@@ -150,39 +175,67 @@ class Voter {
     std::vector<float> votes;
     for_around(lists, grid, [&](const VoxelSet& voxels) {
       votes.resize(voxels.size());
-      tbb::parallel_for(std::size_t(0), voxels.size(), [&](std::size_t i) {
-        const glm::ivec3 voxel = lattice.voxel(voxels[i]);
-        votes[i] = std::max(hull_.at(voxel), float(vote(glm::dvec3(voxel), least, silent)));
+      for_some(voxels.size(), [&](std::size_t first, std::size_t end) {
+        Asked asked;
+        for (std::size_t i = first; i < end; ++i) asked.add(i, lattice.voxel(voxels[i]));
+        for (std::size_t i = first; const Say& say : ask(asked)) {
+          votes[i] = std::max(hull_.at(lattice.voxel(voxels[i])), vote(say, least, silent));
+          ++i;
+        }
       });
       for (std::size_t i = 0; i < voxels.size(); ++i) use(lattice.voxel(voxels[i]), votes[i]);
     });
   }
 
   /// `silent`: where the rays say too little, their weights' sum being below `least`.
-  double vote(const glm::dvec3& p, double least, double silent) const {
-    const Say say = ask(p);
-    return say.total < least ? silent : say.sum / say.total * options_.band;
+  float vote(const Say& say, double least, double silent) const {
+    return float(say.total < least ? silent : say.sum / say.total * options_.band);
   }
+
+  /// Voxels that are asked about at once: view by view for all of them, for vectors of them are
+  /// projected faster than one.
+  static constexpr std::size_t kAtOnce = 64;
+  struct Asked {
+    std::size_t count = 0;
+    std::array<std::size_t, kAtOnce> index;  // of the caller's
+    std::array<double, kAtOnce> x, y, z;
+    std::array<Say, kAtOnce> says;
+
+    void add(std::size_t i, const glm::ivec3& voxel) {
+      index[count] = i;
+      x[count] = voxel.x, y[count] = voxel.y, z[count] = voxel.z;
+      ++count;
+    }
+  };
 
   /// Each ray's say is 1 from `band` before its depth on, -1 at `band` behind it, and nothing
   /// beyond.
-  Say ask(const glm::dvec3& p) const {
-    Say say;
+  std::span<const Say> ask(Asked& asked) const {
+    std::array<double, kAtOnce> depth, column, row;
     for (std::size_t v = 0; v < cameras_.size(); ++v) {
       const RayMap& map = maps_[v];
-      const glm::dvec3 q = cameras_[v].projection * glm::dvec4(p, 1);
-      if (q.z <= 1) continue;
-      const int x = int(std::floor((q.x / q.z + 0.5) / map.stride)),
-                y = int(std::floor((q.y / q.z + 0.5) / map.stride));
-      if (x < 0 || y < 0 || x >= map.width || y >= map.height) continue;
-      const std::size_t at = std::size_t(y) * map.width + x;
-      if (!(map.weight[at] > 0)) continue;
-      const double ahead = (map.depth[at] - q.z) / options_.band;
-      if (ahead < -1) continue;
-      say.sum += map.weight[at] * std::min(ahead, 1.0);
-      say.total += map.weight[at];
+      const auto& m = cameras_[v].projection;
+      for (std::size_t i = 0; i < asked.count; ++i) {
+        const double x = asked.x[i], y = asked.y[i], z = asked.z[i];
+        const double q = m[0].z * x + m[1].z * y + m[2].z * z + m[3].z;
+        depth[i] = q;
+        column[i] = ((m[0].x * x + m[1].x * y + m[2].x * z + m[3].x) / q + 0.5) / map.stride;
+        row[i] = ((m[0].y * x + m[1].y * y + m[2].y * z + m[3].y) / q + 0.5) / map.stride;
+      }
+      for (std::size_t i = 0; i < asked.count; ++i) {
+        if (!(depth[i] > 1 && column[i] >= 0 && row[i] >= 0 && column[i] < map.width &&
+              row[i] < map.height))
+          continue;
+        const std::size_t at =
+            std::size_t(int(row[i])) * std::size_t(map.width) + std::size_t(int(column[i]));
+        if (!(map.weight[at] > 0)) continue;
+        const double ahead = (map.depth[at] - depth[i]) / options_.band;
+        if (ahead < -1) continue;
+        asked.says[i].sum += map.weight[at] * std::min(ahead, 1.0);
+        asked.says[i].total += map.weight[at];
+      }
     }
-    return say;
+    return std::span(asked.says).first(asked.count);
   }
 
   const SparseVolume& hull_;

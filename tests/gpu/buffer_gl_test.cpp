@@ -67,6 +67,40 @@ TEST_F(BufferTest, MayBeEmpty) {
   EXPECT_EQ(Buffer::of(std::vector<int>()).bytes(), 0u);
 }
 
+TEST_F(BufferTest, AStoreThatIsUsedAgainHoldsWhatTheNextOneWasMadeFrom) {
+  const std::vector<std::uint32_t> large(1000, 7), small(900, 9);
+  unsigned id = 0;
+  {
+    const Buffer buffer = Buffer::of(large);
+    id = buffer.id();
+  }
+  Buffer buffer = Buffer::of(small);
+  EXPECT_EQ(buffer.id(), id);
+  EXPECT_EQ(buffer.bytes(), 3600u);
+  EXPECT_EQ(buffer.download<std::uint32_t>(900), small);
+  buffer.fill(3);
+  EXPECT_EQ(buffer.download<std::uint32_t>(900), std::vector<std::uint32_t>(900, 3));
+}
+
+TEST_F(BufferTest, ReadsWhatIsLargerThanWhatIsReadAtOnce) {
+  std::vector<std::uint32_t> values(3000001);
+  std::iota(values.begin(), values.end(), 1u);
+  const Buffer buffer = Buffer::of(values);
+  EXPECT_EQ(buffer.download<std::uint32_t>(values.size()), values);
+  EXPECT_EQ(buffer.download<std::uint32_t>(2000000, 1000001),
+            std::vector<std::uint32_t>(values.begin() + 1000001, values.end()));
+}
+
+TEST_F(BufferTest, LargeStoresComeAndGo) {
+  for (int i = 0; i < 4; ++i) {
+    std::vector<Buffer> buffers;
+    for (std::uint32_t k = 0; k < 6; ++k)
+      buffers.push_back(Buffer::of(std::vector<std::uint32_t>((k + 1) << 20, k)));
+    for (std::uint32_t k = 0; k < 6; ++k)
+      EXPECT_EQ(buffers[k].download<std::uint32_t>(1, k << 20).front(), k);
+  }
+}
+
 TEST_F(BufferTest, MovesItsHandle) {
   Buffer a = Buffer::of(std::vector<int>{1, 2, 3, 4});
   const unsigned id = a.id();

@@ -132,6 +132,7 @@ class MatchPatches : public ::testing::Test {
   double bound_ = kBound;
   std::vector<float> textures_;
   double worst_ = 0, greatest_ = -1;
+  int shared_ = 0;
 };
 
 TEST_F(MatchPatches, AgreesOnRandomImages) {
@@ -159,6 +160,81 @@ TEST_F(MatchPatches, SmallPatchesAlongRays) {
   std::vector<Probe> probes = random_probes(120, ViewChoice::kMostViews);
   for (Probe& probe : probes) probe.scale = test::uniform(rng_, 1, 3);
   EXPECT_LE(compare(probes, run(probes, 1), 1), 6) << worst_;
+}
+
+TEST_F(MatchPatches, MoreViewsThanUniformBlocksHold) {
+  views_ = test::random_views(rng_, 190);
+  views_.pop_back();
+  const std::vector<Probe> probes = random_probes(140, ViewChoice::kMostViews);
+  EXPECT_LE(compare(probes, run(probes)), 4) << worst_;
+}
+
+TEST_F(MatchPatches, SharedChoicesAreTheSameAsOneEach) {
+  views_ = test::random_views(rng_, 9);
+  views_.pop_back();
+  range_ = {0, -1, 3};
+  const std::vector<Probe> probes = random_probes(90, ViewChoice::kMostViews);
+  gpu::Context& context = test::gl_context();
+  const projtex::ImageSet images(views_);
+  for (const int radius : {1, kPatchRadius}) {
+    PatchRules rules = patch_rules(options_, noise_);
+    rules.radius = radius;
+    const PatchMatcher matcher(context, images,
+                               projtex::to_grid(projtex::cameras_of(views_), test::kGrid), rules,
+                               "match patches test");
+    // Two views of a choice, three, and so on, alone; then several choices, one of which is empty.
+    for (std::size_t kinds : {1, 1, 1, 1, 1, 1, 4}) {
+      std::vector<ViewChoice> choices, each;
+      for (std::size_t k = 0; k < kinds; ++k)
+        choices.push_back(test::choice_of(random_choice(kinds > 1 ? int(2 * k) : shared_++ % 7)));
+      std::vector<PatchSurfel> surfels;
+      std::vector<std::uint32_t> choice_of;
+      for (std::size_t i = 0; i < probes.size(); ++i) {
+        surfels.push_back({glm::vec3(probes[i].position), glm::vec3(probes[i].normal), 1.5f});
+        choice_of.push_back(std::uint32_t(i % kinds));
+        each.push_back(choices[i % kinds]);
+      }
+      const Matches alike = matcher.match_alike(surfels, choices, choice_of, range_);
+      const Matches usual = matcher.match(surfels, {}, each, range_);
+      ASSERT_EQ(alike.scores.size(), usual.scores.size());
+      for (std::size_t i = 0; i < usual.scores.size(); ++i)
+        EXPECT_NEAR(alike.scores[i], usual.scores[i], 1e-5) << choices[0].views.size();
+      for (std::size_t i = 0; i < usual.texture.size(); ++i)
+        EXPECT_NEAR(alike.texture[i], usual.texture[i], 1e-6);
+      EXPECT_EQ(alike.samples, usual.samples);
+    }
+  }
+}
+
+TEST_F(MatchPatches, TexturesAloneAreTheSame) {
+  views_ = test::random_views(rng_, 9);
+  views_.pop_back();
+  const std::vector<Probe> probes = random_probes(100, ViewChoice::kMostViews);
+  gpu::Context& context = test::gl_context();
+  const projtex::ImageSet images(views_);
+  const PatchMatcher matcher(context, images,
+                             projtex::to_grid(projtex::cameras_of(views_), test::kGrid),
+                             patch_rules(options_, noise_), "match patches test");
+  std::vector<PatchSurfel> surfels;
+  std::vector<ViewChoice> choices;
+  for (const Probe& probe : probes) {
+    surfels.push_back({glm::vec3(probe.position), glm::vec3(probe.normal)});
+    choices.push_back(test::choice_of(probe.views));
+  }
+  const Matches usual = matcher.match(surfels, {}, choices, {});
+  const Matches alone = matcher.textures(surfels, choices);
+  EXPECT_TRUE(alone.scores.empty());
+  EXPECT_LT(alone.samples, usual.samples);
+  ASSERT_EQ(alone.texture.size(), usual.texture.size());
+  for (std::size_t i = 0; i < usual.texture.size(); ++i)
+    EXPECT_NEAR(alone.texture[i], usual.texture[i], 1e-6);
+  const std::vector<ViewChoice> one{test::choice_of({3, 1, 2})};
+  const std::vector<ViewChoice> each(surfels.size(), one[0]);
+  const std::vector<std::uint32_t> choice_of(surfels.size(), 0);
+  const Matches shared = matcher.textures_alike(surfels, one, choice_of);
+  const Matches compared = matcher.match(surfels, {}, each, {});
+  for (std::size_t i = 0; i < compared.texture.size(); ++i)
+    EXPECT_NEAR(shared.texture[i], compared.texture[i], 1e-6);
 }
 
 TEST_F(MatchPatches, BestShareOfThePairs) {

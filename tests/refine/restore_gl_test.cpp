@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "refine/coverage.h"
 #include "support/analytic_volumes.h"
 #include "support/gl_context.h"
 #include "support/silhouettes.h"
@@ -114,6 +115,32 @@ TEST_F(Restore, WhatWouldHideMoreThanItExplainsStaysAway) {
   options_.most_before = 5;
   EXPECT_GT(restore(volume, both()), 0u);
   EXPECT_LT(volume.at({28, 15, 15}), 0);
+}
+
+TEST_F(Restore, LackingPixelsLeaveNothingOut) {
+  photograph(test::cameras_around(kCentre, 60, 12, 250, 96, 96));  // voxels of several pixels
+  std::vector<carving::Silhouette> silhouettes;
+  for (const test::Outline& outline : outlines_)
+    silhouettes.push_back({&outline.mask, &outline.distance});
+  std::vector<ivec3> voxels;
+  for (int i = 0; i < 32 * 32 * 32; ++i) {
+    const ivec3 voxel(i % 32, i / 32 % 32, i / 1024);
+    if (std::abs(sphere(kCentre, kBall)(dvec3(voxel))) < 1) voxels.push_back(voxel);
+  }
+  const SparseVolume hull = both();
+  const Coverage coverage(test::gl_context(), hull.grid, voxels, cameras_, silhouettes);
+  for (const double inside : {0.0, 1.5}) {
+    const Coverage::LackingPixels lacking = coverage.lacking_pixels(inside);
+    int lack = 0, most = 0;
+    for (int i = 0; i < 32 * 32 * 32; ++i) {
+      const dvec3 point = dvec3(i % 32, i / 32 % 32, i / 1024) + 0.3;
+      const int exact = coverage.votes(point, inside).lack;
+      EXPECT_GE(coverage.most_lack(point, lacking), exact);
+      lack += exact, most += coverage.most_lack(point, lacking);
+    }
+    EXPECT_GT(lack, 0);
+    EXPECT_LT(most, 2 * lack);
+  }
 }
 
 TEST_F(Restore, TooFewViewsProveNothing) {

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+#include <vector>
+
 #include "support/analytic_volumes.h"
 
 namespace photohull {
@@ -80,6 +83,60 @@ TEST(FillCavities, ALargeHollowWithEmptyBricksInIt) {
   EXPECT_GT(fill_cavities(volume), 20000u);
   EXPECT_LT(volume.at({31, 31, 31}), 0);
   EXPECT_GT(volume.at({1, 1, 1}), 0);
+}
+
+/// What faces join to the grid's border, voxel by voxel.
+std::vector<bool> joined_to_border(const SparseVolume& volume) {
+  const ivec3 n = volume.grid.voxels();
+  const auto index = [&](const ivec3& v) { return std::size_t((v.z * n.y + v.y) * n.x + v.x); };
+  std::vector<bool> joined(std::size_t(n.x) * std::size_t(n.y) * std::size_t(n.z), false);
+  std::vector<ivec3> next;
+  const auto enter = [&](const ivec3& v) {
+    if (glm::any(glm::lessThan(v, ivec3(0))) || glm::any(glm::greaterThanEqual(v, n))) return;
+    if (volume.at(v) < 0 || joined[index(v)]) return;
+    joined[index(v)] = true;
+    next.push_back(v);
+  };
+  for (int i = 0; i < n.x * n.y * n.z; ++i) {
+    const ivec3 v(i % n.x, i / n.x % n.y, i / n.x / n.y);
+    if (glm::any(glm::equal(v, ivec3(0))) || glm::any(glm::equal(v, n - 1))) enter(v);
+  }
+  while (!next.empty()) {
+    const ivec3 v = next.back();
+    next.pop_back();
+    for (int axis = 0; axis < 3; ++axis)
+      for (const int side : {-1, 1}) {
+        ivec3 beside = v;
+        beside[axis] += side;
+        enter(beside);
+      }
+  }
+  return joined;
+}
+
+TEST(FillCavities, RandomSpongesAreFilledWhereNoFacesLeadOut) {
+  std::mt19937 random(5);
+  std::size_t filled = 0;
+  for (int round = 0; round < 8; ++round) {
+    // About as dense as where ways out begin to be rare.
+    SparseVolume volume = sample_volume({3, 2, 4}, [&](const dvec3&) {
+      return random() % 100 < 28 + unsigned(round) ? 0.7 : -0.7;
+    });
+    const SparseVolume before = volume;
+    const std::vector<bool> joined = joined_to_border(before);
+    std::size_t expected = 0;
+    const ivec3 n = volume.grid.voxels();
+    const std::size_t count = fill_cavities(volume);
+    for (int i = 0; i < n.x * n.y * n.z; ++i) {
+      const ivec3 v(i % n.x, i / n.x % n.y, i / n.x / n.y);
+      const bool closed = !(before.at(v) < 0) && !joined[std::size_t(i)];
+      expected += closed;
+      EXPECT_EQ(volume.at(v), closed ? -SparseVolume::kBand : before.at(v));
+    }
+    EXPECT_EQ(count, expected);
+    filled += count;
+  }
+  EXPECT_GT(filled, 100u);
 }
 
 TEST(FillCavities, EmptyVolume) {

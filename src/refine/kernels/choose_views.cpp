@@ -4,9 +4,11 @@
 #include <cmath>
 #include <span>
 
+#include "core/error.h"
 #include "gpu/buffer.h"
 #include "gpu/program.h"
 #include "refine/kernels/device_choice.h"
+#include "refine/kernels/device_views.h"
 #include "render/kernels/device_points.h"
 #include "render/kernels/draw_occluders.h"
 #include "render/view_lists.h"
@@ -39,8 +41,9 @@ std::vector<ViewChoice> choose_views(gpu::Context& context, const GridSpec& grid
   const Buffer views = Buffer::of(gpu_views);
   const visibility::DepthMaps maps =
       render::draw_occluders(context, grid, cameras, views, mesh, surfels);
-  const auto program =
-      gpu::Program::compute(context, "refine_choose_views.comp.glsl", maps.defines());
+  const DeviceViews device_views(gpu_views);
+  const auto program = gpu::Program::compute(context, "refine_choose_views.comp.glsl",
+                                             concat(maps.defines(), device_views.defines()));
   const std::size_t batch =
       render::listed_batch(sizeof(shaders::MatchChoice), kBatch, cameras.size());
   std::vector<ViewChoice> out;
@@ -54,7 +57,7 @@ std::vector<ViewChoice> choose_views(gpu::Context& context, const GridSpec& grid
         Buffer::of(render::list_views(part, gpu_views, float(options.seen_cosine)));
     const Buffer choices(part.size() * sizeof(shaders::MatchChoice));
     uniforms.bind_uniform(shaders::kChooseParametersBinding);
-    views.bind_storage(shaders::kViewsBinding);
+    device_views.bind();
     maps.bind();
     points.bind_storage(shaders::kChooseSurfelsBinding);
     choices.bind_storage(shaders::kChooseChoicesBinding);

@@ -10,20 +10,28 @@ static_assert(ViewChoice::kMostViews == shaders::kMatchViews);
 static_assert(ViewChoice::kMostHidden == shaders::kHiddenViews);
 static_assert(ViewChoice::kCandidates == shaders::kMatchCandidates);
 
+shaders::MatchChoice to_device(const ViewChoice& choice) {
+  shaders::MatchChoice out{};
+  std::ranges::fill(out.views, -1);
+  std::ranges::fill(out.hidden, -1);
+  std::ranges::copy(choice.views, out.views);
+  out.count = choice.views.size();
+  return out;
+}
+
 }  // namespace
+
+gpu::Buffer to_device(std::span<const ViewChoice> choices) {
+  std::vector<shaders::MatchChoice> out;
+  out.reserve(choices.size());
+  for (const ViewChoice& choice : choices) out.push_back(to_device(choice));
+  return gpu::Buffer::of(out);
+}
 
 gpu::Buffer to_device(std::span<const ViewChoice> choices, std::span<const std::uint32_t> indices) {
   std::vector<shaders::MatchChoice> out;
   out.reserve(indices.size());
-  for (const std::uint32_t i : indices) {
-    const ViewList<ViewChoice::kMostViews>& views = choices[i].views;
-    shaders::MatchChoice choice{};
-    std::ranges::fill(choice.views, -1);
-    std::ranges::fill(choice.hidden, -1);
-    std::ranges::copy(views, choice.views);
-    choice.count = views.size();
-    out.push_back(choice);
-  }
+  for (const std::uint32_t i : indices) out.push_back(to_device(choices[i]));
   return gpu::Buffer::of(out);
 }
 

@@ -10,7 +10,9 @@
 
 namespace photohull::refine {
 
-/// Those of the surfels at `indices`: what they are matched in.
+/// What surfels are matched in.
+gpu::Buffer to_device(std::span<const ViewChoice> choices);
+/// Those of the surfels at `indices`.
 gpu::Buffer to_device(std::span<const ViewChoice> choices, std::span<const std::uint32_t> indices);
 
 ViewChoice from_device(const shaders::MatchChoice& choice);

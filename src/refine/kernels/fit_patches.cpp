@@ -7,6 +7,7 @@
 #include "gpu/buffer.h"
 #include "gpu/program.h"
 #include "refine/kernels/device_choice.h"
+#include "refine/kernels/device_views.h"
 #include "render/kernels/device_points.h"
 
 namespace photohull::refine {
@@ -50,22 +51,23 @@ class Fitter {
       : context_(context),
         photographs_(photographs),
         options_(options),
-        views_(Buffer::of(projtex::to_gpu_views(projtex::to_grid(photographs.cameras, grid),
-                                                photographs.images))) {}
+        views_(projtex::to_gpu_views(projtex::to_grid(photographs.cameras, grid),
+                                     photographs.images)) {}
 
   std::vector<PatchFit> fit(std::span<const render::SurfacePoint> surfels,
                             std::span<const glm::vec3> bends, const Buffer& choices) const {
     std::vector<shaders::FitShape> shapes;
     for (std::size_t i = 0; i < surfels.size(); ++i)
       shapes.push_back({glm::vec4(bends[i], holds_out(surfels[i].position, options_.hold_out))});
-    const auto program = gpu::Program::compute(context_, "refine_fit_patches.comp.glsl");
+    const auto program =
+        gpu::Program::compute(context_, "refine_fit_patches.comp.glsl", views_.defines());
     const shaders::FitParameters parameters =
         parameters_of(surfels.size(), photographs_.noise_sigma, options_);
     const Buffer uniforms(sizeof parameters, &parameters), points = render::to_device(surfels);
     const Buffer shape = Buffer::of(shapes);
     const Buffer results(surfels.size() * sizeof(shaders::FitResult));
     uniforms.bind_uniform(shaders::kFitParametersBinding);
-    views_.bind_storage(shaders::kViewsBinding);
+    views_.bind();
     points.bind_storage(shaders::kFitSurfelsBinding);
     choices.bind_storage(shaders::kFitChoicesBinding);
     results.bind_storage(shaders::kFitResultsBinding);
@@ -83,7 +85,7 @@ class Fitter {
   gpu::Context& context_;
   const projtex::Photographs& photographs_;
   const FitOptions& options_;
-  Buffer views_;
+  DeviceViews views_;
 };
 
 }  // namespace

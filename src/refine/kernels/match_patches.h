@@ -1,13 +1,15 @@
 // Photo-consistency of patches at offsets along their normals (refine_match_patches.comp.glsl).
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
-#include "gpu/buffer.h"
 #include "gpu/context.h"
 #include "projtex/gpu_views.h"
 #include "projtex/image_set.h"
+#include "refine/kernels/device_views.h"
 #include "refine/match.h"
 #include "refine/view_choice.h"
 
@@ -43,14 +45,27 @@ class PatchMatcher {
   /// planes. Throws Error when the device cannot hold a batch.
   Matches match(std::span<const PatchSurfel> surfels, std::span<const glm::vec3> bends,
                 std::span<const ViewChoice> choices, const OffsetRange& range) const;
+  /// The same for many planes that share few choices, kMostAlike at most: `choice_of` numbers each
+  /// surfel's.
+  Matches match_alike(std::span<const PatchSurfel> surfels, std::span<const ViewChoice> choices,
+                      std::span<const std::uint32_t> choice_of, const OffsetRange& range) const;
+  /// Matches::texture and samples alone, of flat patches where the surfels are: nothing is
+  /// compared.
+  Matches textures(std::span<const PatchSurfel> surfels, std::span<const ViewChoice> choices) const;
+  /// The same for surfels that share few choices.
+  Matches textures_alike(std::span<const PatchSurfel> surfels, std::span<const ViewChoice> choices,
+                         std::span<const std::uint32_t> choice_of) const;
+  static constexpr std::size_t kMostAlike = 1 << 16;
 
  private:
   struct Batch;
+  Matches match_all(Batch all, const OffsetRange& range) const;
   void match(const Batch& batch, Matches& out) const;
 
   gpu::Context& context_;
   const projtex::ImageSet& images_;
-  gpu::Buffer views_;
+  std::vector<shaders::GpuView> gpu_views_;
+  DeviceViews views_;
   PatchRules rules_;
   const char* launch_;
 };

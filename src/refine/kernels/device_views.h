@@ -1,0 +1,25 @@
+// The views as kernels of module refine have them; private to it.
+#pragma once
+
+#include <vector>
+
+#include "gpu/buffer.h"
+#include "shared/view.h"
+
+namespace photohull::refine {
+
+/// Uniforms where they are few enough, which software devices fetch faster, else a storage block.
+class DeviceViews {
+ public:
+  explicit DeviceViews(std::vector<shaders::GpuView> views);
+
+  /// What programs that use them are compiled with.
+  const char* defines() const;
+  void bind() const;
+
+ private:
+  bool is_uniform_;
+  gpu::Buffer buffer_;
+};
+
+}  // namespace photohull::refine
