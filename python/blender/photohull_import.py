@@ -62,30 +62,48 @@ def move_to(objects, collection) -> None:
         collection.objects.link(thing)
 
 
-def imported(operator, **words) -> list:
-    """The objects that an importer of Blender makes."""
+def imported(operator, path: Path) -> list:
+    """The objects that an importer of Blender makes; none where it fails."""
     before = set(bpy.data.objects)
-    operator(**words)
+    try:
+        operator(str(path))
+    except RuntimeError as fault:
+        print(f"{path} was not imported: {fault}")
+        for thing in set(bpy.data.objects) - before:
+            bpy.data.objects.remove(thing)
     return [thing for thing in bpy.data.objects if thing not in before]
 
 
+def import_glb(path: str) -> None:
+    """Blender 3.4's importer says numpy.bool, which NumPy has no more since 1.24, as Debian 12 has it."""
+    try:
+        import numpy
+    except ImportError as fault:
+        raise RuntimeError("Blender's importer of glTF files needs NumPy (Debian: python3-numpy)") from fault
+    lacking = "bool" not in vars(numpy)
+    if lacking:
+        numpy.bool = bool
+    try:
+        bpy.ops.import_scene.gltf(filepath=path)
+    finally:
+        if lacking:
+            del numpy.bool
+
+
 def import_ply(path: str) -> None:
-    if hasattr(bpy.ops.wm, "ply_import"):  # Blender 4
+    if bpy.app.version >= (4, 0, 0):
         bpy.ops.wm.ply_import(filepath=path, forward_axis="Y", up_axis="Z")
     else:
         bpy.ops.import_mesh.ply(filepath=path)
 
 
 def import_model(folder: Path, report: dict, collection) -> list:
-    """The textured model, or else the one with colours at its vertices. A compressed glb file Blender cannot read."""
+    """The textured model, or else the one with colours at its vertices: Blender reads no compressed glb files."""
     made = []
     if "mesh.glb" in report["files"]:
-        try:
-            made = imported(bpy.ops.import_scene.gltf, filepath=str(folder / "mesh.glb"))
-        except RuntimeError:
-            made = []
+        made = imported(import_glb, folder / "mesh.glb")
     if not made:
-        made = imported(import_ply, path=str(folder / "mesh.ply"))
+        made = imported(import_ply, folder / "mesh.ply")
         for thing in made:
             thing.matrix_world = blender_from_scene(report)
             show_vertex_colours(thing.data)

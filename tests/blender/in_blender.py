@@ -76,6 +76,9 @@ def check_model(made) -> None:
     truth, found = expected_place(read_ply(folder / "mesh.ply")), vertices_of(made["model"])
     voxel = report["grid"]["voxel_size"] * METRES.get(report["options"].get("unit"), 1.0)
     assert len(found) > 100, "there is no model"
+    images = {node.image for thing in made["model"] for slot in thing.material_slots
+              for node in slot.material.node_tree.nodes if node.type == "TEX_IMAGE"}
+    assert bool(images) == ("mesh.glb" in report["files"]), f"its textures: {images}"
     for bound in (np.min, np.max):
         off = np.abs(bound(truth, axis=0) - bound(found, axis=0)).max()
         assert off < voxel, f"the model's bounds are off by {off / voxel:.2f} voxels"
