@@ -10,7 +10,9 @@ find_package(Python3 3.10 QUIET COMPONENTS Interpreter)
 if(TARGET photohull AND Python3_FOUND)
   install(CODE "execute_process(COMMAND \"${Python3_EXECUTABLE}\" \"${PROJECT_SOURCE_DIR}/scripts/make_manual.py\"
     \"${CMAKE_BINARY_DIR}/photohull\" \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}\"
-    COMMAND_ERROR_IS_FATAL ANY)" COMPONENT photohull)
+    COMMAND_ERROR_IS_FATAL ANY)
+    file(GLOB pages \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}/man/man1/photohull*.1\")
+    execute_process(COMMAND gzip -9nf \${pages} COMMAND_ERROR_IS_FATAL ANY)" COMPONENT photohull)
 endif()
 install(FILES README.md BIBLIOGRAPHY.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT photohull)
 # The program holds a copy of ECharts (third_party/echarts): its licence and notices go along.
@@ -35,25 +37,31 @@ endforeach()
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME photohull)
 set(CPACK_PACKAGE_VENDOR "The photohull authors")
-set(CPACK_PACKAGE_CONTACT "The photohull authors <photohull@localhost>")
+set(PHOTOHULL_CONTACT "The photohull authors <photohull@packages.invalid>" CACHE STRING "Maintainer of the Debian packages")
+set(CPACK_PACKAGE_CONTACT "${PHOTOHULL_CONTACT}")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
 set(CPACK_STRIP_FILES ON)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 
-set(CPACK_COMPONENTS_ALL photohull runtime dev python)
+set(CPACK_COMPONENTS_ALL photohull runtime dev)
+if(TARGET photohull_python)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_BINARY_DIR})
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 
 set(runtime_package libphotohull${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 # Loaded at run time, where dpkg-shlibdeps cannot see it: an OpenGL driver behind EGL.
 set(driver "libegl-mesa0, libgl1-mesa-dri")
-set(what "It carves away all space that contradicts the silhouettes and the colours in
-photographs whose cameras are known, on the GPU or on Mesa's software rasterizer.")
+set(what "It carves away all space that contradicts
+the silhouettes and the colours in photographs whose cameras are known, on
+the GPU or on Mesa's software rasterizer.")
 
 set(CPACK_DEBIAN_PHOTOHULL_PACKAGE_NAME photohull)
 set(CPACK_DEBIAN_PHOTOHULL_PACKAGE_SECTION graphics)
@@ -109,7 +117,7 @@ file(WRITE ${changelog} "photohull (${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RE
  -- ${CPACK_PACKAGE_CONTACT}  ${date}
 ")
 execute_process(COMMAND gzip -9nf ${changelog})
-foreach(component photohull runtime dev python)
+foreach(component ${CPACK_COMPONENTS_ALL})
   string(TOUPPER ${component} upper)
   set(package ${CPACK_DEBIAN_${upper}_PACKAGE_NAME})
   set(documents ${CMAKE_INSTALL_DATADIR}/doc/${package})

@@ -110,7 +110,7 @@ installation() {
   "$scratch/prefix/bin/photohull" --version | grep -F "$(project_version)"
   "$scratch/prefix/bin/photohull" --version --json | grep -F OpenVDB
   "$scratch/prefix/bin/photohull" chart --help | grep -F -- --draw-only
-  man --warnings -l "$scratch/prefix/share/man/man1/photohull-measure.1" | grep -F -- --sections
+  man --warnings -l "$scratch/prefix/share/man/man1/photohull-measure.1.gz" | grep -F -- --sections
   # The library, as another program finds and uses it.
   cmake -S examples -B "$scratch/examples" -DCMAKE_PREFIX_PATH="$scratch/prefix"
   cmake --build "$scratch/examples"
@@ -122,7 +122,7 @@ project_version() { sed -n 's/^project(photohull VERSION \([0-9.]*\).*/\1/p' CMa
 
 debian_package() {
   (cd $build && cpack -G DEB -B "$scratch/package")
-  lintian --fail-on error --suppress-tags-from-file scripts/lintian_overrides.txt "$scratch"/package/*.deb
+  lintian --fail-on error "$scratch"/package/*.deb
   dpkg -I "$scratch"/package/photohull_*.deb
   local program
   for program in photohull photohull-main photohull-lab; do
