@@ -28,6 +28,7 @@ void add_all(CLI::App& app) {
   add_evaluate(app, nullptr);
   add_devices(app);
   add_doctor(app);
+  add_demo(app);
 }
 
 }  // namespace

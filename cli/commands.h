@@ -45,6 +45,7 @@ void add_view(CLI::App& app);
 void add_render(CLI::App& app);
 void add_measure(CLI::App& app);
 void add_doctor(CLI::App& app);
+void add_demo(CLI::App& app);
 
 /// All of these.
 Commands main_commands();

@@ -25,15 +25,16 @@ target_link_options(photohull_shared PRIVATE -Wl,--version-script=${PROJECT_SOUR
 target_link_libraries(photohull_shared PRIVATE ${modules} INTERFACE glm::glm)
 set_target_properties(photohull_shared PROPERTIES LINKER_LANGUAGE CXX)
 
-install(TARGETS photohull_shared EXPORT photohull LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(EXPORT photohull NAMESPACE photohull:: FILE photohullTargets.cmake
+install(TARGETS photohull_shared EXPORT photohull LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  COMPONENT runtime NAMELINK_COMPONENT dev)
+install(EXPORT photohull NAMESPACE photohull:: FILE photohullTargets.cmake COMPONENT dev
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/photohull)
 configure_package_config_file(cmake/photohullConfig.cmake.in ${PROJECT_BINARY_DIR}/photohullConfig.cmake
   INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/photohull)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/photohullConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/photohullConfig.cmake ${PROJECT_BINARY_DIR}/photohullConfigVersion.cmake
-  DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/photohull)
+  DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/photohull COMPONENT dev)
 # The headers that photohull.h needs, whose include lines name the folder that they lie in then.
 install(CODE "set(ROOT \"${PROJECT_SOURCE_DIR}/src\")
 set(FOLDER \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}/photohull\")
-include(\"${PROJECT_SOURCE_DIR}/cmake/InstallHeaders.cmake\")")
+include(\"${PROJECT_SOURCE_DIR}/cmake/InstallHeaders.cmake\")" COMPONENT dev)

@@ -6,8 +6,8 @@
 # what changed.
 #
 #   --preset NAME   release (default), debug, asan or coverage; see CMakePresets.json
-#   --target NAME   build this alone: photohull (the program without its lab and the tests), unit_tests,
-#                   program_tests (the program and all other tests)
+#   --target NAME   build this alone: photohull (the program without its lab and the tests), installed (all that
+#                   packages hold), unit_tests, program_tests (the program and all other tests)
 #   --no-install    build with what is there; install nothing
 #   --help          print this text
 

@@ -110,7 +110,7 @@ installation() {
   "$scratch/prefix/bin/photohull" --version | grep -F "$(project_version)"
   "$scratch/prefix/bin/photohull" --version --json | grep -F OpenVDB
   "$scratch/prefix/bin/photohull" chart --help | grep -F -- --draw-only
-  man --warnings -l "$scratch/prefix/share/man/man1/photohull-measure.1" | grep -F -- --sections
+  man --warnings -l "$scratch/prefix/share/man/man1/photohull-measure.1.gz" | grep -F -- --sections
   # The library, as another program finds and uses it.
   cmake -S examples -B "$scratch/examples" -DCMAKE_PREFIX_PATH="$scratch/prefix"
   cmake --build "$scratch/examples"
@@ -122,12 +122,46 @@ project_version() { sed -n 's/^project(photohull VERSION \([0-9.]*\).*/\1/p' CMa
 
 debian_package() {
   (cd $build && cpack -G DEB -B "$scratch/package")
+  lintian --fail-on error "$scratch"/package/*.deb
   dpkg -I "$scratch"/package/photohull_*.deb
   local program
   for program in photohull photohull-main photohull-lab; do
     dpkg -c "$scratch"/package/photohull_*.deb | grep -F "./usr/bin/$program"
   done
   dpkg-deb -f "$scratch"/package/photohull_*.deb Depends | grep -F libopenvdb
+  dpkg-deb -f "$scratch"/package/python3-photohull_*.deb Depends | grep -F "libphotohull0.1 (="
+  dpkg -c "$scratch"/package/libphotohull-dev_*.deb | grep -F ./usr/include/photohull/photohull.h
+  # All of them beside each other, as apt would lay them.
+  local package
+  for package in "$scratch"/package/*.deb; do dpkg -x "$package" "$scratch/debian"; done
+  "$scratch/debian/usr/bin/photohull" demo --resolution 32 --out "$scratch/demo" | grep -F "16 views"
+  LD_LIBRARY_PATH="$scratch/debian/usr/lib" PYTHONPATH="$scratch/debian/usr/lib/python3/dist-packages" /usr/bin/python3 -c \
+    "import photohull; print(photohull.__file__, photohull.devices())"
+}
+
+# The archive, in a folder whose name has a space, by its own renderer; and no library but the C library's is the system's.
+bundle() {
+  scripts/bundle.sh --no-build --level 0 --out "$scratch/bundle.tar.xz"
+  mkdir "$scratch/any folder"
+  tar -xf "$scratch/bundle.tar.xz" -C "$scratch/any folder"
+  cd "$scratch/any folder"/photohull-*
+  local file foreign
+  for file in libexec/photohull-main lib/*.so* lib/mesa/*.so* lib/mesa/dri/*.so; do
+    foreign=$(LD_LIBRARY_PATH="$PWD/lib/gcc" ldd "$file" | grep -vF "$PWD/" |
+      grep -vE 'linux-vdso|ld-linux|lib(c|m|dl|pthread|rt|resolv|util)\.so|statically linked' || true)
+    if [ -n "$foreign" ]; then
+      say "$file takes from the system:" "$foreign"
+      return 1
+    fi
+  done
+  PHOTOHULL_EGL=bundled ./photohull doctor | grep -F "llvmpipe"
+  PHOTOHULL_EGL=bundled ./photohull demo --resolution 32 --out "$scratch/bundled" | grep -F "16 views"
+  # A picture that is none must be refused by name; the readers of films that stand-ins replace must not be run into.
+  mkdir "$scratch/damaged"
+  cp share/photohull/templeSparseRing/* "$scratch/damaged"
+  echo "no picture" >"$scratch/damaged/templeSR0001.png"
+  if PHOTOHULL_EGL=bundled ./photohull reconstruct "$scratch/damaged" --out "$scratch/never" 2>"$scratch/said"; then return 1; fi
+  grep -F templeSR0001.png "$scratch/said"
 }
 
 # Python's package, which is built where these are there.
@@ -140,7 +174,7 @@ else
   scripts/setup.sh
 fi
 install_missing ffmpeg colmap # films, and cameras without a sheet: 14 MB
-[ $with_all = no ] || install_missing clang clang-format clang-tidy shellcheck dpkg-dev file man-db groff python3 chromium opencv-doc parallel openmpi-bin slurm-wlm munge
+[ $with_all = no ] || install_missing clang clang-format clang-tidy shellcheck dpkg-dev file lintian patchelf xz-utils man-db groff python3 chromium opencv-doc parallel openmpi-bin slurm-wlm munge
 [ $with_all = no ] || command -v npm >/dev/null || install_missing npm
 started=$SECONDS
 
@@ -158,6 +192,7 @@ if [ $with_all = yes ]; then
   check "USDZ files" scripts/check_usdz.sh
   check "cmake --install" installation
   check "cpack -G DEB" debian_package
+  check "bundle" bundle
   check_aloud "build with sanitizers" scripts/setup.sh --preset asan --target unit_tests
   check_aloud "unit tests with sanitizers" run_tests asan --label-regex unit
   check_aloud "fuzzers" scripts/fuzz.sh --seconds 2

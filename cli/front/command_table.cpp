@@ -36,6 +36,7 @@ constexpr CommandEntry kCommands[] = {
     {"bench", "measure parts of the program by themselves", kLabProgram},
     {"devices", "list the EGL devices and which one 'auto' takes", kMainProgram},
     {"doctor", "tell of this machine what a report of a fault needs, and test it", kMainProgram},
+    {"demo", "reconstruct the temple from photographs that come with the program", kMainProgram},
 };
 
 }  // namespace

@@ -10,6 +10,7 @@ BENCH_FILES = {"--out": "out/bench", "--json": "bench.json"}
 DRAFT = {
     "reconstruct": {"--resolution": "24"},
     "batch": {"--resolution": "24"},
+    "demo": {"--resolution": "24", "--out": "out/demo"},
     "scan": {"--resolution": "24", "--texture": "256"},
     "synthesize": {"--size": "96x72", "--views": "12"},
     "chart": {"--dry-run": None},
