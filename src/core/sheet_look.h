@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <vector>
 
 namespace photohull {
@@ -13,6 +14,10 @@ struct SheetLook {
   /// negative where it shows something else than the page, in part at least.
   std::vector<float> light;
   std::vector<std::uint8_t> possible;  ///< 255 where the object may appear: its box does
+  /// Square roots of the light that bare paper sends to the pixel, exposed as in no photograph in
+  /// particular (SheetLight::paper); empty: not known.
+  std::vector<glm::vec3> paper;
+  std::vector<std::uint8_t> agreed;  ///< 255 where photographs agree on that; as large as `paper`
 };
 
 }  // namespace photohull

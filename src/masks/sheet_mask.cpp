@@ -22,22 +22,24 @@ constexpr double kMostConfidence = 0.99;  // masks that were given have 1
 constexpr int kTerms = 6;
 constexpr int kShadowEdge = 4;  // pixels: half of the window that looks for texture, and the edge
 
-/// 1, x, y and their products, of a pixel's place from -1 to 1.
-std::array<double, kTerms> terms(const cv::Point& at, const cv::Size& size) {
+/// 1, x, y and their products, of a pixel's place from -1 to 1; `radial`: 1 and the distance from
+/// the middle, squared, alone.
+std::array<double, kTerms> terms(const cv::Point& at, const cv::Size& size, bool radial) {
   const double x = 2.0 * at.x / size.width - 1, y = 2.0 * at.y / size.height - 1;
+  if (radial) return {1, 0, 0, x * x + y * y, 0, 0};
   return {1, x, y, x * x, x * y, y * y};
 }
 
-/// A form of second order through the values of places, robustly: shadows are darker.
+/// A form of these terms through the values of places, robustly: shadows are darker.
 cv::Vec6d fit(const std::vector<cv::Point>& places, const std::vector<double>& values,
-              const cv::Size& size) {
+              const cv::Size& size, bool radial) {
   std::vector<double> weights(places.size(), 1.0);
   cv::Vec6d form;
   for (int round = 0; round < 8; ++round) {
     cv::Matx<double, kTerms, kTerms> normal = cv::Matx<double, kTerms, kTerms>::eye() * 1e-6;
     cv::Vec6d right;
     for (std::size_t i = 0; i < places.size(); ++i) {
-      const auto t = terms(places[i], size);
+      const auto t = terms(places[i], size, radial);
       for (int a = 0; a < kTerms; ++a) {
         right[a] += weights[i] * t[std::size_t(a)] * values[i];
         for (int b = 0; b < kTerms; ++b)
@@ -47,7 +49,7 @@ cv::Vec6d fit(const std::vector<cv::Point>& places, const std::vector<double>& v
     form = normal.solve(right, cv::DECOMP_CHOLESKY);
     std::vector<double> off;
     for (std::size_t i = 0; i < places.size(); ++i) {
-      const auto t = terms(places[i], size);
+      const auto t = terms(places[i], size, radial);
       double value = 0;
       for (int a = 0; a < kTerms; ++a) value += form[a] * t[std::size_t(a)];
       off.push_back(values[i] - value);
@@ -68,7 +70,9 @@ class Comparison {
         light_(look.height, look.width, CV_32F, const_cast<float*>(look.light.data())),
         possible_(look.height, look.width, CV_8U, const_cast<std::uint8_t*>(look.possible.data())),
         page_(light_ >= 0),
-        expected_(taken_.clone()) {
+        expected_(taken_.clone()),
+        paper_(look.paper),
+        agreed_(look.agreed) {
     if (!still.empty()) behind_.emplace(still, taken_);
   }
 
@@ -104,7 +108,7 @@ class Comparison {
       for (int x = 0; x < light_.cols; x += step) {
         if (!certain.at<std::uint8_t>(y, x)) continue;
         const float light = light_.at<float>(y, x);
-        if (light > kPaper) paper.emplace_back(x, y);
+        if (light > kPaper && is_known({x, y})) paper.emplace_back(x, y);
         if (light < kInk) ink.emplace_back(x, y);
       }
     if (paper.size() < kFewest || ink.size() < kFewest / 10) return false;
@@ -112,16 +116,27 @@ class Comparison {
     return true;
   }
 
+  std::size_t index(const cv::Point& at) const {
+    return std::size_t(at.y) * std::size_t(taken_.cols) + std::size_t(at.x);
+  }
+  bool is_known(const cv::Point& at) const { return agreed_.empty() || agreed_[index(at)] != 0; }
+  /// What bare paper sends there, as all photographs tell, but for the exposure.
+  double known_paper(const cv::Point& at, int c) const {
+    return paper_.empty() ? 1.0 : std::max(1e-3, double(paper_[index(at)][c]));
+  }
+
   void expect_channel(int c, const std::vector<cv::Point>& paper,
                       const std::vector<cv::Point>& ink) {
     std::vector<double> values, shares;
-    for (const cv::Point& at : paper) values.push_back(double(taken_.at<cv::Vec3f>(at)[c]));
-    const cv::Vec6d form = fit(paper, values, taken_.size());
+    const bool radial = !paper_.empty();  // it is known but for exposure and the lens's fall-off
+    for (const cv::Point& at : paper)
+      values.push_back(double(taken_.at<cv::Vec3f>(at)[c]) / known_paper(at, c));
+    const cv::Vec6d form = fit(paper, values, taken_.size(), radial);
     const auto paper_at = [&](const cv::Point& at) {
-      const auto t = terms(at, taken_.size());
+      const auto t = terms(at, taken_.size(), radial);
       double value = 0;
       for (int a = 0; a < kTerms; ++a) value += form[a] * t[std::size_t(a)];
-      return std::max(value, 1e-3);
+      return std::max(value * known_paper(at, c), 1e-3);
     };
     for (const cv::Point& at : ink)
       shares.push_back(std::pow(double(taken_.at<cv::Vec3f>(at)[c]) / paper_at(at), 2));
@@ -229,6 +244,8 @@ class Comparison {
   }
 
   cv::Mat taken_, light_, possible_, page_, expected_;
+  const std::vector<glm::vec3>& paper_;
+  const std::vector<std::uint8_t>& agreed_;
   std::optional<Behind> behind_;
 };
 
