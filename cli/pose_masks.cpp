@@ -44,8 +44,8 @@ std::vector<fs::path> write_sheet_masks(const fs::path& folder, const std::vecto
     progress.check_cancelled();
     progress.update(double(i) / double(images.size()));
     if (!result.photos[i].posed) continue;
-    SheetLook look = look_at_sheet(result, i, sheet, picture, blur_of_edges(edge_widths[i]),
-                                   scenery.light);
+    SheetLook look =
+        look_at_sheet(result, i, sheet, picture, blur_of_edges(edge_widths[i]), scenery.light);
     scenery.narrow(i, look);
     SheetMask found = mask_from_sheet(io::read_image(images[i]), look, false, turntable.behind(i));
     undecided += found.undecided > kMuch;

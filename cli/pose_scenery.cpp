@@ -109,9 +109,8 @@ class Exploration {
       const std::size_t i = posed_[k];
       step(k);
       const ColourImage image = io::read_image(images_[i], scale);
-      SheetLook look =
-          look_at_sheet(scaled(i, image.width, image.height), i, sheet_, picture_,
-                        blur_of_edges(scale * edge_widths_[i]), out_.light);
+      SheetLook look = look_at_sheet(scaled(i, image.width, image.height), i, sheet_, picture_,
+                                     blur_of_edges(scale * edge_widths_[i]), out_.light);
       out_.narrow(i, look);
       masks[i] = mask_from_sheet(image, look, false).mask;
       for (std::uint8_t& c : masks[i].coverage) c = c >= kMaybe ? 255 : 0;

@@ -99,8 +99,8 @@ void add_pixel(const Sight& sight, const SheetPicture& picture, const SheetLight
   glm::vec3 paper(0.0f);
   for (int k = 0; k < kSamples * kSamples; ++k) {
     const double u = (k % kSamples + 0.5) / kSamples, v = (k / kSamples + 0.5) / kSamples;
-    const auto place = sight.place(glm::mix(glm::mix(corners[0], corners[1], u),
-                                            glm::mix(corners[2], corners[3], u), v));
+    const auto place = sight.place(
+        glm::mix(glm::mix(corners[0], corners[1], u), glm::mix(corners[2], corners[3], u), v));
     const float own = place ? picture.at(*place) : -1;
     beside = beside || own < 0;
     sum += own / (kSamples * kSamples);
@@ -148,7 +148,7 @@ SheetLook look_at_sheet(const PoseResult& result, std::size_t photo, const Sheet
                         const SheetPicture& picture, double blur, const SheetLight& light) {
   PHOTOHULL_CHECK(result.photos[photo].posed);
   const Sight sight(result, photo, sheet);
-  SheetLook look{sight.width(), sight.height(), {}, {}, {}, {}};
+  SheetLook look{sight.width(), sight.height(), {}, {}, {}, {}, light.steady};
   std::vector<glm::dvec2> above = sight.corners(0);
   for (int y = 0; y < look.height; ++y) {
     const std::vector<glm::dvec2> below = sight.corners(y + 1);

@@ -17,6 +17,8 @@ struct SheetLight {
   /// alike.
   std::vector<glm::vec3> paper;
   std::vector<std::uint8_t> agreed;  ///< 255 where photographs agree on it; 0: as it is around
+  /// Shadows stay where they are from photograph to photograph.
+  bool steady = false;
 
   struct Texel {
     glm::vec3 paper{0.0f};

@@ -18,6 +18,7 @@ struct SheetLook {
   /// particular (SheetLight::paper); empty: not known.
   std::vector<glm::vec3> paper;
   std::vector<std::uint8_t> agreed;  ///< 255 where photographs agree on that; as large as `paper`
+  bool steady = false;  ///< shadows on the sheet are the same in all of them (SheetLight::steady)
 };
 
 }  // namespace photohull

@@ -15,18 +15,19 @@
 namespace photohull {
 namespace {
 
-constexpr double kFinest = 0.3;       // mm between lattice points
-constexpr double kBare = 0.7;         // mm around a point that must be bare paper
-constexpr float kPaper = 0.97f;       // share of bare paper from which on it is
-constexpr int kFreeEnough = 3;        // photographs that the object cannot hide a place from
-constexpr int kFewest = 4;            // photographs that agree
+constexpr double kFinest = 0.3;  // mm between lattice points
+constexpr double kBare = 0.7;    // mm around a point that must be bare paper
+constexpr float kPaper = 0.97f;  // share of bare paper from which on it is
+constexpr int kFreeEnough = 3;   // photographs that the object cannot hide a place from
+constexpr int kFewest = 4;       // photographs that agree
 constexpr double kLeastShare = 1 / 3.0;
-constexpr double kCosineApart = 0.5;  // 60 degrees
+constexpr double kCosineApart = 0.5;                // 60 degrees
 constexpr float kLeastWindow = 0.04f, kSigmas = 6;  // of the roots, relative: what agrees
 constexpr float kHue = 0.12f;                       // relative
 constexpr float kDarkest = 0.4f, kLightest = 1.5f;  // of the usual root
 constexpr std::size_t kFewestFree = 100;
-constexpr int kRounds = 3;  // exposures and light in turn
+constexpr double kMostMoving = 0.01;  // of what is seen where the object cannot be
+constexpr int kRounds = 3;            // exposures and light in turn
 
 /// What a photograph shows of a lattice point.
 struct Sample {
@@ -52,8 +53,8 @@ class Search {
  public:
   explicit Search(const SheetPhotographs& photos) : photos_(photos) {
     const double area = photos.page.x * photos.page.y;
-    const double step = std::max(
-        kFinest, std::sqrt(area * double(photos.count) * sizeof(Sample) / photos.held));
+    const double step =
+        std::max(kFinest, std::sqrt(area * double(photos.count) * sizeof(Sample) / photos.held));
     out_.texels_per_mm = 1 / step;
     out_.lower_left = photos.lower_left;
     out_.width = std::max(1, int(std::ceil(photos.page.x / step)));
@@ -74,6 +75,7 @@ class Search {
     average_free();
     if (std::size_t(std::ranges::count(out_.agreed, 255)) < kFewestFree) return {};
     note_usual();
+    out_.steady = is_steady();
     let_groups_agree();
     fill();
     return std::move(out_);
@@ -214,10 +216,25 @@ class Search {
     window_ = std::max(kLeastWindow, kSigmas * 1.483f * float(median(std::move(off))));
   }
 
+  /// Are shadows where the object cannot be in all photographs alike?
+  bool is_steady() const {
+    std::size_t seen = 0, darker = 0;
+    for (std::size_t i = 0; i < texels_; ++i) {
+      if (!out_.agreed[i]) continue;
+      for (std::size_t k = 0; k < photos_.count; ++k) {
+        if (!samples_[k][i].free()) continue;
+        ++seen;
+        darker += mean(light(k, i)) < (1 - window_) * mean(out_.paper[i]);
+      }
+    }
+    return double(darker) <= kMostMoving * double(seen);
+  }
+
   bool like_paper(const glm::vec3& light) const {
     const float size = mean(light) / mean(usual_);
     const glm::vec3 hue = light / (size * usual_);
-    return size > kDarkest && size < kLightest && glm::all(glm::lessThan(glm::abs(hue - 1.0f), glm::vec3(kHue)));
+    return size > kDarkest && size < kLightest &&
+           glm::all(glm::lessThan(glm::abs(hue - 1.0f), glm::vec3(kHue)));
   }
 
   void let_groups_agree() {
@@ -286,7 +303,8 @@ class Search {
       const bool last = reach > std::max(out_.width, out_.height);
       cv::Mat sums, weights;
       if (last) {
-        sums = cv::Mat(light.size(), CV_32FC3, cv::Scalar(double(usual_.x), double(usual_.y), double(usual_.z)));
+        sums = cv::Mat(light.size(), CV_32FC3,
+                       cv::Scalar(double(usual_.x), double(usual_.y), double(usual_.z)));
         weights = cv::Mat(light.size(), CV_32F, cv::Scalar(1));
       } else {
         const int side = 2 * int(2 * reach) + 1;

@@ -33,8 +33,9 @@ struct SheetPhotographs {
 /// photographs and a third of those that show the place, from directions 60 degrees apart, no other
 /// group is half as large, and it has the paper's hue: the object looks different from different
 /// sides, and a shadow that stands still does not. Between such points it is continued smoothly.
-/// Exposures may differ, and fall off towards the images' corners. Empty where less than a hundred
-/// places are seen beside the object.
+/// Exposures may differ, and fall off towards the images' corners. Light is steady where no more
+/// than a percent of what is seen where the object cannot be is darker than that. Empty where less
+/// than a hundred places are seen beside the object.
 SheetLight find_sheet_light(const SheetPhotographs& photographs);
 
 }  // namespace photohull

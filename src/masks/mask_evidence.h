@@ -38,9 +38,11 @@ cv::Mat light_roots(const ColourImage& image);
 /// The same comparison by what is expected of each pixel (both as light_roots has it). Noise is
 /// measured where `certain` (CV_8U) is not 0: there nothing stands before the background. Where a
 /// place that may be shadow is smooth, the shadow's edge may lie up to `edge` pixels from it.
-/// `least` (CV_32F): deviation that each pixel has at least; empty: none.
+/// `least` (CV_32F): deviation that each pixel has at least; empty: none. `shaded` (CV_8U): where
+/// it is not 0, what is expected has its shadow, and there is no other; empty: nowhere.
 MaskEvidence compare_with_expected(const cv::Mat& taken, const cv::Mat& expected,
-                                   const cv::Mat& certain, int edge, const cv::Mat& least = {});
+                                   const cv::Mat& certain, int edge, const cv::Mat& least = {},
+                                   const cv::Mat& shaded = {});
 
 /// Moves the contour to where OpenCV's GrabCut [Rother04] puts it between what surely is the
 /// object and surely is not. Pixels of strong evidence stay the object's. The mask stays as it is

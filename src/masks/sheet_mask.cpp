@@ -72,7 +72,8 @@ class Comparison {
         page_(light_ >= 0),
         expected_(taken_.clone()),
         paper_(look.paper),
-        agreed_(look.agreed) {
+        agreed_(look.agreed),
+        steady_(look.steady) {
     if (!still.empty()) behind_.emplace(still, taken_);
   }
 
@@ -81,8 +82,9 @@ class Comparison {
     if (!expect_page()) return out;
     cv::Mat unknown = expect_surroundings();
     const cv::Mat certain = page_ & ~possible_;
-    MaskEvidence evidence = compare_with_expected(taken_, expected_, certain, kShadowEdge,
-                                                  behind_ ? behind_->deviation : cv::Mat());
+    MaskEvidence evidence =
+        compare_with_expected(taken_, expected_, certain, kShadowEdge,
+                              behind_ ? behind_->deviation : cv::Mat(), shaded());
     evidence.distance.setTo(0, ~possible_);
     if (behind_) unknown |= disbelieved(*behind_, {page_, possible_, unknown}, evidence);
     evidence.distance.setTo(255, unknown);
@@ -114,6 +116,12 @@ class Comparison {
     if (paper.size() < kFewest || ink.size() < kFewest / 10) return false;
     for (int c = 0; c < 3; ++c) expect_channel(c, paper, ink);
     return true;
+  }
+
+  /// Where all shadow on the page is known.
+  cv::Mat shaded() const {
+    if (!steady_) return {};
+    return cv::Mat(taken_.size(), CV_8U, const_cast<std::uint8_t*>(agreed_.data())) & page_;
   }
 
   std::size_t index(const cv::Point& at) const {
@@ -246,6 +254,7 @@ class Comparison {
   cv::Mat taken_, light_, possible_, page_, expected_;
   const std::vector<glm::vec3>& paper_;
   const std::vector<std::uint8_t>& agreed_;
+  bool steady_;
   std::optional<Behind> behind_;
 };
 
