@@ -15,6 +15,9 @@ struct MaskEvidence {
   int weak = 0;      ///< near strong pixels, the object reaches down to here
   int strong = 0;    ///< from here on a pixel is the object's beyond doubt
   double doubt = 0;  ///< [0, 1]: share of the object's pixels between weak and strong
+  /// CV_8U, 255 where the background is seen beyond doubt: gaps are not closed over it. Empty:
+  /// nowhere.
+  cv::Mat bare;
 };
 
 /// By the colours of the background.

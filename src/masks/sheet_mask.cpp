@@ -85,6 +85,7 @@ class Comparison {
     MaskEvidence evidence =
         compare_with_expected(taken_, expected_, certain, kShadowEdge,
                               behind_ ? behind_->deviation : cv::Mat(), shaded());
+    if (!paper_.empty()) evidence.bare = bare(evidence, unknown);
     evidence.distance.setTo(0, ~possible_);
     if (behind_) unknown |= disbelieved(*behind_, {page_, possible_, unknown}, evidence);
     evidence.distance.setTo(255, unknown);
@@ -122,6 +123,14 @@ class Comparison {
   cv::Mat shaded() const {
     if (!steady_) return {};
     return cv::Mat(taken_.size(), CV_8U, const_cast<std::uint8_t*>(agreed_.data())) & page_;
+  }
+
+  /// Where all around a pixel is as expected, and what is expected is no guess.
+  cv::Mat bare(const MaskEvidence& evidence, const cv::Mat& unknown) const {
+    cv::Mat around;
+    cv::blur(evidence.distance, around, {5, 5});
+    const cv::Mat agreed(taken_.size(), CV_8U, const_cast<std::uint8_t*>(agreed_.data()));
+    return (around < evidence.weak / 2) & ((page_ & agreed) | (~page_ & ~unknown));
   }
 
   std::size_t index(const cv::Point& at) const {
