@@ -115,7 +115,8 @@ void add_pixel(const Sight& sight, const SheetPicture& picture, const SheetLight
   look.agreed.push_back(!beside && agreed ? 255 : 0);
 }
 
-/// Blurs what is seen of the page; pixels beside it reach into it by twice the blur.
+/// Blurs what is seen of the page; pixels beside it reach into it by twice the blur. The light
+/// comes from photographs and is as blurred as they are.
 void blur_look(double blur, SheetLook& look) {
   cv::Mat light(look.height, look.width, CV_32F, look.light.data());
   const cv::Mat beside = light < 0;
@@ -125,15 +126,7 @@ void blur_look(double blur, SheetLook& look) {
   const int reach = 2 * int(std::ceil(2 * blur)) + 1;
   cv::dilate(beside, near, cv::getStructuringElement(cv::MORPH_RECT, {reach, reach}));
   light.setTo(-1, near);
-  if (look.paper.empty()) return;
-  cv::Mat paper(look.height, look.width, CV_32FC3, look.paper.data()), share, sums;
-  cv::Mat(~beside).convertTo(share, CV_32F, 1 / 255.0);
-  cv::GaussianBlur(paper, sums, {}, blur);
-  cv::GaussianBlur(share, share, {}, blur);
-  for (int y = 0; y < paper.rows; ++y)
-    for (int x = 0; x < paper.cols; ++x)
-      if (!near.at<std::uint8_t>(y, x))
-        paper.at<cv::Vec3f>(y, x) = sums.at<cv::Vec3f>(y, x) / share.at<float>(y, x);
+  look.mixed = reach + 1;
 }
 
 }  // namespace
@@ -148,7 +141,9 @@ SheetLook look_at_sheet(const PoseResult& result, std::size_t photo, const Sheet
                         const SheetPicture& picture, double blur, const SheetLight& light) {
   PHOTOHULL_CHECK(result.photos[photo].posed);
   const Sight sight(result, photo, sheet);
-  SheetLook look{sight.width(), sight.height(), {}, {}, {}, {}, light.steady};
+  SheetLook look;
+  look.width = sight.width(), look.height = sight.height();
+  look.steady = light.steady;
   std::vector<glm::dvec2> above = sight.corners(0);
   for (int y = 0; y < look.height; ++y) {
     const std::vector<glm::dvec2> below = sight.corners(y + 1);

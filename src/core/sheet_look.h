@@ -13,6 +13,7 @@ struct SheetLook {
   /// Share of the paper's light that the pixel sends: 0 ink, 1 bare paper, averaged over its area;
   /// negative where it shows something else than the page, in part at least.
   std::vector<float> light;
+  int mixed = 2;  ///< pixels beside those that show the page which may show a part of it
   std::vector<std::uint8_t> possible;  ///< 255 where the object may appear: its box does
   /// Square roots of the light that bare paper sends to the pixel, exposed as in no photograph in
   /// particular (SheetLight::paper); empty: not known.

@@ -143,8 +143,13 @@ Mask mask_from_evidence(const MaskEvidence& model) {
   cv::Mat closed;
   cv::morphologyEx(object, closed, cv::MORPH_CLOSE, square(2 * reach));
   if (!model.bare.empty()) closed &= ~model.bare(box) | object;
-  object = closed;
+  object = closed.clone();
   fill_holes(object, kHole * trust * trust * cv::countNonZero(object));
+  if (!model.bare.empty()) {  // what is wide enough is a hole
+    cv::Mat open;
+    cv::morphologyEx(model.bare(box), open, cv::MORPH_OPEN, square(kMixed));
+    object &= ~open | closed;
+  }
   const cv::Mat whole = object.clone();
   soften_contour(distance, object);
   tell_doubt(model, distance, whole, object);

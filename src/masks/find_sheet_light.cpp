@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 #include <opencv2/imgproc.hpp>
+#include <tuple>
 #include <vector>
 
 #include "core/median.h"
@@ -26,8 +27,11 @@ constexpr float kLeastWindow = 0.04f, kSigmas = 6;  // of the roots, relative: w
 constexpr float kHue = 0.12f;                       // relative
 constexpr float kDarkest = 0.4f, kLightest = 1.5f;  // of the usual root
 constexpr std::size_t kFewestFree = 100;
-constexpr double kMostMoving = 0.01;  // of what is seen where the object cannot be
-constexpr int kRounds = 3;            // exposures and light in turn
+constexpr double kMostMoving = 0.01;            // of what is seen where the object cannot be
+constexpr double kNear = 0.75, kAcrossInk = 4;  // mm: half of the windows that tell what is between
+constexpr float kLeastBare = 0.05f;             // share of such a window on which photographs agree
+constexpr float kMostAgree = 0.8f;              // share of its bare paper on which they must
+constexpr int kRounds = 3;                      // exposures and light in turn
 
 /// What a photograph shows of a lattice point.
 struct Sample {
@@ -78,6 +82,7 @@ class Search {
     out_.steady = is_steady();
     let_groups_agree();
     fill();
+    agree_between();
     return std::move(out_);
   }
 
@@ -103,7 +108,7 @@ class Search {
       for (int v = -1; v <= 1 && bare; ++v)
         for (int u = -1; u <= 1 && bare; ++u)
           bare = photos_.print(at + kBare * glm::dvec2(u, v)) > kPaper;
-      bare_[i] = bare;
+      bare_[i] = bare ? 255 : 0;
     });
   }
 
@@ -224,7 +229,8 @@ class Search {
       for (std::size_t k = 0; k < photos_.count; ++k) {
         if (!samples_[k][i].free()) continue;
         ++seen;
-        darker += mean(light(k, i)) < (1 - window_) * mean(out_.paper[i]);
+        const float paper = mean(out_.paper[i]);
+        darker += mean(light(k, i)) < paper - window(paper);
       }
     }
     return double(darker) <= kMostMoving * double(seen);
@@ -243,50 +249,73 @@ class Search {
     });
   }
 
+  struct Seen {
+    glm::vec3 light;
+    float brightness;
+    std::size_t photo;
+  };
+
   void agree_at(std::size_t i) {
-    std::vector<std::pair<float, std::size_t>> seen;  // brightness, photograph
+    std::vector<Seen> seen;
     for (std::size_t k = 0; k < photos_.count; ++k)
-      if (samples_[k][i].seen()) seen.emplace_back(mean(light(k, i)), k);
+      if (samples_[k][i].seen()) seen.push_back({light(k, i), mean(light(k, i)), k});
     if (int(seen.size()) < kFewest) return;
-    std::sort(seen.begin(), seen.end());
-    const auto [first, last] = largest_group(seen, 0, 0);
-    const std::size_t count = last - first;
-    if (int(count) < kFewest || double(count) < kLeastShare * double(seen.size())) return;
-    const auto other = largest_group(seen, first, last);
-    if (2 * (other.second - other.first) >= count) return;
+    std::sort(seen.begin(), seen.end(), [](const Seen& a, const Seen& b) {
+      return std::tie(a.brightness, a.photo) < std::tie(b.brightness, b.photo);
+    });
+    const std::vector<Seen> group = take_largest_group(seen);
+    if (int(group.size()) < kFewest ||
+        double(group.size()) < kLeastShare * double(seen.size() + group.size()))
+      return;
+    if (2 * take_largest_group(seen).size() >= group.size()) return;
     glm::vec3 sum(0.0f);
-    for (std::size_t j = first; j < last; ++j) sum += light(seen[j].second, i);
-    sum /= float(count);
-    if (!like_paper(sum) || !far_apart(seen, first, last, place(i))) return;
+    for (const Seen& s : group) sum += s.light;
+    sum /= float(group.size());
+    if (!like_paper(sum) || !far_apart(group, place(i))) return;
     out_.paper[i] = sum;
     out_.agreed[i] = 255;
   }
 
-  /// Of those that are alike in brightness, without those from `from` to `to`.
-  std::pair<std::size_t, std::size_t> largest_group(
-      const std::vector<std::pair<float, std::size_t>>& seen, std::size_t from,
-      std::size_t to) const {
-    std::pair<std::size_t, std::size_t> best{0, 0};
-    std::size_t low = 0;
-    for (std::size_t high = 0; high < seen.size(); ++high) {
-      if (high >= from && high < to) {
-        low = to;
-        continue;
-      }
-      while (low < high && seen[high].first > seen[low].first * (1 + window_)) ++low;
-      if (low >= from && low < to) low = to;
-      if (low <= high && high + 1 - low >= best.second - best.first) best = {low, high + 1};
-    }
-    return best;
+  /// How much photographs may differ in a light: noise in the roots is the same where it is dark.
+  float window(float light) const { return std::max(kLeastWindow * light, window_ * mean(usual_)); }
+
+  bool alike(const Seen& a, const Seen& b) const {
+    const glm::vec3 off = glm::abs(a.light - b.light);
+    return std::max({off.x, off.y, off.z}) <= 0.5f * window(a.brightness);
   }
 
-  bool far_apart(const std::vector<std::pair<float, std::size_t>>& seen, std::size_t first,
-                 std::size_t last, const glm::dvec2& at) const {
-    const auto direction = [&](std::size_t j) {
-      return glm::normalize(eyes_[seen[j].second] - glm::dvec3(at, 0));
+  /// The most of those, in order of brightness, that are alike one of them; the brightest such
+  /// group. They are taken out.
+  std::vector<Seen> take_largest_group(std::vector<Seen>& seen) const {
+    std::size_t best = 0, most = 0;
+    const auto for_each_near = [&](std::size_t i, const auto& visit) {
+      const float reach = 0.5f * window(seen[i].brightness);
+      std::size_t j = i;
+      while (j > 0 && seen[i].brightness - seen[j - 1].brightness <= reach) --j;
+      for (; j < seen.size() && seen[j].brightness - seen[i].brightness <= reach; ++j)
+        if (alike(seen[i], seen[j])) visit(j);
     };
-    for (std::size_t a = first; a < last; ++a)
-      for (std::size_t b = a + 1; b < last; ++b)
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      std::size_t count = 0;
+      for_each_near(i, [&](std::size_t) { ++count; });
+      if (count >= most) best = i, most = count;
+    }
+    std::vector<Seen> group;
+    if (seen.empty()) return group;
+    std::vector<bool> taken(seen.size(), false);
+    for_each_near(best, [&](std::size_t j) { taken[j] = true; });
+    std::vector<Seen> rest;
+    for (std::size_t j = 0; j < seen.size(); ++j) (taken[j] ? group : rest).push_back(seen[j]);
+    seen = std::move(rest);
+    return group;
+  }
+
+  bool far_apart(const std::vector<Seen>& group, const glm::dvec2& at) const {
+    const auto direction = [&](const Seen& s) {
+      return glm::normalize(eyes_[s.photo] - glm::dvec3(at, 0));
+    };
+    for (const Seen& a : group)
+      for (const Seen& b : group)
         if (glm::dot(direction(a), direction(b)) < kCosineApart) return true;
     return false;
   }
@@ -319,6 +348,39 @@ class Search {
           }
       if (last) break;
     }
+  }
+
+  /// Single places, and ink, among bare ones on which photographs agree and which are lit alike.
+  void agree_between() {
+    const cv::Mat light(out_.height, out_.width, CV_32FC3, out_.paper.data());
+    cv::Mat agreed(out_.height, out_.width, CV_8U, out_.agreed.data());
+    const cv::Mat bare(out_.height, out_.width, CV_8U, bare_.data());
+    const cv::Mat known = agreed & (bare > 0);
+    cv::Mat brightness;
+    cv::transform(light, brightness, cv::Matx13f(1 / 3.0f, 1 / 3.0f, 1 / 3.0f));
+    const auto side = [&](double reach) {
+      return 2 * int(std::lround(reach * out_.texels_per_mm)) + 1;
+    };
+    const auto between = [&](double reach) {
+      const cv::Size around(side(reach), side(reach));
+      cv::Mat all, sure, sums, squares, masked(brightness.size(), CV_32F, cv::Scalar(0));
+      brightness.copyTo(masked, known);
+      cv::boxFilter(bare > 0, all, CV_32F, around, {-1, -1}, true);
+      cv::boxFilter(known, sure, CV_32F, around, {-1, -1}, true);
+      cv::boxFilter(masked, sums, CV_32F, around, {-1, -1}, true);
+      cv::boxFilter(masked.mul(masked), squares, CV_32F, around, {-1, -1}, true);
+      cv::Mat out(brightness.size(), CV_8U, cv::Scalar(0));
+      for (int y = 0; y < out.rows; ++y)
+        for (int x = 0; x < out.cols; ++x) {
+          const float share = sure.at<float>(y, x) / 255;  // of the window
+          if (!(share > kLeastBare) || share < kMostAgree * all.at<float>(y, x) / 255) continue;
+          const float m = sums.at<float>(y, x) / share, v = squares.at<float>(y, x) / share - m * m;
+          if (v < std::pow(0.5f * window(m), 2.0f)) out.at<std::uint8_t>(y, x) = 255;
+        }
+      return out;
+    };
+    const cv::Mat near = between(kNear), far = between(kAcrossInk);
+    agreed.setTo(255, (near & (bare > 0)) | (far & (bare == 0)));
   }
 
   const SheetPhotographs& photos_;

@@ -71,6 +71,7 @@ class Comparison {
         possible_(look.height, look.width, CV_8U, const_cast<std::uint8_t*>(look.possible.data())),
         page_(light_ >= 0),
         expected_(taken_.clone()),
+        mixed_(look.mixed),
         paper_(look.paper),
         agreed_(look.agreed),
         steady_(look.steady) {
@@ -117,6 +118,27 @@ class Comparison {
     if (paper.size() < kFewest || ink.size() < kFewest / 10) return false;
     for (int c = 0; c < 3; ++c) expect_channel(c, paper, ink);
     return true;
+  }
+
+  /// Of the still background, and of shadows' edges, which are not known to the pixel.
+  cv::Mat least_deviation() const {
+    constexpr double kOff = 0.35;  // of what light differs by from a pixel to the next
+    if (paper_.empty()) return behind_ ? behind_->deviation : cv::Mat();
+    cv::Mat light(taken_.size(), CV_32F), low, high;
+    for (int y = 0; y < light.rows; ++y)
+      for (int x = 0; x < light.cols; ++x) {
+        const glm::vec3& p = paper_[index({x, y})];
+        light.at<float>(y, x) = (p.x + p.y + p.z) / 3;
+      }
+    const cv::Mat box = cv::getStructuringElement(cv::MORPH_RECT, {3, 3});
+    cv::dilate(light, high, box);
+    cv::erode(light, low, box);
+    cv::Mat out = kOff * (high - low);
+    cv::Mat inside;
+    cv::erode(page_, inside, box);
+    out.setTo(0, ~inside);
+    if (behind_) cv::max(out, behind_->deviation, out);
+    return out;
   }
 
   /// Where all shadow on the page is known.
@@ -173,7 +195,8 @@ class Comparison {
   cv::Mat expect_surroundings() {
     const cv::Mat beside = ~page_, asked = beside & possible_;
     cv::Mat rim;  // of the page, which pixels show in part: neither paper nor background
-    cv::dilate(page_, rim, cv::getStructuringElement(cv::MORPH_RECT, {5, 5}));
+    const int side = 2 * mixed_ + 1;
+    cv::dilate(page_, rim, cv::getStructuringElement(cv::MORPH_RECT, {side, side}));
     cv::Mat unknown = asked.clone();
     if (expect_nearest(asked, beside & ~possible_ & ~rim)) unknown.setTo(0);
     if (behind_) {
@@ -199,12 +222,12 @@ class Comparison {
   /// The mean of the background near a pixel of the page's rim, and its deviation. False where
   /// nothing is known.
   bool expect_beyond(const cv::Point& at, const cv::Mat& beyond) {
-    constexpr int kNear = 4;  // pixels
+    const int reach = mixed_ + 2;
     cv::Vec3f sum;
     float squares = 0;
     int count = 0;
-    for (int v = -kNear; v <= kNear; ++v)
-      for (int u = -kNear; u <= kNear; ++u) {
+    for (int v = -reach; v <= reach; ++v)
+      for (int u = -reach; u <= reach; ++u) {
         const cv::Point near = at + cv::Point(u, v);
         if (!near.inside(cv::Rect({}, page_.size())) || !beyond.at<std::uint8_t>(near)) continue;
         const cv::Vec3f& light = expected_.at<cv::Vec3f>(near);
@@ -246,8 +269,8 @@ class Comparison {
   void settle_rim(const cv::Point& at) {
     cv::Vec3f paper;
     int count = 0;
-    for (int v = -2; v <= 2; ++v)
-      for (int u = -2; u <= 2; ++u) {
+    for (int v = -mixed_; v <= mixed_; ++v)
+      for (int u = -mixed_; u <= mixed_; ++u) {
         const cv::Point near = at + cv::Point(u, v);
         if (!near.inside(cv::Rect({}, page_.size())) || !page_.at<std::uint8_t>(near)) continue;
         paper += expected_.at<cv::Vec3f>(near), ++count;
@@ -261,6 +284,7 @@ class Comparison {
   }
 
   cv::Mat taken_, light_, possible_, page_, expected_;
+  int mixed_;
   const std::vector<glm::vec3>& paper_;
   const std::vector<std::uint8_t>& agreed_;
   bool steady_;
