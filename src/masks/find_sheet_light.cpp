@@ -27,7 +27,8 @@ constexpr float kLeastWindow = 0.04f, kSigmas = 6;  // of the roots, relative: w
 constexpr float kHue = 0.12f;                       // relative
 constexpr float kDarkest = 0.4f, kLightest = 1.5f;  // of the usual root
 constexpr std::size_t kFewestFree = 100;
-constexpr double kMostMoving = 0.01;            // of what is seen where the object cannot be
+constexpr double kEven = 2;           // mm around a place that are lit alike, away from all edges
+constexpr double kMostMoving = 0.01;  // of what is seen where the object cannot be
 constexpr double kNear = 0.75, kAcrossInk = 4;  // mm: half of the windows that tell what is between
 constexpr float kLeastBare = 0.05f;             // share of such a window on which photographs agree
 constexpr float kMostAgree = 0.8f;              // share of its bare paper on which they must
@@ -225,7 +226,7 @@ class Search {
   bool is_steady() const {
     std::size_t seen = 0, darker = 0;
     for (std::size_t i = 0; i < texels_; ++i) {
-      if (!out_.agreed[i]) continue;
+      if (!out_.agreed[i] || !evenly_lit(i)) continue;
       for (std::size_t k = 0; k < photos_.count; ++k) {
         if (!samples_[k][i].free()) continue;
         ++seen;
@@ -234,6 +235,20 @@ class Search {
       }
     }
     return double(darker) <= kMostMoving * double(seen);
+  }
+
+  /// Away from the page's and shadows' edges, which photographs blur.
+  bool evenly_lit(std::size_t i) const {
+    const int step = std::max(1, int(std::lround(kEven * out_.texels_per_mm)));
+    const int x = int(i % std::size_t(out_.width)), y = int(i / std::size_t(out_.width));
+    if (x < step || y < step || x >= out_.width - step || y >= out_.height - step) return false;
+    const float own = mean(out_.paper[i]);
+    const auto down = std::ptrdiff_t(step) * out_.width;
+    for (const std::ptrdiff_t off : {std::ptrdiff_t(-step), std::ptrdiff_t(step), -down, down}) {
+      const auto j = std::size_t(std::ptrdiff_t(i) + off);
+      if (!out_.agreed[j] || std::abs(mean(out_.paper[j]) - own) > 0.5f * window(own)) return false;
+    }
+    return true;
   }
 
   bool like_paper(const glm::vec3& light) const {
