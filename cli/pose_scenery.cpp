@@ -17,6 +17,7 @@ namespace {
 constexpr double kTexelsPerMm = 4;
 constexpr double kSmall = 4e5;  // pixels of the pictures whose masks tell where the object can be
 constexpr double kLarge = 2e6;  // of those by which light is told in the end
+constexpr double kFine = 0.3, kCoarse = 0.6;  // mm between the lattice points of light, at either
 constexpr int kRounds = 2;
 constexpr std::uint8_t kMaybe = 32;  // coverage from which a mask does not take from the others
 
@@ -45,10 +46,10 @@ class Exploration {
   SheetScenery run() {
     out_.shadows.resize(images_.size());
     for (int round = 0; round < kRounds; ++round) {
-      find_light(scale_to(kSmall));
+      find_light(scale_to(kSmall), kCoarse);
       out_.shadows = shadows_of_hull(result_, small_masks(scale_to(kSmall)));
     }
-    find_light(scale_to(kLarge));
+    find_light(scale_to(kLarge), kFine);
     return std::move(out_);
   }
 
@@ -74,7 +75,7 @@ class Exploration {
     progress_.update((steps_ + double(done) / double(posed_.size())) / kSteps);
   }
 
-  void find_light(double scale) {
+  void find_light(double scale, double finest) {
     std::vector<SheetSight> sights;
     for (const std::size_t i : posed_) {
       const Intrinsics& k = result_.cameras[std::size_t(result_.photos[i].camera)].intrinsics;
@@ -98,6 +99,7 @@ class Exploration {
     };
     photos.eye = [&](std::size_t k) { return sights[k].eye; };
     photos.print = [&](const glm::dvec2& place) { return picture_.at(place); };
+    photos.finest = finest;
     photos.lower_left = sheet_.lower_left, photos.page = sheet_.page;
     out_.light = find_sheet_light(photos);
     ++steps_;

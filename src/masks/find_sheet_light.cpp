@@ -7,20 +7,20 @@
 #include <cmath>
 #include <numeric>
 #include <opencv2/imgproc.hpp>
-#include <tuple>
 #include <vector>
 
 #include "core/median.h"
+#include "masks/agreeing_light.h"
 #include "masks/mask_evidence.h"
 
 namespace photohull {
 namespace {
 
-constexpr double kFinest = 0.3;  // mm between lattice points
-constexpr double kBare = 0.7;    // mm around a point that must be bare paper
-constexpr float kPaper = 0.97f;  // share of bare paper from which on it is
-constexpr int kFreeEnough = 3;   // photographs that the object cannot hide a place from
-constexpr int kFewest = 4;       // photographs that agree
+constexpr double photos.finest = 0.3;  // mm between lattice points
+constexpr double kBare = 0.7;          // mm around a point that must be bare paper
+constexpr float kPaper = 0.97f;        // share of bare paper from which on it is
+constexpr int kFreeEnough = 3;         // photographs that the object cannot hide a place from
+constexpr int kFewest = 4;             // photographs that agree
 constexpr double kLeastShare = 1 / 3.0;
 constexpr double kCosineApart = 0.5;                // 60 degrees
 constexpr float kLeastWindow = 0.04f, kSigmas = 6;  // of the roots, relative: what agrees
@@ -58,8 +58,8 @@ class Search {
  public:
   explicit Search(const SheetPhotographs& photos) : photos_(photos) {
     const double area = photos.page.x * photos.page.y;
-    const double step =
-        std::max(kFinest, std::sqrt(area * double(photos.count) * sizeof(Sample) / photos.held));
+    const double step = std::max(
+        photos.finest, std::sqrt(area * double(photos.count) * sizeof(Sample) / photos.held));
     out_.texels_per_mm = 1 / step;
     out_.lower_left = photos.lower_left;
     out_.width = std::max(1, int(std::ceil(photos.page.x / step)));
@@ -219,7 +219,7 @@ class Search {
           off.push_back(double(std::abs(mean(light(k, i)) / mean(out_.paper[i]) - 1)));
     }
     for (int c = 0; c < 3; ++c) usual_[c] = float(median(std::move(lights[std::size_t(c)])));
-    window_ = std::max(kLeastWindow, kSigmas * 1.483f * float(median(std::move(off))));
+    window_ = {kLeastWindow, kSigmas * 1.483f * float(median(std::move(off))) * mean(usual_)};
   }
 
   /// Are shadows where the object cannot be in all photographs alike?
@@ -264,73 +264,32 @@ class Search {
     });
   }
 
-  struct Seen {
-    glm::vec3 light;
-    float brightness;
-    std::size_t photo;
-  };
-
   void agree_at(std::size_t i) {
-    std::vector<Seen> seen;
+    std::vector<SeenLight> seen;
     for (std::size_t k = 0; k < photos_.count; ++k)
       if (samples_[k][i].seen()) seen.push_back({light(k, i), mean(light(k, i)), k});
     if (int(seen.size()) < kFewest) return;
-    std::sort(seen.begin(), seen.end(), [](const Seen& a, const Seen& b) {
-      return std::tie(a.brightness, a.photo) < std::tie(b.brightness, b.photo);
-    });
-    const std::vector<Seen> group = take_largest_group(seen);
+    const std::vector<SeenLight> group = take_largest_group(seen, window_);
     if (int(group.size()) < kFewest ||
         double(group.size()) < kLeastShare * double(seen.size() + group.size()))
       return;
-    if (2 * take_largest_group(seen).size() >= group.size()) return;
+    if (2 * take_largest_group(seen, window_).size() >= group.size()) return;
     glm::vec3 sum(0.0f);
-    for (const Seen& s : group) sum += s.light;
+    for (const SeenLight& s : group) sum += s.light;
     sum /= float(group.size());
     if (!like_paper(sum) || !far_apart(group, place(i))) return;
     out_.paper[i] = sum;
     out_.agreed[i] = 255;
   }
 
-  /// How much photographs may differ in a light: noise in the roots is the same where it is dark.
-  float window(float light) const { return std::max(kLeastWindow * light, window_ * mean(usual_)); }
+  float window(float light) const { return window_.at(light); }
 
-  bool alike(const Seen& a, const Seen& b) const {
-    const glm::vec3 off = glm::abs(a.light - b.light);
-    return std::max({off.x, off.y, off.z}) <= 0.5f * window(a.brightness);
-  }
-
-  /// The most of those, in order of brightness, that are alike one of them; the brightest such
-  /// group. They are taken out.
-  std::vector<Seen> take_largest_group(std::vector<Seen>& seen) const {
-    std::size_t best = 0, most = 0;
-    const auto for_each_near = [&](std::size_t i, const auto& visit) {
-      const float reach = 0.5f * window(seen[i].brightness);
-      std::size_t j = i;
-      while (j > 0 && seen[i].brightness - seen[j - 1].brightness <= reach) --j;
-      for (; j < seen.size() && seen[j].brightness - seen[i].brightness <= reach; ++j)
-        if (alike(seen[i], seen[j])) visit(j);
-    };
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-      std::size_t count = 0;
-      for_each_near(i, [&](std::size_t) { ++count; });
-      if (count >= most) best = i, most = count;
-    }
-    std::vector<Seen> group;
-    if (seen.empty()) return group;
-    std::vector<bool> taken(seen.size(), false);
-    for_each_near(best, [&](std::size_t j) { taken[j] = true; });
-    std::vector<Seen> rest;
-    for (std::size_t j = 0; j < seen.size(); ++j) (taken[j] ? group : rest).push_back(seen[j]);
-    seen = std::move(rest);
-    return group;
-  }
-
-  bool far_apart(const std::vector<Seen>& group, const glm::dvec2& at) const {
-    const auto direction = [&](const Seen& s) {
+  bool far_apart(const std::vector<SeenLight>& group, const glm::dvec2& at) const {
+    const auto direction = [&](const SeenLight& s) {
       return glm::normalize(eyes_[s.photo] - glm::dvec3(at, 0));
     };
-    for (const Seen& a : group)
-      for (const Seen& b : group)
+    for (const SeenLight& a : group)
+      for (const SeenLight& b : group)
         if (glm::dot(direction(a), direction(b)) < kCosineApart) return true;
     return false;
   }
@@ -406,7 +365,7 @@ class Search {
   std::vector<glm::dvec3> eyes_;
   std::vector<Exposure> exposures_;
   glm::vec3 usual_{1.0f};
-  float window_ = kLeastWindow;
+  LightWindow window_;
 };
 
 }  // namespace

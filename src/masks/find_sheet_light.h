@@ -25,6 +25,7 @@ struct SheetPhotographs {
   std::function<glm::dvec3(std::size_t)> eye;
   std::function<float(const glm::dvec2& place)> print;  ///< 0 ink, 1 bare paper
   glm::dvec2 lower_left{0.0}, page{0.0};
+  double finest = 0.3;  ///< between lattice points
   double held = 256e6;  ///< bytes of all photographs' samples together
 };
 

@@ -106,6 +106,7 @@ SheetLight light_of(const Table& table) {
   };
   photos.eye = [](std::size_t k) { return eye(k).place; };
   photos.print = [](const glm::dvec2&) { return 1.0f; };
+  photos.finest = 0.45;
   photos.lower_left = -0.5 * glm::dvec2(kPageX, kPageY), photos.page = {kPageX, kPageY};
   return find_sheet_light(photos);
 }
