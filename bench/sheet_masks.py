@@ -57,7 +57,8 @@ def spec_of(name: str, case: str) -> dict:
 def judged(photohull: Photohull, scene: Path, posed: Path) -> list[dict]:
     frames = json.loads((scene / "spec.json").read_text(encoding="utf-8"))["cameras"]["rings"]
     heights = [ring["elevation"] for ring in frames for _ in range(ring["count"])]
-    report = photohull.json("masks", posed, "--masks", posed / "masks", "--compare", scene / "masks")
+    # Of the scene with its exact cameras: photographs of posed ones are undistorted first.
+    report = photohull.json("masks", scene, "--masks", posed / "masks", "--compare", scene / "masks")
     names = sorted(path.name for path in (scene / "images").iterdir())
     views = []
     for view in report["views"]:

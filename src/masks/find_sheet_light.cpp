@@ -16,11 +16,10 @@
 namespace photohull {
 namespace {
 
-constexpr double photos.finest = 0.3;  // mm between lattice points
-constexpr double kBare = 0.7;          // mm around a point that must be bare paper
-constexpr float kPaper = 0.97f;        // share of bare paper from which on it is
-constexpr int kFreeEnough = 3;         // photographs that the object cannot hide a place from
-constexpr int kFewest = 4;             // photographs that agree
+constexpr double kBare = 0.7;    // mm around a point that must be bare paper
+constexpr float kPaper = 0.97f;  // share of bare paper from which on it is
+constexpr int kFreeEnough = 3;   // photographs that the object cannot hide a place from
+constexpr int kFewest = 4;       // photographs that agree
 constexpr double kLeastShare = 1 / 3.0;
 constexpr double kCosineApart = 0.5;                // 60 degrees
 constexpr float kLeastWindow = 0.04f, kSigmas = 6;  // of the roots, relative: what agrees
