@@ -102,8 +102,7 @@ TEST_F(PoseCommand, PhotographsOnASheetBecomeAScene) {
     EXPECT_NEAR(scene.views[i].camera.intrinsics.fx / truth.views[i].camera.intrinsics.fx, 1, 2e-3);
     ASSERT_FALSE(scene.views[i].mask.empty());
     // Where eight photographs do not agree on a shadow at the object's foot, it is part of the
-    // mask. Shadows with sharp edges are still part of the masks, so these are too large; the
-    // object is whole.
+    // mask; the object is whole.
     const Mask mask = io::read_mask(scene.views[i].mask),
                exact_mask = io::read_mask(truth.views[i].mask);
     EXPECT_GT(overlap(mask, exact_mask), 0.8) << scene.views[i].name;
