@@ -31,7 +31,8 @@ std::vector<std::string> mask_names(const std::vector<fs::path>& images) {
 
 std::vector<fs::path> write_sheet_masks(const fs::path& folder, const std::vector<fs::path>& images,
                                         const std::vector<double>& edge_widths, const Sheet& sheet,
-                                        const TurntableFinding& turntable, PoseResult& result,
+                                        const TurntableFinding& turntable,
+                                        const SheetScenery& scenery, PoseResult& result,
                                         Progress& progress) {
   constexpr double kMuch = 0.2;
   make_folder(folder, "--out");
@@ -43,7 +44,9 @@ std::vector<fs::path> write_sheet_masks(const fs::path& folder, const std::vecto
     progress.check_cancelled();
     progress.update(double(i) / double(images.size()));
     if (!result.photos[i].posed) continue;
-    const SheetLook look = look_at_sheet(result, i, sheet, picture, blur_of_edges(edge_widths[i]));
+    SheetLook look =
+        look_at_sheet(result, i, sheet, picture, blur_of_edges(edge_widths[i]), scenery.light);
+    scenery.narrow(i, look);
     SheetMask found = mask_from_sheet(io::read_image(images[i]), look, false, turntable.behind(i));
     undecided += found.undecided > kMuch;
     if (found.mask.empty()) {

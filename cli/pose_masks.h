@@ -6,6 +6,7 @@
 
 #include "calib/pose_photographs.h"
 #include "core/progress.h"
+#include "pose_scenery.h"
 #include "pose_turntable.h"
 
 namespace photohull::cli {
@@ -13,10 +14,10 @@ namespace photohull::cli {
 /// The mask of each photograph by what the sheet alone would look like, written to
 /// FOLDER/NAME.png; returns the files, an empty path where a photograph is not posed or no mask was
 /// found, of which `result` gets a warning. Photographs of a turntable's stations are compared with
-/// what is behind the sheet, too.
+/// what is behind the sheet, too; others with the light on the sheet, if the scenery has it.
 std::vector<std::filesystem::path> write_sheet_masks(
     const std::filesystem::path& folder, const std::vector<std::filesystem::path>& images,
     const std::vector<double>& edge_widths, const Sheet& sheet, const TurntableFinding& turntable,
-    PoseResult& result, Progress& progress);
+    const SheetScenery& scenery, PoseResult& result, Progress& progress);
 
 }  // namespace photohull::cli

@@ -109,8 +109,13 @@ SheetPose pose_on_sheet(const PoseJob& job, Progress& progress) {
   make_folder(job.out, "--out");
   std::vector<fs::path> masks;
   if (job.make_masks && sheet.is_flat()) {
+    SheetScenery scenery;
+    if (!pose.turntable.found()) {  // there shadows do not stay where they are on the sheet
+      progress.stage("light", 0.4);
+      scenery = explore_sheet(job.images, widths, sheet, pose.result, progress);
+    }
     progress.stage("masks", 0.4);
-    masks = write_sheet_masks(job.out / "masks", job.images, widths, sheet, pose.turntable,
+    masks = write_sheet_masks(job.out / "masks", job.images, widths, sheet, pose.turntable, scenery,
                               pose.result, progress);
   }
   if (const std::string warning = unused_focal(job, read.took_focal); !warning.empty())

@@ -10,6 +10,7 @@
 #include "core/scaled_size.h"
 #include "io/image_file.h"
 #include "masks/sheet_mask.h"
+#include "pose_scenery.h"
 
 namespace photohull::cli {
 namespace {
@@ -17,22 +18,6 @@ namespace {
 constexpr double kTexelsPerMm = 4;
 constexpr double kSmall = 4e5;  // pixels of the pictures whose masks tell where the object can be
 constexpr int kRounds = 2;
-
-/// A mask's value where a picture of `width` x `height` pixels has one.
-std::uint8_t value_at(const Mask& mask, int x, int y, int width, int height) {
-  const auto u = std::size_t(x) * std::size_t(mask.width) / std::size_t(width);
-  const auto v = std::size_t(y) * std::size_t(mask.height) / std::size_t(height);
-  return mask.coverage[v * std::size_t(mask.width) + u];
-}
-
-/// Leaves out of `values` what the shadow leaves out, where there is one.
-void keep_to(const Mask& shadow, int width, int height, std::vector<std::uint8_t>& values) {
-  if (shadow.empty()) return;
-  std::size_t i = 0;
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x, ++i)
-      if (!value_at(shadow, x, y, width, height)) values[i] = 0;
-}
 
 /// Backgrounds and shadows, in turn.
 class TurntableSearch {

@@ -1,7 +1,11 @@
 // What photographs would show of the sheet alone.
 #pragma once
 
+#include <functional>
+#include <optional>
+
 #include "calib/pose_photographs.h"
+#include "core/sheet_light.h"
 #include "core/sheet_look.h"
 #include "sheet/draw_sheet.h"
 
@@ -13,7 +17,20 @@ double blur_of_edges(double edge_width);
 
 /// Of the photograph with that index, which must be posed. `picture`: of the same sheet. `blur`: a
 /// Gaussian's deviation in pixels, by which the photograph is blurred beyond its pixels' area.
+/// `light`: on the same sheet; empty: the look has no `paper`.
 SheetLook look_at_sheet(const PoseResult& result, std::size_t photo, const Sheet& sheet,
-                        const SheetPicture& picture, double blur);
+                        const SheetPicture& picture, double blur, const SheetLight& light = {});
+
+/// How a photograph sees the sheet. Places are of the sheet's frame, millimetres.
+struct SheetSight {
+  glm::dvec3 eye{0.0};
+  /// Of a place; nothing where it is not before the camera.
+  std::function<std::optional<glm::dvec2>(const glm::dvec2& place)> pixel;
+  /// Does the line of sight to a place pass through the box?
+  std::function<bool(const glm::dvec2& place)> possible;
+};
+
+/// Of the photograph with that index, which must be posed. `result` is copied.
+SheetSight sight_of_sheet(const PoseResult& result, std::size_t photo, const Sheet& sheet);
 
 }  // namespace photohull

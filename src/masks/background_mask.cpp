@@ -113,7 +113,7 @@ void soften_contour(const cv::Mat& distance, cv::Mat& object) {
 }
 
 MaskEvidence compare_with_model(const BackgroundModel& model, const ColourImage& image) {
-  return {distance_image(model, image), model.weak, model.strong, model.doubt};
+  return {distance_image(model, image), model.weak, model.strong, model.doubt, {}};
 }
 
 Mask mask_from_background(const BackgroundModel& model, const ColourImage& image) {
@@ -140,8 +140,16 @@ Mask mask_from_evidence(const MaskEvidence& model) {
   distance = distance(box);
   cv::dilate(object, object, square(reach));
   object &= distance >= model.weak;
-  cv::morphologyEx(object, object, cv::MORPH_CLOSE, square(2 * reach));
+  cv::Mat closed;
+  cv::morphologyEx(object, closed, cv::MORPH_CLOSE, square(2 * reach));
+  if (!model.bare.empty()) closed &= ~model.bare(box) | object;
+  object = closed.clone();
   fill_holes(object, kHole * trust * trust * cv::countNonZero(object));
+  if (!model.bare.empty()) {  // what is wide enough is a hole
+    cv::Mat open;
+    cv::morphologyEx(model.bare(box), open, cv::MORPH_OPEN, square(kMixed));
+    object &= ~open | closed;
+  }
   const cv::Mat whole = object.clone();
   soften_contour(distance, object);
   tell_doubt(model, distance, whole, object);

@@ -15,6 +15,9 @@ struct MaskEvidence {
   int weak = 0;      ///< near strong pixels, the object reaches down to here
   int strong = 0;    ///< from here on a pixel is the object's beyond doubt
   double doubt = 0;  ///< [0, 1]: share of the object's pixels between weak and strong
+  /// CV_8U, 255 where the background is seen beyond doubt: gaps are not closed over it. Empty:
+  /// nowhere.
+  cv::Mat bare;
 };
 
 /// By the colours of the background.
@@ -38,9 +41,11 @@ cv::Mat light_roots(const ColourImage& image);
 /// The same comparison by what is expected of each pixel (both as light_roots has it). Noise is
 /// measured where `certain` (CV_8U) is not 0: there nothing stands before the background. Where a
 /// place that may be shadow is smooth, the shadow's edge may lie up to `edge` pixels from it.
-/// `least` (CV_32F): deviation that each pixel has at least; empty: none.
+/// `least` (CV_32F): deviation that each pixel has at least; empty: none. `shaded` (CV_8U): where
+/// it is not 0, what is expected has its shadow, and there is no other; empty: nowhere.
 MaskEvidence compare_with_expected(const cv::Mat& taken, const cv::Mat& expected,
-                                   const cv::Mat& certain, int edge, const cv::Mat& least = {});
+                                   const cv::Mat& certain, int edge, const cv::Mat& least = {},
+                                   const cv::Mat& shaded = {});
 
 /// Moves the contour to where OpenCV's GrabCut [Rother04] puts it between what surely is the
 /// object and surely is not. Pixels of strong evidence stay the object's. The mask stays as it is

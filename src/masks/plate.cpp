@@ -141,7 +141,8 @@ MaskEvidence compare_with_plate(const ColourImage& image, const ColourImage& pla
 }
 
 MaskEvidence compare_with_expected(const cv::Mat& taken, const cv::Mat& plate,
-                                   const cv::Mat& certain, int edge, const cv::Mat& least) {
+                                   const cv::Mat& certain, int edge, const cv::Mat& least,
+                                   const cv::Mat& shaded) {
   cv::Mat sigma = expected_deviation(taken, plate, certain);
   if (!least.empty()) cv::max(sigma, least, sigma);
   const cv::Mat depth = shadow_depth(taken, plate);
@@ -156,7 +157,8 @@ MaskEvidence compare_with_expected(const cv::Mat& taken, const cv::Mat& plate,
       const float s = sigma.at<float>(y, x), a = depth.at<float>(y, x);
       double distance = kLevels * std::sqrt((i - p).dot(i - p) / 3) / s;
       const float brightness = std::sqrt(p.dot(p) / 3);
-      if (a < 1 && a > kDarkestShadow && brightness > kLeastPlate) {
+      const bool other = shaded.empty() || !shaded.at<std::uint8_t>(y, x);
+      if (other && a < 1 && a > kDarkestShadow && brightness > kLeastPlate) {
         const cv::Vec3f hue = i - a * p;
         const float rough = roughness.at<float>(y, x);
         // Noise alone makes the depth vary by 0.6 deviations over brightness.

@@ -22,22 +22,24 @@ constexpr double kMostConfidence = 0.99;  // masks that were given have 1
 constexpr int kTerms = 6;
 constexpr int kShadowEdge = 4;  // pixels: half of the window that looks for texture, and the edge
 
-/// 1, x, y and their products, of a pixel's place from -1 to 1.
-std::array<double, kTerms> terms(const cv::Point& at, const cv::Size& size) {
+/// 1, x, y and their products, of a pixel's place from -1 to 1; `radial`: 1 and the distance from
+/// the middle, squared, alone.
+std::array<double, kTerms> terms(const cv::Point& at, const cv::Size& size, bool radial) {
   const double x = 2.0 * at.x / size.width - 1, y = 2.0 * at.y / size.height - 1;
+  if (radial) return {1, 0, 0, x * x + y * y, 0, 0};
   return {1, x, y, x * x, x * y, y * y};
 }
 
-/// A form of second order through the values of places, robustly: shadows are darker.
+/// A form of these terms through the values of places, robustly: shadows are darker.
 cv::Vec6d fit(const std::vector<cv::Point>& places, const std::vector<double>& values,
-              const cv::Size& size) {
+              const cv::Size& size, bool radial) {
   std::vector<double> weights(places.size(), 1.0);
   cv::Vec6d form;
   for (int round = 0; round < 8; ++round) {
     cv::Matx<double, kTerms, kTerms> normal = cv::Matx<double, kTerms, kTerms>::eye() * 1e-6;
     cv::Vec6d right;
     for (std::size_t i = 0; i < places.size(); ++i) {
-      const auto t = terms(places[i], size);
+      const auto t = terms(places[i], size, radial);
       for (int a = 0; a < kTerms; ++a) {
         right[a] += weights[i] * t[std::size_t(a)] * values[i];
         for (int b = 0; b < kTerms; ++b)
@@ -47,7 +49,7 @@ cv::Vec6d fit(const std::vector<cv::Point>& places, const std::vector<double>& v
     form = normal.solve(right, cv::DECOMP_CHOLESKY);
     std::vector<double> off;
     for (std::size_t i = 0; i < places.size(); ++i) {
-      const auto t = terms(places[i], size);
+      const auto t = terms(places[i], size, radial);
       double value = 0;
       for (int a = 0; a < kTerms; ++a) value += form[a] * t[std::size_t(a)];
       off.push_back(values[i] - value);
@@ -68,7 +70,11 @@ class Comparison {
         light_(look.height, look.width, CV_32F, const_cast<float*>(look.light.data())),
         possible_(look.height, look.width, CV_8U, const_cast<std::uint8_t*>(look.possible.data())),
         page_(light_ >= 0),
-        expected_(taken_.clone()) {
+        expected_(taken_.clone()),
+        mixed_(look.mixed),
+        paper_(look.paper),
+        agreed_(look.agreed),
+        steady_(look.steady) {
     if (!still.empty()) behind_.emplace(still, taken_);
   }
 
@@ -77,8 +83,10 @@ class Comparison {
     if (!expect_page()) return out;
     cv::Mat unknown = expect_surroundings();
     const cv::Mat certain = page_ & ~possible_;
-    MaskEvidence evidence = compare_with_expected(taken_, expected_, certain, kShadowEdge,
-                                                  behind_ ? behind_->deviation : cv::Mat());
+    MaskEvidence evidence =
+        compare_with_expected(taken_, expected_, certain, kShadowEdge,
+                              behind_ ? behind_->deviation : cv::Mat(), shaded());
+    if (!paper_.empty()) evidence.bare = bare(evidence, unknown);
     evidence.distance.setTo(0, ~possible_);
     if (behind_) unknown |= disbelieved(*behind_, {page_, possible_, unknown}, evidence);
     evidence.distance.setTo(255, unknown);
@@ -104,7 +112,7 @@ class Comparison {
       for (int x = 0; x < light_.cols; x += step) {
         if (!certain.at<std::uint8_t>(y, x)) continue;
         const float light = light_.at<float>(y, x);
-        if (light > kPaper) paper.emplace_back(x, y);
+        if (light > kPaper && is_known({x, y})) paper.emplace_back(x, y);
         if (light < kInk) ink.emplace_back(x, y);
       }
     if (paper.size() < kFewest || ink.size() < kFewest / 10) return false;
@@ -112,16 +120,62 @@ class Comparison {
     return true;
   }
 
+  /// Of the still background, and of shadows' edges, which are not known to the pixel.
+  cv::Mat least_deviation() const {
+    constexpr double kOff = 0.35;  // of what light differs by from a pixel to the next
+    if (paper_.empty()) return behind_ ? behind_->deviation : cv::Mat();
+    cv::Mat light(taken_.size(), CV_32F), low, high;
+    for (int y = 0; y < light.rows; ++y)
+      for (int x = 0; x < light.cols; ++x) {
+        const glm::vec3& p = paper_[index({x, y})];
+        light.at<float>(y, x) = (p.x + p.y + p.z) / 3;
+      }
+    const cv::Mat box = cv::getStructuringElement(cv::MORPH_RECT, {3, 3});
+    cv::dilate(light, high, box);
+    cv::erode(light, low, box);
+    cv::Mat out = kOff * (high - low);
+    cv::Mat inside;
+    cv::erode(page_, inside, box);
+    out.setTo(0, ~inside);
+    if (behind_) cv::max(out, behind_->deviation, out);
+    return out;
+  }
+
+  /// Where all shadow on the page is known.
+  cv::Mat shaded() const {
+    if (!steady_) return {};
+    return cv::Mat(taken_.size(), CV_8U, const_cast<std::uint8_t*>(agreed_.data())) & page_;
+  }
+
+  /// Where all around a pixel is as expected, and what is expected is no guess.
+  cv::Mat bare(const MaskEvidence& evidence, const cv::Mat& unknown) const {
+    cv::Mat around;
+    cv::blur(evidence.distance, around, {5, 5});
+    const cv::Mat agreed(taken_.size(), CV_8U, const_cast<std::uint8_t*>(agreed_.data()));
+    return (around < evidence.weak / 2) & ((page_ & agreed) | (~page_ & ~unknown));
+  }
+
+  std::size_t index(const cv::Point& at) const {
+    return std::size_t(at.y) * std::size_t(taken_.cols) + std::size_t(at.x);
+  }
+  bool is_known(const cv::Point& at) const { return agreed_.empty() || agreed_[index(at)] != 0; }
+  /// What bare paper sends there, as all photographs tell, but for the exposure.
+  double known_paper(const cv::Point& at, int c) const {
+    return paper_.empty() ? 1.0 : std::max(1e-3, double(paper_[index(at)][c]));
+  }
+
   void expect_channel(int c, const std::vector<cv::Point>& paper,
                       const std::vector<cv::Point>& ink) {
     std::vector<double> values, shares;
-    for (const cv::Point& at : paper) values.push_back(double(taken_.at<cv::Vec3f>(at)[c]));
-    const cv::Vec6d form = fit(paper, values, taken_.size());
+    const bool radial = !paper_.empty();  // it is known but for exposure and the lens's fall-off
+    for (const cv::Point& at : paper)
+      values.push_back(double(taken_.at<cv::Vec3f>(at)[c]) / known_paper(at, c));
+    const cv::Vec6d form = fit(paper, values, taken_.size(), radial);
     const auto paper_at = [&](const cv::Point& at) {
-      const auto t = terms(at, taken_.size());
+      const auto t = terms(at, taken_.size(), radial);
       double value = 0;
       for (int a = 0; a < kTerms; ++a) value += form[a] * t[std::size_t(a)];
-      return std::max(value, 1e-3);
+      return std::max(value * known_paper(at, c), 1e-3);
     };
     for (const cv::Point& at : ink)
       shares.push_back(std::pow(double(taken_.at<cv::Vec3f>(at)[c]) / paper_at(at), 2));
@@ -141,7 +195,8 @@ class Comparison {
   cv::Mat expect_surroundings() {
     const cv::Mat beside = ~page_, asked = beside & possible_;
     cv::Mat rim;  // of the page, which pixels show in part: neither paper nor background
-    cv::dilate(page_, rim, cv::getStructuringElement(cv::MORPH_RECT, {5, 5}));
+    const int side = 2 * mixed_ + 1;
+    cv::dilate(page_, rim, cv::getStructuringElement(cv::MORPH_RECT, {side, side}));
     cv::Mat unknown = asked.clone();
     if (expect_nearest(asked, beside & ~possible_ & ~rim)) unknown.setTo(0);
     if (behind_) {
@@ -167,12 +222,12 @@ class Comparison {
   /// The mean of the background near a pixel of the page's rim, and its deviation. False where
   /// nothing is known.
   bool expect_beyond(const cv::Point& at, const cv::Mat& beyond) {
-    constexpr int kNear = 4;  // pixels
+    const int reach = mixed_ + 2;
     cv::Vec3f sum;
     float squares = 0;
     int count = 0;
-    for (int v = -kNear; v <= kNear; ++v)
-      for (int u = -kNear; u <= kNear; ++u) {
+    for (int v = -reach; v <= reach; ++v)
+      for (int u = -reach; u <= reach; ++u) {
         const cv::Point near = at + cv::Point(u, v);
         if (!near.inside(cv::Rect({}, page_.size())) || !beyond.at<std::uint8_t>(near)) continue;
         const cv::Vec3f& light = expected_.at<cv::Vec3f>(near);
@@ -214,8 +269,8 @@ class Comparison {
   void settle_rim(const cv::Point& at) {
     cv::Vec3f paper;
     int count = 0;
-    for (int v = -2; v <= 2; ++v)
-      for (int u = -2; u <= 2; ++u) {
+    for (int v = -mixed_; v <= mixed_; ++v)
+      for (int u = -mixed_; u <= mixed_; ++u) {
         const cv::Point near = at + cv::Point(u, v);
         if (!near.inside(cv::Rect({}, page_.size())) || !page_.at<std::uint8_t>(near)) continue;
         paper += expected_.at<cv::Vec3f>(near), ++count;
@@ -229,6 +284,10 @@ class Comparison {
   }
 
   cv::Mat taken_, light_, possible_, page_, expected_;
+  int mixed_;
+  const std::vector<glm::vec3>& paper_;
+  const std::vector<std::uint8_t>& agreed_;
+  bool steady_;
   std::optional<Behind> behind_;
 };
 

@@ -101,11 +101,11 @@ TEST_F(PoseCommand, PhotographsOnASheetBecomeAScene) {
     EXPECT_LT(glm::length(scene.views[i].camera.center() - exact), 1e-3 * glm::length(exact));
     EXPECT_NEAR(scene.views[i].camera.intrinsics.fx / truth.views[i].camera.intrinsics.fx, 1, 2e-3);
     ASSERT_FALSE(scene.views[i].mask.empty());
-    // Shadows with sharp edges are still part of the masks, so these are too large; the object is
-    // whole.
+    // Where eight photographs do not agree on a shadow at the object's foot, it is part of the
+    // mask; the object is whole.
     const Mask mask = io::read_mask(scene.views[i].mask),
                exact_mask = io::read_mask(truth.views[i].mask);
-    EXPECT_GT(overlap(mask, exact_mask), 0.75) << scene.views[i].name;
+    EXPECT_GT(overlap(mask, exact_mask), 0.8) << scene.views[i].name;
     EXPECT_LT(missed(mask, exact_mask), 0.02) << scene.views[i].name;
   }
   const Finished made = run_photohull({"reconstruct", path("scene"), "--out", path("model"),

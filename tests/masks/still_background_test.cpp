@@ -56,7 +56,8 @@ ColourImage photograph(const Scene& scene, int k) {
 
 /// The page fills the frame's lower part, the box its middle.
 SheetLook look(int width, int height) {
-  SheetLook out{width, height, {}, {}};
+  SheetLook out;
+  out.width = width, out.height = height;
   for (int v = 0; v < height; ++v)
     for (int u = 0; u < width; ++u) {
       const double x = (u + 0.5) * kWidth / width - 0.5, y = (v + 0.5) * kHeight / height - 0.5;

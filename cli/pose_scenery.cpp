@@ -1,0 +1,160 @@
+#include "pose_scenery.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/sheet_hull.h"
+#include "calib/sheet_look.h"
+#include "core/image_scale.h"
+#include "core/scaled_size.h"
+#include "io/image_file.h"
+#include "masks/find_sheet_light.h"
+#include "masks/sheet_mask.h"
+
+namespace photohull::cli {
+namespace {
+
+constexpr double kTexelsPerMm = 4;
+constexpr double kSmall = 4e5;  // pixels of the pictures whose masks tell where the object can be
+constexpr double kLarge = 2e6;  // of those by which light is told in the end
+constexpr double kFine = 0.3, kCoarse = 0.6;  // mm between the lattice points of light, at either
+constexpr int kRounds = 2;
+constexpr std::uint8_t kMaybe = 32;  // coverage from which a mask does not take from the others
+
+/// A mask's value where a picture of `width` x `height` pixels has one.
+std::uint8_t value_at(const Mask& mask, int x, int y, int width, int height) {
+  const auto u = std::size_t(x) * std::size_t(mask.width) / std::size_t(width);
+  const auto v = std::size_t(y) * std::size_t(mask.height) / std::size_t(height);
+  return mask.coverage[v * std::size_t(mask.width) + u];
+}
+
+class Exploration {
+ public:
+  Exploration(const std::vector<std::filesystem::path>& images,
+              const std::vector<double>& edge_widths, const Sheet& sheet, const PoseResult& result,
+              Progress& progress)
+      : images_(images),
+        edge_widths_(edge_widths),
+        sheet_(sheet),
+        result_(result),
+        progress_(progress),
+        picture_(sheet_picture(sheet, kTexelsPerMm)) {
+    for (std::size_t i = 0; i < images.size(); ++i)
+      if (result.photos[i].posed) posed_.push_back(i);
+  }
+
+  SheetScenery run() {
+    out_.shadows.resize(images_.size());
+    for (int round = 0; round < kRounds; ++round) {
+      find_light(scale_to(kSmall), kCoarse);
+      out_.shadows = shadows_of_hull(result_, small_masks(scale_to(kSmall)));
+    }
+    find_light(scale_to(kLarge), kFine);
+    return std::move(out_);
+  }
+
+ private:
+  double scale_to(double pixels) const {
+    double scale = 1;
+    for (const PosedCamera& c : result_.cameras)
+      scale =
+          std::min(scale, std::sqrt(pixels / (double(c.intrinsics.width) * c.intrinsics.height)));
+    return scale;
+  }
+
+  PoseResult scaled(std::size_t photo, int width, int height) const {
+    PoseResult out = result_;
+    Intrinsics& k = out.cameras[std::size_t(result_.photos[photo].camera)].intrinsics;
+    k = scaled_to(k, width, height);
+    return out;
+  }
+
+  void step(std::size_t done) {
+    constexpr double kSteps = 2 * kRounds + 1;
+    progress_.check_cancelled();
+    progress_.update((steps_ + double(done) / double(posed_.size())) / kSteps);
+  }
+
+  void find_light(double scale, double finest) {
+    std::vector<SheetSight> sights;
+    for (const std::size_t i : posed_) {
+      const Intrinsics& k = result_.cameras[std::size_t(result_.photos[i].camera)].intrinsics;
+      sights.push_back(sight_of_sheet(
+          scaled(i, scaled_length(k.width, scale), scaled_length(k.height, scale)), i, sheet_));
+    }
+    SheetPhotographs photos;
+    photos.count = posed_.size();
+    photos.image = [&](std::size_t k) {
+      step(k);
+      return io::read_image(images_[posed_[k]], scale);
+    };
+    photos.pixel = [&](std::size_t k, const glm::dvec2& place) { return sights[k].pixel(place); };
+    photos.possible = [&](std::size_t k, const glm::dvec2& place, const glm::dvec2& pixel,
+                          const glm::ivec2& size) {
+      const Mask& shadow = out_.shadows[posed_[k]];
+      if (!shadow.empty() &&
+          !value_at(shadow, int(std::lround(pixel.x)), int(std::lround(pixel.y)), size.x, size.y))
+        return false;
+      return sights[k].possible(place);
+    };
+    photos.eye = [&](std::size_t k) { return sights[k].eye; };
+    photos.print = [&](const glm::dvec2& place) { return picture_.at(place); };
+    photos.finest = finest;
+    photos.lower_left = sheet_.lower_left, photos.page = sheet_.page;
+    out_.light = find_sheet_light(photos);
+    ++steps_;
+  }
+
+  std::vector<Mask> small_masks(double scale) {
+    std::vector<Mask> masks(images_.size());
+    for (std::size_t k = 0; k < posed_.size(); ++k) {
+      const std::size_t i = posed_[k];
+      step(k);
+      const ColourImage image = io::read_image(images_[i], scale);
+      SheetLook look = look_at_sheet(scaled(i, image.width, image.height), i, sheet_, picture_,
+                                     blur_of_edges(scale * edge_widths_[i]), out_.light);
+      out_.narrow(i, look);
+      masks[i] = mask_from_sheet(image, look, false).mask;
+      for (std::uint8_t& c : masks[i].coverage) c = c >= kMaybe ? 255 : 0;
+    }
+    ++steps_;
+    return masks;
+  }
+
+  const std::vector<std::filesystem::path>& images_;
+  const std::vector<double>& edge_widths_;
+  const Sheet& sheet_;
+  const PoseResult& result_;
+  Progress& progress_;
+  SheetPicture picture_;
+  std::vector<std::size_t> posed_;
+  SheetScenery out_;
+  double steps_ = 0;
+};
+
+}  // namespace
+
+void keep_to(const Mask& shadow, int width, int height, std::vector<std::uint8_t>& values) {
+  if (shadow.empty()) return;
+  std::size_t i = 0;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x, ++i)
+      if (!value_at(shadow, x, y, width, height)) values[i] = 0;
+}
+
+void SheetScenery::narrow(std::size_t photo, SheetLook& look) const {
+  if (shadows.empty() || shadows[photo].empty()) return;
+  std::size_t i = 0;
+  for (int y = 0; y < look.height; ++y)
+    for (int x = 0; x < look.width; ++x, ++i)
+      if (look.light[i] < 0 && !value_at(shadows[photo], x, y, look.width, look.height))
+        look.possible[i] = 0;
+}
+
+SheetScenery explore_sheet(const std::vector<std::filesystem::path>& images,
+                           const std::vector<double>& edge_widths, const Sheet& sheet,
+                           const PoseResult& result, Progress& progress) {
+  return Exploration(images, edge_widths, sheet, result, progress).run();
+}
+
+}  // namespace photohull::cli

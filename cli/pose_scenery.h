@@ -1,0 +1,35 @@
+// What photographs on a sheet show together: how light falls on it, and where the object can be.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "calib/pose_photographs.h"
+#include "core/image.h"
+#include "core/progress.h"
+#include "core/sheet_light.h"
+#include "core/sheet_look.h"
+
+namespace photohull::cli {
+
+/// Leaves out of `values`, of a picture of that size, what a shadow leaves out, where there is one.
+void keep_to(const Mask& shadow, int width, int height, std::vector<std::uint8_t>& values);
+
+struct SheetScenery {
+  SheetLight light;  ///< on the sheet; empty where photographs do not tell it
+  /// Of each photograph: where it can show the object (shadows_of_hull); scaled copies of the
+  /// photographs' sizes, or empty.
+  std::vector<Mask> shadows;
+
+  /// Beside the page the object can be in its shadow alone.
+  void narrow(std::size_t photo, SheetLook& look) const;
+};
+
+/// In rounds: masks of small pictures, by the light that is known so far, give the shadows, beside
+/// which more of the sheet is known to be bare. Photographs are read again each time.
+/// `edge_widths`: pixels, of the tags in each photograph.
+SheetScenery explore_sheet(const std::vector<std::filesystem::path>& images,
+                           const std::vector<double>& edge_widths, const Sheet& sheet,
+                           const PoseResult& result, Progress& progress);
+
+}  // namespace photohull::cli
