@@ -1,4 +1,4 @@
-"""Whether a plan ends as it would undisturbed when its processes are killed, with each engine; and what processes lose.
+"""Whether a plan ends as it would undisturbed when its processes are killed, with each engine.
 
     python3 -m bench engines [--runs 50] [--engines local,parallel,mpi,slurm] [--out FILE]
 
@@ -8,8 +8,8 @@ it did not end well. What is there at the end is compared with an undisturbed ba
 tell the time. Slurm runs on this machine alone, by tests/cli/with_slurm.sh; OpenMPI's mpirun, GNU parallel and Slurm have
 to be installed.
 
-The second table has the wall time of the same plan by one process with two threads, and by 2 and 4 processes with one
-thread each. Both are in docs/measurements/benchmarks.md."""
+The table is in docs/measurements/benchmarks.md. With --processes, another one has the wall time of the same plan by one
+process with two threads, and by 2 and 4 processes with one thread each, on a machine that does nothing else."""
 import argparse
 import os
 import random
@@ -21,7 +21,7 @@ import time
 from pathlib import Path
 from statistics import median
 
-from bench import page
+from bench import page, tables
 from bench.runner import ROOT, SYNTHETIC, Photohull, add_program, keep_json, listed, work_folder
 
 PIECES = 16
@@ -34,7 +34,7 @@ MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OM
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_program(parser)
     parser.add_argument("--runs", type=int, default=50, help="disturbed runs of each engine")
-    parser.add_argument("--repeat", type=int, default=3, help="runs of each number of processes")
+    parser.add_argument("--processes", type=int, default=0, metavar="REPEAT", help="runs of each number of processes (default: none)")
     parser.add_argument("--engines", type=listed, default=list(ENGINES), help=f"of {', '.join(ENGINES)}")
     parser.add_argument("--out", type=Path, help="file for the figures")
 
@@ -83,8 +83,8 @@ def disturb(job: Path, seed: int, ended: threading.Event, kills: list[int]) -> N
 def submit(photohull: Photohull, engine: str, job: Path, folder: Path) -> int:
     words = [photohull.program, "submit", job, "--with", engine, "--workers", "3"]
     if engine == "slurm":
-        shutil.rmtree(folder / "slurm", ignore_errors=True)
-        words = [SLURM, folder / "slurm", *words]
+        shutil.rmtree(folder / "cluster", ignore_errors=True)
+        words = [SLURM, folder / "cluster", *words]
     return subprocess.run(list(map(str, words)), env=os.environ | MPI, capture_output=True, check=False).returncode
 
 
@@ -116,21 +116,26 @@ def processes(photohull: Photohull, scene: Path, folder: Path, count: int, threa
     return time.perf_counter() - start
 
 
+def show_processes(photohull: Photohull, scene: Path, folder: Path, repeat: int) -> None:
+    layouts = [(1, 2), (2, 1), (4, 1)]
+    times: dict[tuple[int, int], list[float]] = {layout: [] for layout in layouts}
+    for _ in range(repeat):  # in turn, for the machine's speed changes
+        for layout in layouts:
+            times[layout].append(processes(photohull, scene, folder, *layout))
+    tables.show(("processes", "threads of each", "wall s", "of one process's"),
+                ((count, threads, f"{median(times[count, threads]):.1f}",
+                  f"{median(t / one for t, one in zip(times[count, threads], times[layouts[0]])):.2f}")
+                 for count, threads in layouts))
+
+
 def run(options: argparse.Namespace) -> None:
     photohull = Photohull(options.program)
     with work_folder(None) as folder:
         scene = photohull.synthesize(SYNTHETIC / "pawn.json", folder / "pawn", "--size", "320x240")
-        layouts = [(1, 2), (2, 1), (4, 1)]
-        times = {layout: [] for layout in layouts}
-        for _ in range(options.repeat):  # in turn, for the machine's speed changes
-            for layout in layouts:
-                times[layout].append(processes(photohull, scene, folder, *layout))
-        shares = [{"processes": count, "threads": threads, "wall_s": median(times[count, threads]),
-                   "ratio": median(t / one for t, one in zip(times[count, threads], times[layouts[0]]))}
-                  for count, threads in layouts]
-        print(page.table_of(page.data("benchmarks")["processes"], {"processes": shares}))
+        if options.processes:
+            show_processes(photohull, scene, folder, options.processes)
         photohull.call("run", plan(photohull, scene, folder / "calm"))
         calm = results(folder / "calm")
         rows = [disturbed_runs(photohull, engine, scene, folder, options.runs, calm) for engine in options.engines]
-    print(page.table_of(page.data("benchmarks")["kills"], {"kills": rows}))
-    keep_json(options.out, {"processes": shares, "kills": rows})
+    print(page.table_of(page.data("benchmarks")["kills"], rows))
+    keep_json(options.out, rows)

@@ -115,7 +115,7 @@ void add_merge(CLI::App& app) {
   c->footer(
       "Writes the table batch.csv of all that was made, and sums it up. Ends with an error where "
       "scenes are not made yet or have no result.\n\n"
-      "Example:\n"
+      "Examples:\n"
       "  photohull merge /shared/plants");
   c->callback([a] { merge(*a); });
 }

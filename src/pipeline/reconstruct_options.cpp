@@ -208,10 +208,11 @@ void describe_run(Described& to, ReconstructOptions& o) {
   gpu::describe_device(to, o.device).always = true;
   to.affects(Stage::kNothing);
   gpu::describe_threads(to, o.threads).always = true;
-  to.flag("fresh", &o.fresh,
-          "start anew: else an interrupted refinement of the same job goes on after the last level "
-          "that it finished, and masks and cameras that the run before in this folder made by the same "
-          "photographs are taken from there");
+  to.flag(
+      "fresh", &o.fresh,
+      "start anew: else an interrupted refinement of the same job goes on after the last level "
+      "that it finished, and masks and cameras that the run before in this folder made by the same "
+      "photographs are taken from there");
   to.affects(Stage::kFiles);
   to.flag("evidence", &o.evidence,
           "write evidence.ply too, the uniform mesh with what confidence is computed from, and "

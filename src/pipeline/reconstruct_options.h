@@ -96,8 +96,8 @@ struct ReconstructOptions {
   int threads = 0;
   std::vector<std::string> tune;  ///< see pipeline/tuning.h
   /// Folder in which refinement keeps the levels that are done, so that a job that was stopped goes
-  /// on from there, and masks and refined cameras are kept for the next job with the same photographs;
-  /// empty: none. It does not affect results and is not described.
+  /// on from there, and masks and refined cameras are kept for the next job with the same
+  /// photographs; empty: none. It does not affect results and is not described.
   std::filesystem::path checkpoint;
 
   /// Throws UsageError naming the option.

@@ -62,9 +62,10 @@ slurmctld -D &
 controller=$!
 slurmd -D -N "$host" &
 daemon=$!
+# shellcheck disable=SC2317 # it is called by the trap
 stop() {
-  kill -9 $daemon $controller $munge
-  wait $daemon $controller $munge
+  kill -9 "$daemon" "$controller" "$munge"
+  wait "$daemon" "$controller" "$munge"
 } 2>/dev/null
 trap stop EXIT
 
