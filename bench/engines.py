@@ -69,6 +69,9 @@ def workers(job: Path) -> list[int]:
 def disturb(job: Path, seed: int, ended: threading.Event, kills: list[int]) -> None:
     """Kills a process, or two at once, at a few random moments."""
     dice = random.Random(seed)
+    while not workers(job):
+        if ended.wait(0.05):
+            return
     for _ in range(dice.randint(1, 3)):
         if ended.wait(dice.uniform(0.3, 3.0)):
             return

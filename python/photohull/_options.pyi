@@ -131,8 +131,8 @@ class ReconstructOptions(TypedDict, total=False):
     # threads that compute. Default: 0.
     threads: int | None
     # start anew: else an interrupted refinement of the same job goes on after the last level that it
-    # finished, and cameras that the run before in this folder refined by the same photographs are
-    # taken from there. Default: False.
+    # finished, and masks and cameras that the run before in this folder made by the same photographs
+    # are taken from there. Default: False.
     fresh: bool | None
     # write evidence.ply too, the uniform mesh with what confidence is computed from, and missing.png:
     # where the model leaves the masks empty, or without masks explained.png: what of a photograph it

@@ -40,7 +40,7 @@ std::vector<std::uint8_t> clear_space(const SparseVolume& hull) {
   std::array<std::size_t, 3> strides{1, std::size_t(n.x), std::size_t(n.x) * std::size_t(n.y)};
   for (int axis = 0; axis < 3; ++axis) {
     const std::size_t stride = strides[std::size_t(axis)];
-    std::vector<std::uint8_t> line(std::size_t(n[axis]));
+    std::vector<std::uint8_t> line(static_cast<std::size_t>(n[axis]));
     for (std::size_t first = 0; first < clear.size(); ++first) {
       if (first / stride % line.size() != 0) continue;  // not where a line begins
       for (std::size_t i = 0; i < line.size(); ++i) line[i] = clear[first + i * stride];
