@@ -94,10 +94,11 @@ This package holds the headers and the CMake package.")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-photohull)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 # The extension is of one version of Python; what comes after it may differ.
-if(Python_FOUND)
-  math(EXPR next_python "${Python_VERSION_MINOR} + 1")
+if(TARGET photohull_python)
+  get_property(python_minor GLOBAL PROPERTY PHOTOHULL_PYTHON_MINOR)
+  math(EXPR next_python "${python_minor} + 1")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "${runtime_package} (= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}), \
-python3 (>= 3.${Python_VERSION_MINOR}~), python3 (<< 3.${next_python}), python3-numpy")
+python3 (>= 3.${python_minor}~), python3 (<< 3.${next_python}), python3-numpy")
 endif()
 set(CPACK_DEBIAN_PYTHON_DESCRIPTION "space carving of photographs (Python 3)
 import photohull makes volumes and meshes of photographs, from files or from
