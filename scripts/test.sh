@@ -160,7 +160,7 @@ bundle() {
   mkdir "$scratch/damaged"
   cp share/photohull/templeSparseRing/* "$scratch/damaged"
   echo "no picture" >"$scratch/damaged/templeSR0001.png"
-  if PHOTOHULL_EGL=bundled ./photohull reconstruct "$scratch/damaged" --out "$scratch/never" 2>"$scratch/said"; then return 1; fi
+  if PHOTOHULL_EGL=bundled ./photohull reconstruct "$scratch/damaged" --strict --out "$scratch/never" 2>"$scratch/said"; then return 1; fi
   grep -F templeSR0001.png "$scratch/said"
 }
 
