@@ -113,6 +113,10 @@ std::vector<BatchPiece> BatchArguments::pieces() const {
   return pieces;
 }
 
+void add_plan_folder(CLI::App& command, std::string& job) {
+  command.add_option("JOB", job, "folder of a plan or batch, which all machines see")->required();
+}
+
 void keep_plan(const std::vector<BatchPiece>& pieces, bool sequence, const batch::Store& store) {
   batch::Plan plan{batch::new_plan_id(), std::filesystem::current_path(), sequence, {}};
   for (const BatchPiece& piece : pieces)

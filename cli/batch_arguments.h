@@ -25,6 +25,9 @@ struct BatchArguments {
   std::vector<BatchPiece> pieces() const;
 };
 
+/// Adds the argument JOB: the folder of a plan.
+void add_plan_folder(CLI::App& command, std::string& job);
+
 /// Keeps in the store what is to be made, for `run`, `status`, `merge` and `submit`.
 void keep_plan(const std::vector<BatchPiece>& pieces, bool sequence, const batch::Store& store);
 

@@ -264,12 +264,12 @@ void run_batch(const std::vector<BatchPiece>& pieces, const batch::Store& store,
   Batch(pieces, store, options).run();
 }
 
-void merge_batch(const std::vector<std::string>& names, const batch::Store& store, bool json) {
+void merge_batch(const std::vector<std::string>& names, const batch::Store& store) {
   std::vector<batch::Row> rows;
   for (const std::string& name : names) rows.push_back({name, {}});
   fill(rows, store);
   write_overview(rows, store);
-  const int waiting = tell(rows, "", json, store);
+  const int waiting = tell(rows, "", false, store);
   if (waiting == 0) return;
   const auto first =
       std::find_if(rows.begin(), rows.end(), [](const auto& row) { return !row.outcome; });

@@ -57,7 +57,7 @@ void run(Arguments& a) {
 void add_run(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
   CLI::App* c = add_command(app, "run");
-  c->add_option("JOB", a->job, "folder of a plan or batch")->required();
+  add_plan_folder(*c, a->job);
   CLI::Option* pieces = c->add_option(
       "--pieces", a->pieces, "make these alone, counted from 1 in the order of the plan: 3 or 3-7");
   c->add_flag("--next", a->next, "end after one that was free and not made")->excludes(pieces);

@@ -84,11 +84,11 @@ void run(const Arguments& a) {
     print_text(status);
 }
 
-void merge(const Arguments& a) {
-  const batch::Store store = batch::Store::existing(a.job);
+void merge(const std::string& job) {
+  const batch::Store store = batch::Store::existing(job);
   std::vector<std::string> names;
   for (const batch::Piece& piece : store.plan().pieces) names.push_back(piece.name);
-  merge_batch(names, store, a.json);
+  merge_batch(names, store);
 }
 
 }  // namespace
@@ -96,7 +96,7 @@ void merge(const Arguments& a) {
 void add_status(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
   CLI::App* c = add_command(app, "status");
-  c->add_option("JOB", a->job, "folder of a plan or batch")->required();
+  add_plan_folder(*c, a->job);
   c->add_flag("--json", a->json, "print one line of JSON");
   c->footer(
       "Tells which scenes of a plan are made, which have no result, which some process is at work "
@@ -108,16 +108,16 @@ void add_status(CLI::App& app) {
 }
 
 void add_merge(CLI::App& app) {
-  auto a = std::make_shared<Arguments>();
+  auto job = std::make_shared<std::string>();
   CLI::App* c = add_command(app, "merge");
-  c->add_option("JOB", a->job, "folder of a plan or batch")->required();
-  c->add_flag("--json", a->json, "print nothing, the exit code tells");
+  add_plan_folder(*c, *job);
   c->footer(
-      "Writes the table batch.csv of all that was made, and sums it up. Ends with an error where "
+      "Writes the table batch.csv and the page index.html of all that was made, and sums it up. "
+      "Ends with an error where "
       "scenes are not made yet or have no result.\n\n"
       "Examples:\n"
       "  photohull merge /shared/plants");
-  c->callback([a] { merge(*a); });
+  c->callback([job] { merge(*job); });
 }
 
 }  // namespace photohull::cli

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "batch/engine.h"
-#include "batch/store.h"
+#include "batch_arguments.h"
 #include "cli/front/command_table.h"
 #include "cli/front/programs.h"
 #include "commands.h"
@@ -71,7 +71,7 @@ void run(const Arguments& a) {
 void add_submit(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
   CLI::App* c = add_command(app, "submit");
-  c->add_option("JOB", a->job, "folder of a plan or batch, which all machines see")->required();
+  add_plan_folder(*c, a->job);
   add_flags_of(*c, *a);
   c->add_flag("--dry-run", a->dry_run, "print the script instead of running it");
   c->footer(
