@@ -39,7 +39,7 @@ class PlanCommand : public BatchScenes {
     return results("calm", kPieces);
   }
   void submit_and_compare(const std::string& engine, const Arguments& before,
-                          const Arguments& more = {}) const;
+                          int workers = 3) const;
 };
 
 std::string command_line_of(const fs::path& process) {
@@ -65,13 +65,12 @@ bool kill_a_worker(const std::string& job) {
 }
 
 void PlanCommand::submit_and_compare(const std::string& engine, const Arguments& before,
-                                     const Arguments& more) const {
+                                     int workers) const {
   plan("job");
   Arguments words = before;
-  for (const std::string& word :
-       Arguments{PHOTOHULL_PROGRAM, "submit", path("job"), "--with", engine, "--workers", "3"})
+  for (const std::string& word : Arguments{PHOTOHULL_PROGRAM, "submit", path("job"), "--with",
+                                           engine, "--workers", concat(workers)})
     words.push_back(word);
-  words.insert(words.end(), more.begin(), more.end());
   std::atomic<bool> ended = false;
   std::atomic<int> killed = 0;
   std::thread killer([&] {  // one worker, a moment after it began
@@ -178,6 +177,8 @@ TEST_F(PlanCommand, FaultsAreToldBeforeTheWork) {
 }
 
 TEST_F(PlanCommand, LocalProcessesMakeItThoughOneIsKilled) { submit_and_compare("local", {}); }
+
+TEST_F(PlanCommand, OneMoreProcessMakesWhatTheOnlyOneLeft) { submit_and_compare("local", {}, 1); }
 
 TEST_F(PlanCommand, ParallelMakesItThoughOneIsKilled) {
   if (!is_on_path("parallel")) GTEST_SKIP() << "GNU parallel is not installed";
