@@ -140,10 +140,10 @@ Mask mask_from_evidence(const MaskEvidence& model) {
   distance = distance(box);
   cv::dilate(object, object, square(reach));
   object &= distance >= model.weak;
-  cv::Mat closed;
-  cv::morphologyEx(object, closed, cv::MORPH_CLOSE, square(2 * reach));
-  if (!model.bare.empty()) closed &= ~model.bare(box) | object;
-  object = closed.clone();
+  const cv::Mat apart = object.clone();
+  cv::morphologyEx(object, object, cv::MORPH_CLOSE, square(2 * reach));
+  if (!model.bare.empty()) object &= ~model.bare(box) | apart;
+  const cv::Mat closed = object.clone();
   fill_holes(object, kHole * trust * trust * cv::countNonZero(object));
   if (!model.bare.empty()) {  // what is wide enough is a hole
     cv::Mat open;

@@ -5,6 +5,7 @@ Renders stairs, which no turn or mirror maps to themselves, by cameras that are 
 principal points off the middle; reconstructs them; and has Blender import the result (in_blender.py, which checks what it
 finds). FOLDER keeps what is made."""
 import json
+import os
 import subprocess
 import sys
 import tempfile
@@ -19,8 +20,12 @@ SPEC = {
 }
 
 
-def run(*words) -> None:
-    done = subprocess.run([str(word) for word in words], capture_output=True, text=True, timeout=500, check=False)
+# Debian's Blender takes its Python library from the first python3 of PATH, which need not be the one that has NumPy.
+SYSTEM = os.environ | {"PATH": "/usr/bin:/bin"}
+
+
+def run(*words, env=None) -> None:
+    done = subprocess.run([str(word) for word in words], capture_output=True, text=True, timeout=500, check=False, env=env)
     if done.returncode not in (0, 3):
         sys.exit(f"{words[0]} {words[1]} failed ({done.returncode}):\n{done.stdout[-3000:]}\n{done.stderr[-3000:]}")
     print(done.stdout.strip()[-1500:])
@@ -28,7 +33,7 @@ def run(*words) -> None:
 
 def in_blender(blender: str, *words) -> None:
     inside = Path(__file__).with_name("in_blender.py")
-    run(blender, "-b", "--factory-startup", "--python-exit-code", "1", "--python", inside, "--", *words)
+    run(blender, "-b", "--factory-startup", "--python-exit-code", "1", "--python", inside, "--", *words, env=SYSTEM)
 
 
 def check(program: str, blender: str, addon: str, folder: Path) -> None:
