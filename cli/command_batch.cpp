@@ -7,12 +7,12 @@
 namespace photohull::cli {
 namespace {
 
-struct Arguments {
+struct BatchCommand {
   BatchArguments scenes;
   BatchOptions batch;
 };
 
-void run(Arguments& a) {
+void run_command(BatchCommand& a) {
   const std::vector<BatchPiece> pieces = a.scenes.pieces();
   a.batch.sequence = !a.scenes.frames.empty();
   const batch::Store store(a.scenes.out);
@@ -23,7 +23,7 @@ void run(Arguments& a) {
 }  // namespace
 
 void add_batch(CLI::App& app) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<BatchCommand>();
   CLI::App* c = add_command(app, "batch");
   a->scenes.add_to(*c);
   c->add_flag("--retry", a->batch.retry,
@@ -39,7 +39,7 @@ void add_batch(CLI::App& app) {
       "  photohull batch --list plants.txt --out out/plants\n"
       "  photohull batch rig.json --images \"frames/{frame}\" --frames 0000-0299 --out out/dance\n"
       "  srun -n 8 photohull batch --list plants.txt --out /shared/plants");
-  c->callback([a] { run(*a); });
+  c->callback([a] { run_command(*a); });
 }
 
 }  // namespace photohull::cli

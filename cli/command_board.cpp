@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct BoardArguments {
   std::string out;
   SheetOptions sheet;
 };
@@ -34,7 +34,7 @@ void tell(const Sheet& sheet) {
               sheet.tags.size(), side, room.x, room.y, sheet.page.x, sheet.page.y);
 }
 
-void run(const Arguments& a) {
+void run_board(const BoardArguments& a) {
   const fs::path out(a.out);
   const std::string ending = out.extension().string();
   if (ending != ".pdf" && ending != ".svg")
@@ -53,7 +53,7 @@ void run(const Arguments& a) {
 
 }  // namespace
 void add_board(CLI::App& app) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<BoardArguments>();
   CLI::App* c = add_command(app, "board");
   c->add_option("--out", a->out, "file to print, .pdf or .svg; its description is beside it, .json")
       ->required();
@@ -63,7 +63,7 @@ void add_board(CLI::App& app) {
       "  photohull board --out board.pdf\n"
       "  photohull board --out large.svg --paper a3 --kind charuco\n"
       "  photohull board --out rim.pdf --kind rim --diameter 250");
-  c->callback([a] { run(*a); });
+  c->callback([a] { run_board(*a); });
 }
 
 }  // namespace photohull::cli

@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct CalibrateArguments {
   std::vector<std::string> images;
   std::string out, coverage;
   std::optional<std::string> rig, lens_from;
@@ -55,20 +55,20 @@ class BoardFinder {
 };
 
 /// Degrees of each picture; none where they are to be found.
-std::vector<double> angles_of(const Arguments& a, std::size_t pictures) {
+std::vector<double> angles_of(const CalibrateArguments& a, std::size_t pictures) {
   if (a.angles.given() && !a.options.turntable)
     throw UsageError("--step and --angles are for --turntable");
   return a.angles.of(pictures);
 }
 
-void write_result(const Arguments& a, const std::string& text) {
+void write_result(const CalibrateArguments& a, const std::string& text) {
   write_atomically(a.out, text);
   if (a.json) std::fputs(text.c_str(), stdout);
 }
 
 /// The lens of --lens-from for these pictures, of the rig's camera named so; nothing where the lens
 /// is to be found, or where no picture shows the board, which is said elsewhere.
-std::optional<KnownLens> known_lens(const Arguments& a, const std::vector<BoardView>& views,
+std::optional<KnownLens> known_lens(const CalibrateArguments& a, const std::vector<BoardView>& views,
                                     const std::string& camera = {}) {
   if (!a.lens_from) return std::nullopt;
   for (const BoardView& view : views) {
@@ -81,7 +81,7 @@ std::optional<KnownLens> known_lens(const Arguments& a, const std::vector<BoardV
 
 /// Runs `calibrate`, and where that fails says whether another board would not.
 template <typename Calibrate>
-auto with_hint(const Arguments& a, const std::vector<fs::path>& images, LensModel lens,
+auto with_hint(const CalibrateArguments& a, const std::vector<fs::path>& images, LensModel lens,
                const Calibrate& calibrate) {
   try {
     return calibrate();
@@ -98,7 +98,7 @@ auto with_hint(const Arguments& a, const std::vector<fs::path>& images, LensMode
 
 /// Throws Error for what must not be used, before anything is written; else returns the doubts,
 /// told.
-std::vector<std::string> check(const Arguments& a, const std::vector<fs::path>& images,
+std::vector<std::string> check(const CalibrateArguments& a, const std::vector<fs::path>& images,
                                LensModel lens, double rms, const CalibrationJudgement& judged) {
   const std::string hint = judged.misfits ? suggest_board(images, a.spec, lens, rms) : "";
   if (!judged.refusal.empty())
@@ -109,7 +109,7 @@ std::vector<std::string> check(const Arguments& a, const std::vector<fs::path>& 
   return doubts;
 }
 
-void run_rig(const Arguments& a) {
+void run_rig(const CalibrateArguments& a) {
   const LensModel lens = a.options.lens;
   if (a.options.turntable) throw UsageError("--rig and --turntable: calibrate one at a time");
   if (!a.coverage.empty()) throw UsageError("--coverage is for one camera, not for --rig");
@@ -138,7 +138,7 @@ void run_rig(const Arguments& a) {
   write_result(a, rig_json(views, images.moments, rig, doubts));
 }
 
-void run_camera(const Arguments& a) {
+void run_camera(const CalibrateArguments& a) {
   const std::vector<fs::path> images = io::list_images(a.images);
   CalibrateOptions options = a.options;
   const LensModel lens = options.lens;
@@ -162,7 +162,7 @@ void run_camera(const Arguments& a) {
   }
 }
 
-void run(const Arguments& a) {
+void run_calibrate(const CalibrateArguments& a) {
   a.spec.validate();
   if (a.out.empty()) throw UsageError("--out is empty: give the JSON file for the calibration");
   if ((a.rig || a.options.turntable) && a.spec.looks_same_turned())
@@ -179,7 +179,7 @@ void run(const Arguments& a) {
 }  // namespace
 
 void add_calibrate(CLI::App& app) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<CalibrateArguments>();
   CLI::App* c = add_command(app, "calibrate");
   c->add_option("images", a->images, "photographs, or folders of them")->required();
   c->add_option("--out", a->out, "JSON file for the calibration")->required();
@@ -208,7 +208,7 @@ void add_calibrate(CLI::App& app) {
       "  photohull calibrate rig/ --rig \"{camera}/{moment}\" --square 0.025 --out rig.json\n"
       "  photohull calibrate table/ --board charuco --columns 8 --rows 6 --turntable --step 10 "
       "--lens-from calib.json --out t.json");
-  c->callback([a] { run(*a); });
+  c->callback([a] { run_calibrate(*a); });
 }
 
 }  // namespace photohull::cli

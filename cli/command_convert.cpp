@@ -14,7 +14,7 @@
 namespace photohull::cli {
 namespace {
 
-struct Arguments {
+struct ConvertArguments {
   SceneArguments scene;
   std::string to, out;
   TurntableAngles angles;
@@ -22,7 +22,7 @@ struct Arguments {
   bool undistort = false;
 };
 
-io::LoadSceneOptions options_of(const Arguments& a) {
+io::LoadSceneOptions options_of(const ConvertArguments& a) {
   a.scene.check();
   io::LoadSceneOptions options = a.scene.load;
   if (!a.angles.given() && !a.moment) return options;
@@ -34,7 +34,7 @@ io::LoadSceneOptions options_of(const Arguments& a) {
   return options;
 }
 
-void run(const Arguments& a) {
+void run_convert(const ConvertArguments& a) {
   const SceneFormat format = parse_format("--to", a.to);
   if (a.out.empty()) throw UsageError("--out is empty: give the folder for the converted scene");
   Scene scene = io::load_scene(a.scene.scene, options_of(a));
@@ -61,7 +61,7 @@ void run(const Arguments& a) {
 }  // namespace
 
 void add_convert(CLI::App& app) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<ConvertArguments>();
   CLI::App* c = add_command(app, "convert");
   a->scene.add_to(*c);
   c->add_option("--to", a->to, "format to write: " + format_names())->required();
@@ -85,7 +85,7 @@ void add_convert(CLI::App& app) {
       "  photohull convert scan/sparse/0 --to bundler --out out/bundler --undistort\n"
       "  photohull convert rig.json --images pot/ --moment 0001 --to transforms --out out/pot\n"
       "  photohull convert table.json --images pot/ --step 10 --to transforms --out out/pot");
-  c->callback([a] { run(*a); });
+  c->callback([a] { run_convert(*a); });
 }
 
 }  // namespace photohull::cli

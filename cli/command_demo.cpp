@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kPhotographs = "templeSparseRing";
 
-struct Arguments {
+struct DemoArguments {
   pipeline::ReconstructOptions job;
   io::LoadSceneOptions load;
   std::string out = "temple";
@@ -38,7 +38,7 @@ fs::path find_photographs() {
                      "program, and lie in datasets/ of its sources"));
 }
 
-void run(const Arguments& a) {
+void run_demo(const DemoArguments& a) {
   a.job.validate();
   if (a.out.empty()) throw UsageError("--out is empty: give a folder for the results");
   const fs::path photographs = find_photographs();
@@ -51,7 +51,7 @@ void run(const Arguments& a) {
 }  // namespace
 
 void add_demo(CLI::App& app) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<DemoArguments>();
   CLI::App* c = add_command(app, "demo");
   c->add_option("--out", a->out, "folder for the results; made when it does not exist [temple]");
   Described job;
@@ -64,7 +64,7 @@ void add_demo(CLI::App& app) {
       "Examples:\n"
       "  photohull demo\n"
       "  photohull demo --out /tmp/temple    # then: photohull view /tmp/temple");
-  c->callback([a] { run(*a); });
+  c->callback([a] { run_demo(*a); });
 }
 
 }  // namespace photohull::cli

@@ -9,7 +9,7 @@
 namespace photohull::cli {
 namespace {
 
-void run() {
+void run_devices() {
   const std::vector<gpu::DeviceInfo> devices = gpu::list_devices();
   for (const gpu::DeviceInfo& d : devices) {
     if (!d.problem.empty()) {
@@ -34,7 +34,7 @@ void add_devices(CLI::App& app) {
       "Examples:\n"
       "  photohull devices\n"
       "  photohull reconstruct SCENE --out DIR --device 1");
-  c->callback(run);
+  c->callback(run_devices);
 }
 
 }  // namespace photohull::cli

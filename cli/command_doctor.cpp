@@ -96,7 +96,7 @@ void print_variables() {
     if (const char* value = std::getenv(name)) std::printf("variable    %s=%s\n", name, value);
 }
 
-void run(const gpu::DeviceOptions& options) {
+void run_doctor(const gpu::DeviceOptions& options) {
   const Devices devices = look_for_devices(options.device);
   print_libraries();
   print_system();
@@ -120,7 +120,7 @@ void add_doctor(CLI::App& app) {
       "Examples:\n"
       "  photohull doctor\n"
       "  photohull doctor --device software");
-  c->callback([options] { run(*options); });
+  c->callback([options] { run_doctor(*options); });
 }
 
 }  // namespace photohull::cli

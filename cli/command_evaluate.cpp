@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 constexpr double kAlignWeight = 6;       // of the progress
 constexpr double kPoorAlignment = 0.02;  // of the truth's diagonal
 
-struct Arguments {
+struct EvaluateArguments {
   std::string mesh, error_mesh, error_image, reliability_plot;
   std::optional<std::string> truth;
   PhotoArguments photos;
@@ -129,7 +129,7 @@ void print_text(const eval::Evaluation& e) {
 
 /// The files asked for, opened before the work so that a bad path is told at once.
 struct Outputs {
-  explicit Outputs(const Arguments& a) {
+  explicit Outputs(const EvaluateArguments& a) {
     if (!a.error_mesh.empty()) mesh.emplace(a.error_mesh);
     if (!a.error_image.empty()) image.emplace(a.error_image);
     if (!a.reliability_plot.empty()) plot.emplace(a.reliability_plot);
@@ -138,7 +138,7 @@ struct Outputs {
   std::optional<AtomicFile> mesh, image, plot, photos;
 };
 
-void write_image(AtomicFile& file, const Arguments& a, const TriMesh& result,
+void write_image(AtomicFile& file, const EvaluateArguments& a, const TriMesh& result,
                  const eval::Truth& truth, const eval::Evaluation& e, Progress& progress) {
   const eval::Score& score = e.seen.scores.back();
   const std::string title =
@@ -153,13 +153,13 @@ bool ends_with(const std::string& path, const char* extension) {
   return fs::path(path).extension() == extension;
 }
 
-void write_plot(AtomicFile& file, const Arguments& a, const eval::Reliability& r) {
+void write_plot(AtomicFile& file, const EvaluateArguments& a, const eval::Reliability& r) {
   const std::string bytes =
       a.draw(fs::path(a.mesh).stem().string(), r, ends_with(a.reliability_plot, ".svg"));
   file.write(bytes.data(), bytes.size());
 }
 
-void check(const Arguments& a) {
+void check(const EvaluateArguments& a) {
   if (!a.truth && !a.photos.given())
     throw UsageError(
         "nothing to judge by: give --truth, or --photos with --views (held-out photographs), or "
@@ -178,7 +178,7 @@ void check(const Arguments& a) {
                             ", which photohull starts where it is asked for"));
 }
 
-eval::Evaluation evaluate_by_truth(const Arguments& a, const TriMesh& given, Outputs& outputs,
+eval::Evaluation evaluate_by_truth(const EvaluateArguments& a, const TriMesh& given, Outputs& outputs,
                                    Progress& progress) {
   const eval::Truth truth = eval::read_truth(*a.truth);
   if (given.triangles.empty() && outputs.image)
@@ -215,7 +215,7 @@ eval::Evaluation evaluate_by_truth(const Arguments& a, const TriMesh& given, Out
   return e;
 }
 
-void run(const Arguments& a) {
+void run_evaluate(const EvaluateArguments& a) {
   check(a);
   if (!(a.error_range > 0 && a.error_range <= 1))
     throw UsageError(concat("--error-range must be above 0 and at most 1, not ", a.error_range));
@@ -246,7 +246,7 @@ void run(const Arguments& a) {
 }  // namespace
 
 void add_evaluate(CLI::App& app, DrawReliability draw) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<EvaluateArguments>();
   a->draw = draw;
   CLI::App* c = add_command(app, "evaluate");
   c->add_option("mesh", a->mesh, "the result: PLY, OBJ, OFF, STL or glTF; points without faces too")
@@ -283,7 +283,7 @@ void add_evaluate(CLI::App& app, DrawReliability draw) {
       "--reliability-plot r.svg\n"
       "  photohull evaluate out/temple/mesh.ply --photos scenes/temple --views 0,8,16 --picture "
       "worst.png");
-  c->callback([a] { run(*a); });
+  c->callback([a] { run_evaluate(*a); });
 }
 
 }  // namespace photohull::cli

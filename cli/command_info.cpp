@@ -22,14 +22,14 @@
 namespace photohull::cli {
 namespace {
 
-struct Arguments {
+struct InfoArguments {
   SceneArguments scene;
   pipeline::ReconstructOptions job;  ///< those that decide on voxels
   bool json = false, cameras = false, masks = false;
   std::optional<std::string> picture;
 };
 
-pipeline::ReconstructOptions job_options(const Arguments& a) {
+pipeline::ReconstructOptions job_options(const InfoArguments& a) {
   check_scene(a.scene.scene);
   pipeline::ReconstructOptions o = a.job;
   o.box = a.scene.box;
@@ -39,7 +39,7 @@ pipeline::ReconstructOptions job_options(const Arguments& a) {
 }
 
 /// Why there is none, or nothing; the rest that is known of the scene is told all the same.
-std::string find_box(const Arguments& a, Scene& scene, std::vector<ScenePoint>& points) {
+std::string find_box(const InfoArguments& a, Scene& scene, std::vector<ScenePoint>& points) {
   const bool looks = pipeline::looks_for_box(a.scene.box, scene);
   TerminalProgress progress(1);
   if (looks) progress.stage("box", 1);
@@ -61,7 +61,7 @@ std::string find_box(const Arguments& a, Scene& scene, std::vector<ScenePoint>& 
 
 /// At which the photographs are read to look into them: as the job would read them, and as they are
 /// for the cameras, where half a pixel of the file counts.
-std::vector<double> scales_to_look(const Arguments& a, const pipeline::ReconstructOptions& job,
+std::vector<double> scales_to_look(const InfoArguments& a, const pipeline::ReconstructOptions& job,
                                    const pipeline::Inspection& info) {
   if (!a.cameras && !info.scales.empty()) return info.scales;
   return std::vector<double>(info.scene.views.size(), a.cameras ? 1 : job.image_scale.value_or(1));
@@ -103,7 +103,7 @@ void write_picture(const std::string& path, const pipeline::Inspection& info,
   io::write_png(path, picture.width, picture.height, 3, picture.rgb);
 }
 
-void run(const Arguments& a) {
+void run_info(const InfoArguments& a) {
   if (a.picture && a.picture->empty()) throw UsageError("--picture is empty: give a PNG file");
   const pipeline::ReconstructOptions job = job_options(a);
   io::LoadSceneOptions load = a.scene.load;
@@ -141,7 +141,7 @@ void run(const Arguments& a) {
 }  // namespace
 
 void add_info(CLI::App& app) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<InfoArguments>();
   CLI::App* c = add_command(app, "info");
   a->scene.add_to(*c);
   Described job;
@@ -171,7 +171,7 @@ void add_info(CLI::App& app) {
       "  photohull info scan --resolution 512 --masks none\n"
       "  photohull info datasets/templeSparseRing --box auto --picture box.png\n"
       "  photohull info colmap/sparse/0 --box \"-1 -1 0 1 1 2\" --json");
-  c->callback([a] { run(*a); });
+  c->callback([a] { run_info(*a); });
 }
 
 }  // namespace photohull::cli

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct MasksArguments {
   SceneArguments scene;
   std::optional<std::string> out, compare;
   PrepareOptions prepare;
@@ -60,7 +60,7 @@ std::vector<fs::path> mask_files(const fs::path& folder, std::span<const Prepare
 }
 
 /// Masks that are known, by the names that masks have.
-std::vector<Overlap> compare(const Arguments& a, const PreparedViews& prepared) {
+std::vector<Overlap> compare(const MasksArguments& a, const PreparedViews& prepared) {
   SceneArguments reading = a.scene;
   reading.load.background.clear();
   reading.load.masks = io::MaskSource::kDirectory;
@@ -105,7 +105,7 @@ void write_masks(const fs::path& folder, const PreparedViews& prepared) {
   }
 }
 
-void print(const Arguments& a, const PreparedViews& prepared, const std::vector<Overlap>& known) {
+void print(const MasksArguments& a, const PreparedViews& prepared, const std::vector<Overlap>& known) {
   std::printf("%-24s %-18s %10s %8s%s\n", "view", "mask from", "confidence", "object",
               known.empty() ? "" : "      IoU   missed");
   for (std::size_t i = 0; i < prepared.views.size(); ++i) {
@@ -138,7 +138,7 @@ void print_json(const PreparedViews& prepared, const std::vector<Overlap>& known
               j.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
 }
 
-void run(const Arguments& a) {
+void run_masks(const MasksArguments& a) {
   if (a.out && a.out->empty()) throw UsageError("--out is empty: give a folder for the masks");
   if (a.compare && a.compare->empty())
     throw UsageError("--compare is empty: give a folder of masks that are known");
@@ -168,7 +168,7 @@ void run(const Arguments& a) {
 }  // namespace
 
 void add_masks(CLI::App& app) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<MasksArguments>();
   CLI::App* c = add_command(app, "masks");
   a->scene.add_to(*c);
   c->add_option("--out", a->out,
@@ -184,7 +184,7 @@ void add_masks(CLI::App& app) {
       "  photohull masks datasets/templeSparseRing --out out/masks\n"
       "  photohull masks turntable --background empty.png\n"
       "  photohull masks scan --masks background --compare scan/masks");
-  c->callback([a] { run(*a); });
+  c->callback([a] { run_masks(*a); });
 }
 
 }  // namespace photohull::cli

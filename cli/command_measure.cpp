@@ -12,7 +12,7 @@
 namespace photohull::cli {
 namespace {
 
-struct Arguments {
+struct MeasureArguments {
   std::vector<std::string> folders;
   MeasureOptions options;
   bool json = false, csv = false;
@@ -45,7 +45,7 @@ void print_text(const std::string& folder, const Measurements& m) {
                 100 * m.unseen);
 }
 
-void run(const Arguments& a) {
+void run_measure(const MeasureArguments& a) {
   if (a.json && a.csv) throw UsageError("--json and --csv exclude each other: give one");
   if (a.json && a.folders.size() > 1)
     throw UsageError("--json is for one folder; give --csv for a table of several");
@@ -66,7 +66,7 @@ void run(const Arguments& a) {
 }  // namespace
 
 void add_measure(CLI::App& app) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<MeasureArguments>();
   CLI::App* c = add_command(app, "measure");
   c->add_option("DIR", a->folders, "folders that reconstruct wrote")->required();
   add_flags_of(*c, a->options);
@@ -79,7 +79,7 @@ void add_measure(CLI::App& app) {
       "  photohull measure out/plant\n"
       "  photohull measure out/plant --axis z --sections 40 --json\n"
       "  photohull measure out/plant-1 out/plant-2 --csv > plants.csv");
-  c->callback([a] { run(*a); });
+  c->callback([a] { run_measure(*a); });
 }
 
 }  // namespace photohull::cli

@@ -9,7 +9,7 @@
 namespace photohull::cli {
 namespace {
 
-void run(const BatchArguments& a) {
+void run_plan(const BatchArguments& a) {
   const std::vector<BatchPiece> pieces = a.pieces();
   const batch::Store store(a.out);
   keep_plan(pieces, !a.frames.empty(), store);
@@ -33,7 +33,7 @@ void add_plan(CLI::App& app) {
       "Examples:\n"
       "  photohull plan --list plants.txt --out /shared/plants\n"
       "  photohull plan rig.json --images \"frames/{frame}\" --frames 0000-0299 --out out/dance");
-  c->callback([a] { run(*a); });
+  c->callback([a] { run_plan(*a); });
 }
 
 }  // namespace photohull::cli

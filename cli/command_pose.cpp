@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct PoseCommand {
   PoseArguments photos;
   std::string out, with, masks;
   bool no_masks = false, json = false;
@@ -23,7 +23,7 @@ struct Arguments {
 constexpr const char* kColmap = "colmap";
 
 /// Throws UsageError where options are given that belong to the other way.
-void check(const Arguments& a) {
+void check(const PoseCommand& a) {
   a.photos.check();
   if (a.out.empty()) throw UsageError("--out is empty: give a folder for the scene");
   const bool colmap = a.with == kColmap;
@@ -37,7 +37,7 @@ void check(const Arguments& a) {
     refuse_given(a.photos.of_colmap, "--board");
 }
 
-void run(const Arguments& a) {
+void run_pose(const PoseCommand& a) {
   check(a);
   PoseJob job;
   job.out = fs::absolute(a.out).lexically_normal();
@@ -61,7 +61,7 @@ void run(const Arguments& a) {
 }  // namespace
 
 void add_pose(CLI::App& app) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<PoseCommand>();
   CLI::App* c = add_command(app, "pose");
   a->photos.add_to(*c);
   c->add_option("--with", a->with, "colmap: without a sheet, by the program COLMAP")
@@ -86,7 +86,7 @@ void add_pose(CLI::App& app) {
       "  photohull pose photos/ --with colmap --out scene\n"
       "  photohull pose --video film.mp4 --with colmap --out scene\n"
       "  photohull reconstruct scene --out model");
-  c->callback([a] { run(*a); });
+  c->callback([a] { run_pose(*a); });
 }
 
 }  // namespace photohull::cli

@@ -11,27 +11,27 @@
 namespace photohull::cli {
 namespace {
 
-struct Arguments {
+struct ReconstructArguments {
   pipeline::ReconstructOptions job;
   io::LoadSceneOptions load;
   std::string scene, out;
   bool json = false;
 };
 
-void check(const Arguments& a) {
+void check(const ReconstructArguments& a) {
   check_scene(a.scene);
   a.job.validate();
   a.load.validate();
   if (a.out.empty()) throw UsageError("--out is empty: give a folder for the results");
 }
 
-void run(const Arguments& a) {
+void run_reconstruct(const ReconstructArguments& a) {
   check(a);
   check_output(a.scene, a.load, a.out);
   reconstruct_scene(a.job, a.load, a.scene, a.out, a.json);
 }
 
-void add_options(CLI::App& c, Arguments& a) {
+void add_options(CLI::App& c, ReconstructArguments& a) {
   add_scene(c, a.scene);
   c.add_option("--out", a.out, "folder for the results; made when it does not exist")->required();
   Described job;
@@ -44,7 +44,7 @@ void add_options(CLI::App& c, Arguments& a) {
 
 void check_reconstruct(const std::vector<std::string>& arguments) {
   CLI::App command("", "reconstruct");
-  Arguments a;
+  ReconstructArguments a;
   add_options(command, a);
   std::vector<const char*> words = {"reconstruct", "scene", "--out", "out"};
   for (const std::string& word : arguments) words.push_back(word.c_str());
@@ -57,7 +57,7 @@ void check_reconstruct(const std::vector<std::string>& arguments) {
 }
 
 void add_reconstruct(CLI::App& app) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<ReconstructArguments>();
   CLI::App* c = add_command(app, "reconstruct");
   add_options(*c, *a);
   c->footer(
@@ -71,7 +71,7 @@ void add_reconstruct(CLI::App& app) {
       "  photohull reconstruct scan --out out/scan --mesh-error 0.25 --unseen open\n"
       "  photohull reconstruct colmap/sparse/0 --out out/plant --box \"-1 -1 0 1 1 2\"\n"
       "  photohull reconstruct transforms.json --out out/x --masks my_masks --views 0-23 --json");
-  c->callback([a] { run(*a); });
+  c->callback([a] { run_reconstruct(*a); });
 }
 
 }  // namespace photohull::cli

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct RefineCamerasArguments {
   SceneArguments scene;
   std::string out;
   std::optional<std::string> to;
@@ -52,7 +52,7 @@ void print_summary(const CameraRefinement& r, const Scene& scene) {
                 r.focal_factor, r.principal.x, r.principal.y);
 }
 
-void run(const Arguments& a) {
+void run_refine_cameras(const RefineCamerasArguments& a) {
   if (a.out.empty()) throw UsageError("--out is empty: give the folder for the refined scene");
   a.scene.check();
   Scene scene = io::load_scene(a.scene.scene, a.scene.load);
@@ -93,7 +93,7 @@ void run(const Arguments& a) {
 }  // namespace
 
 void add_refine_cameras(CLI::App& app) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<RefineCamerasArguments>();
   CLI::App* c = add_command(app, "refine-cameras");
   a->scene.add_to(*c);
   c->add_option("--out", a->out, "folder for the refined scene; made when it does not exist")
@@ -117,7 +117,7 @@ void add_refine_cameras(CLI::App& app) {
       "Examples:\n"
       "  photohull refine-cameras datasets/templeSparseRing --out out/temple_refined\n"
       "  photohull refine-cameras scan --intrinsics --to colmap-text --out out/scan_refined");
-  c->callback([a] { run(*a); });
+  c->callback([a] { run_refine_cameras(*a); });
 }
 
 }  // namespace photohull::cli

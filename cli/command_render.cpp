@@ -29,7 +29,7 @@ namespace {
 constexpr int kSmallestSide = 16, kLargestSide = 4096;   // pixels
 constexpr double kReadWeight = 0.1, kStillWeight = 0.1;  // of the progress; a film is 1
 
-struct Arguments {
+struct RenderArguments {
   std::string folder, size = "1280x720", background = "grey";
   std::optional<std::string> turntable, picture, camera;
   render::TurntableOptions turn;
@@ -66,7 +66,7 @@ render::Colour read_colour(const std::string& text) {
   return {std::uint8_t(red), std::uint8_t(green), std::uint8_t(blue)};
 }
 
-void check(const Arguments& a) {
+void check(const RenderArguments& a) {
   if (a.folder.empty()) throw UsageError("DIR is empty: give the folder of the results");
   if (!a.turntable && !a.picture)
     throw UsageError("nothing to draw: give --turntable FILE, or --picture FILE, or both");
@@ -80,12 +80,12 @@ void check(const Arguments& a) {
 /// What draws the model, with all that pictures of it share.
 class Painter {
  public:
-  Painter(const Arguments& a, const Size& size)
+  Painter(const RenderArguments& a, const Size& size)
       : size_(size),
         look_(a.clay ? render::Look::kClay : render::Look::kColours),
         background_(read_colour(a.background)) {}
 
-  void load(const Arguments& a) {
+  void load(const RenderArguments& a) {
     model_ = pipeline::read_result(a.folder);
     if (a.camera) camera_ = pipeline::find_camera(model_.look, *a.camera).camera;
     context_ = gpu::Context::create(a.device.device, a.device.threads);
@@ -109,7 +109,7 @@ class Painter {
 
   /// Of the view that was asked for; else as the film begins. Without a size, a view's picture is
   /// as large as its photograph.
-  RgbImage still(const Arguments& a, bool sized) {
+  RgbImage still(const RenderArguments& a, bool sized) {
     if (!camera_) return draw(turn(a.turn).front());
     const Size given = size_;
     if (!sized) {
@@ -134,7 +134,7 @@ class Painter {
   std::unique_ptr<render::Rasterizer> rasterizer_;
 };
 
-void draw_film(const Arguments& a, Painter& painter, io::Film& film, Progress& progress) {
+void draw_film(const RenderArguments& a, Painter& painter, io::Film& film, Progress& progress) {
   progress.stage("film", 1);
   const std::vector<render::Shot> shots = painter.turn(a.turn);
   for (std::size_t i = 0; i < shots.size(); ++i) {
@@ -145,7 +145,7 @@ void draw_film(const Arguments& a, Painter& painter, io::Film& film, Progress& p
   film.finish();
 }
 
-void run(const Arguments& a, bool sized) {
+void run_render(const RenderArguments& a, bool sized) {
   check(a);
   const Size size = read_size(a.size);
   Painter painter(a, size);
@@ -177,7 +177,7 @@ void run(const Arguments& a, bool sized) {
 }  // namespace
 
 void add_render(CLI::App& app) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<RenderArguments>();
   CLI::App* c = add_command(app, "render");
   c->add_option("DIR", a->folder, "folder that 'photohull reconstruct' wrote")->required();
   c->add_option("--turntable", a->turntable,
@@ -206,7 +206,7 @@ void add_render(CLI::App& app) {
       "  photohull render out/temple --turntable temple.mp4\n"
       "  photohull render out/temple --turntable 'frames/%04d.png' --frames 36 --size 640x480\n"
       "  photohull render out/temple --camera 3 --picture view3.png --clay --background white");
-  c->callback([a, size] { run(*a, size->count() > 0); });
+  c->callback([a, size] { run_render(*a, size->count() > 0); });
 }
 
 }  // namespace photohull::cli

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct RunArguments {
   std::string job, pieces, device = "auto";
   int threads = 0;
   bool next = false;
@@ -30,7 +30,7 @@ void go_to(const fs::path& folder) {
                        "; make the plan anew where the scenes are"));
 }
 
-void run(Arguments& a) {
+void run_run(RunArguments& a) {
   const batch::Store store = batch::Store::existing(fs::absolute(a.job).lexically_normal());
   const batch::Plan plan = store.plan();
   go_to(plan.folder);
@@ -55,7 +55,7 @@ void run(Arguments& a) {
 }  // namespace
 
 void add_run(CLI::App& app) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<RunArguments>();
   CLI::App* c = add_command(app, "run");
   add_plan_folder(*c, a->job);
   CLI::Option* pieces = c->add_option(
@@ -76,7 +76,7 @@ void add_run(CLI::App& app) {
       "  photohull run /shared/plants\n"
       "  photohull run /shared/plants --pieces 3-7\n"
       "  srun -n 8 photohull run /shared/plants --threads 4");
-  c->callback([a] { run(*a); });
+  c->callback([a] { run_run(*a); });
 }
 
 }  // namespace photohull::cli

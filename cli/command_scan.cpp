@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 constexpr const char *kFrames = "frames", *kPose = "pose", *kModel = "model";  // the steps
 constexpr const char* kTextured = "glb";
 
-struct Arguments {
+struct ScanArguments {
   PoseArguments photos;
   pipeline::ReconstructOptions job;
   io::LoadSceneOptions load;
@@ -35,7 +35,7 @@ struct Arguments {
   fs::path scene() const { return fs::absolute(out).lexically_normal() / "scene"; }
 };
 
-void check(const Arguments& a) {
+void check(const ScanArguments& a) {
   a.photos.check();
   if (a.out.empty()) throw UsageError("--out is empty: give a folder for the results");
   a.job.validate();
@@ -52,14 +52,14 @@ void check(const Arguments& a) {
 void note(const std::string& text) { std::fprintf(stderr, "note: %s\n", text.c_str()); }
 
 /// Is a result of the step to be taken?
-bool is_kept(const Arguments& a, const KeptSteps& kept, const std::string& step,
+bool is_kept(const ScanArguments& a, const KeptSteps& kept, const std::string& step,
              const std::string& identity, const std::string& what) {
   if (a.job.fresh || !kept.has(step, identity)) return false;
   note(concat(what, " of the run before (--fresh makes all anew)"));
   return true;
 }
 
-std::vector<fs::path> frames_of(const Arguments& a, KeptSteps& kept) {
+std::vector<fs::path> frames_of(const ScanArguments& a, KeptSteps& kept) {
   const fs::path folder = a.scene() / "frames";
   StepIdentity identity;
   identity.add_file(a.photos.video);
@@ -89,7 +89,7 @@ fs::path board_of(const PoseArguments& photos) {
   return {};
 }
 
-PoseJob pose_job(const Arguments& a, KeptSteps& kept) {
+PoseJob pose_job(const ScanArguments& a, KeptSteps& kept) {
   PoseJob job;
   if (a.photos.video.empty()) {
     name_unreadable(a.photos.images);
@@ -154,7 +154,7 @@ void repeat_warnings(const fs::path& report) {
     if (text.is_string()) std::fprintf(stderr, "warning: %s\n", text.get<std::string>().c_str());
 }
 
-void pose(const Arguments& a, const PoseJob& job, KeptSteps& kept) {
+void pose(const ScanArguments& a, const PoseJob& job, KeptSteps& kept) {
   const std::string identity = identity_of(job);
   std::error_code ignored;
   const bool there = fs::is_regular_file(job.out / "transforms.json", ignored) &&
@@ -167,7 +167,7 @@ void pose(const Arguments& a, const PoseJob& job, KeptSteps& kept) {
   kept.done(kPose, identity);
 }
 
-void reconstruct(const Arguments& a, KeptSteps& kept) {
+void reconstruct(const ScanArguments& a, KeptSteps& kept) {
   const std::string identity = model_identity(a.job, a.load, a.scene(), a.out);
   if (has_results(a.out) && is_kept(a, kept, kModel, identity, "the model is that"))
     return tell_results(a.out, a.json);
@@ -181,7 +181,7 @@ void reconstruct(const Arguments& a, KeptSteps& kept) {
   kept.done(kModel, identity);
 }
 
-void run(Arguments& a) {
+void run_scan(ScanArguments& a) {
   if (std::ranges::find(a.job.exports, kTextured) == a.job.exports.end())
     a.job.exports.push_back(kTextured);
   check(a);
@@ -203,7 +203,7 @@ void run(Arguments& a) {
 }
 
 /// All of reconstruct's but those that say where a scene's files are.
-void add_job(CLI::App& command, Arguments& a) {
+void add_job(CLI::App& command, ScanArguments& a) {
   constexpr const char* kOfScenes[] = {"format", "images", "pixel_center"};
   Described described;
   describe(described, a.job, a.load);
@@ -217,7 +217,7 @@ void add_job(CLI::App& command, Arguments& a) {
 }  // namespace
 
 void add_scan(CLI::App& app) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<ScanArguments>();
   CLI::App* c = add_command(app, "scan");
   a->photos.add_to(*c, {"unit"});  // millimetres; --unit is that of files
   c->add_option("--out", a->out, "folder for the results; the posed scene goes into scene/ there")
@@ -234,7 +234,7 @@ void add_scan(CLI::App& app) {
       "  photohull scan photos/ --board board.json --bar 149.5 --out model\n"
       "  photohull scan --video film.mp4 --frames 80 --out model\n"
       "  photohull scan photos/ --out model --masks my_masks --quality high");
-  c->callback([a] { run(*a); });
+  c->callback([a] { run_scan(*a); });
 }
 
 }  // namespace photohull::cli

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-struct Arguments {
+struct StatusArguments {
   std::string job;
   bool json = false;
 };
@@ -74,7 +74,7 @@ void print_json(const Status& status, std::size_t count) {
   std::printf("%s\n", all.dump(-1, ' ', false, json::error_handler_t::replace).c_str());
 }
 
-void run(const Arguments& a) {
+void run_status(const StatusArguments& a) {
   const batch::Store store = batch::Store::existing(a.job);
   const batch::Plan plan = store.plan();
   const Status status = status_of(store, plan);
@@ -94,7 +94,7 @@ void merge(const std::string& job) {
 }  // namespace
 
 void add_status(CLI::App& app) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<StatusArguments>();
   CLI::App* c = add_command(app, "status");
   add_plan_folder(*c, a->job);
   c->add_flag("--json", a->json, "print one line of JSON");
@@ -104,7 +104,7 @@ void add_status(CLI::App& app) {
       "Examples:\n"
       "  photohull status /shared/plants\n"
       "  photohull status /shared/plants --json");
-  c->callback([a] { run(*a); });
+  c->callback([a] { run_status(*a); });
 }
 
 void add_merge(CLI::App& app) {

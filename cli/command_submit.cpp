@@ -22,14 +22,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct SubmitArguments {
   std::string job, engine_options;
   batch::Engine engine = batch::Engine::kLocal;
   int workers = 0, threads = 0;
   bool dry_run = false;
 };
 
-void describe(Described& to, Arguments& a) {
+void describe(Described& to, SubmitArguments& a) {
   to.choice("with", &a.engine, batch::kEngines,
             "what starts the processes: this machine, GNU parallel, MPI's mpirun, or Slurm");
   to.number("workers", &a.workers, from_to(0, 10000), "", "processes").zero =
@@ -40,13 +40,13 @@ void describe(Described& to, Arguments& a) {
           "words for the engine, such as '--partition=short --time=60'");
 }
 
-int workers_of(const Arguments& a, std::size_t pieces) {
+int workers_of(const SubmitArguments& a, std::size_t pieces) {
   constexpr std::size_t kMost = 64;
   if (a.workers > 0) return a.workers;
   return a.engine == batch::Engine::kLocal ? 1 : int(std::min(pieces, kMost));
 }
 
-void run(const Arguments& a) {
+void run_submit(const SubmitArguments& a) {
   const batch::Store store = batch::Store::existing(fs::absolute(a.job).lexically_normal());
   const std::string needed = batch::program_of(a.engine);
   if (!a.dry_run && !needed.empty() && !is_on_path(needed))
@@ -69,7 +69,7 @@ void run(const Arguments& a) {
 }  // namespace
 
 void add_submit(CLI::App& app) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<SubmitArguments>();
   CLI::App* c = add_command(app, "submit");
   add_plan_folder(*c, a->job);
   add_flags_of(*c, *a);
@@ -84,7 +84,7 @@ void add_submit(CLI::App& app) {
       "\"--cpus-per-task=8 --mem=16G\"\n"
       "  photohull submit /shared/plants --with parallel --engine-options \"--sshlogin a,b\"\n"
       "  photohull submit /shared/plants --with mpi --workers 8 --dry-run");
-  c->callback([a] { run(*a); });
+  c->callback([a] { run_submit(*a); });
 }
 
 }  // namespace photohull::cli

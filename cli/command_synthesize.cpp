@@ -15,7 +15,7 @@
 namespace photohull::cli {
 namespace {
 
-struct Arguments {
+struct SynthesizeArguments {
   std::string spec, out;
   gpu::DeviceOptions device;
   std::optional<std::string> size;
@@ -41,7 +41,7 @@ void set_size(const std::string& text, synth::ImageSpec& image) {
                             synth::kLargestImage, ", such as 640x480"));
 }
 
-synth::Spec read_spec(const Arguments& a) {
+synth::Spec read_spec(const SynthesizeArguments& a) {
   synth::Spec spec = synth::read_spec(a.spec);
   if (a.size) set_size(*a.size, spec.image);
   if (a.views) synth::set_view_count(spec.cameras, *a.views);
@@ -50,7 +50,7 @@ synth::Spec read_spec(const Arguments& a) {
   return synth::parse_spec(synth::spec_text(spec), a.spec, "");
 }
 
-void run(const Arguments& a) {
+void run_synthesize(const SynthesizeArguments& a) {
   if (a.list) return print_shapes();
   if (a.spec.empty())
     throw UsageError("a spec is missing: give a JSON file, or --list; see --help");
@@ -74,7 +74,7 @@ void run(const Arguments& a) {
 }  // namespace
 
 void add_synthesize(CLI::App& app) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<SynthesizeArguments>();
   CLI::App* c = add_command(app, "synthesize");
   c->add_option("spec", a->spec, "JSON file that says what is photographed and how");
   c->add_option("--out", a->out, "folder for the scene: new, empty, or an older synthesized scene");
@@ -93,7 +93,7 @@ void add_synthesize(CLI::App& app) {
       "  photohull synthesize my_spec.json --out out/mine --views 12 --seed 7\n"
       "  photohull synthesize --list\n"
       "  photohull reconstruct out/block --out out/block/result");
-  c->callback([a] { run(*a); });
+  c->callback([a] { run_synthesize(*a); });
 }
 
 }  // namespace photohull::cli

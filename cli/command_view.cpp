@@ -52,7 +52,7 @@ bool open(const fs::path& page) {
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-void run(const std::string& given) {
+void run_view(const std::string& given) {
   const fs::path page = fs::absolute(find_page(given)).lexically_normal();
   std::printf("%s\n", page.c_str());
   if (!has_display()) return;
@@ -72,7 +72,7 @@ void add_view(CLI::App& app) {
       "without a display it prints where the page is.\n\n"
       "Examples:\n"
       "  photohull view out/temple");
-  c->callback([folder] { run(*folder); });
+  c->callback([folder] { run_view(*folder); });
 }
 
 }  // namespace photohull::cli

@@ -15,22 +15,29 @@ import sys
 UNNAMED = re.compile(r"^namespace \{\n(.*?)^\}  // namespace$", re.MULTILINE | re.DOTALL)
 MACRO = re.compile(r"^#define (\w+)", re.MULTILINE)
 # clang-format puts what a namespace holds at the beginnings of lines, and nothing else.
-TYPE = re.compile(r"^(?:template <.*>\s)?(?:struct|class|enum class|enum|union|using) (\w+)", re.MULTILINE)
-OTHER = re.compile(r"^(?!TEST|INSTANTIATE|static_assert|using |struct |class |enum |union )\w[^\n;={(]*?(\w+)\s*[;={(\[]",
+TYPE = re.compile(r"^(?:template <.*>\s)?(?:struct|class|enum class|enum|union) (\w+)", re.MULTILINE)
+# Files may have the same alias for the same type, and a using-declaration may be repeated.
+ALIAS = re.compile(r"^(?:template <.*>\s)?using (\w+) = ([^;]*);", re.MULTILINE)
+OTHER = re.compile(r"^(?!TEST|INSTANTIATE|static_assert|using |namespace |struct |class |enum |union )\w[^\n;={(]*?(\w+)\s*[;={(\[]",
                    re.MULTILINE)
 CONSTANTS = re.compile(r"^constexpr .*$", re.MULTILINE)
 
 
 def names(path):
-    """What the file has for itself, by names."""
+    """What the file has for itself: by name what an alias stands for, nothing for all else."""
     with open(path, encoding="utf-8") as file:
         text = file.read()
-    found = set(MACRO.findall(text) + TYPE.findall(text))
+    found = dict(ALIAS.findall(text))
+    others = MACRO.findall(text) + TYPE.findall(text)
     for inner in UNNAMED.findall(text):
-        found.update(OTHER.findall(inner))
+        others += OTHER.findall(inner)
         for line in CONSTANTS.findall(inner):
-            found.update(re.findall(r"(\w+) =", line))
-    return found
+            others += re.findall(r"(\w+) =", line)
+    return found | dict.fromkeys(others)
+
+
+def clash(some, more):
+    return any(some[name] != more[name] or some[name] is None for name in some.keys() & more.keys())
 
 
 def groups_of(files, most):
@@ -38,13 +45,13 @@ def groups_of(files, most):
     for file in files:
         own = names(file)
         for group in groups:
-            if len(group["files"]) < most and not group["names"] & own:
+            if len(group["files"]) < most and not clash(group["names"], own):
                 break
         else:
-            group = {"files": [], "names": set()}
+            group = {"files": [], "names": {}}
             groups.append(group)
         group["files"].append(file)
-        group["names"] |= own
+        group["names"].update(own)
     return groups
 
 

@@ -29,7 +29,7 @@ using visibility::VisibilityErrors;
 
 constexpr int kCropEdge = 220;  // pixels of a picture of errors
 
-struct Arguments {
+struct VisibilityArguments {
   std::string json, out;
   gpu::DeviceOptions device;
   visibility::StudyOptions options;
@@ -43,7 +43,7 @@ void put(ordered_json& j, const VisibilityErrors& e) {
   j["false_visibility_percent"] = rounded(e.false_visibility);
 }
 
-ordered_json to_json(const Study& study, const Arguments& a, const std::string& device) {
+ordered_json to_json(const Study& study, const VisibilityArguments& a, const std::string& device) {
   ordered_json j;
   j["device"] = device;
   j["receivers"] = {{"width", a.options.width}, {"height", a.options.height}};
@@ -142,7 +142,7 @@ void draw_errors(const Study& study, const std::filesystem::path& folder) {
 }
 
 /// A row a scene, a column a technique.
-void draw_crops(gpu::Context& context, const Arguments& a, const std::filesystem::path& folder) {
+void draw_crops(gpu::Context& context, const VisibilityArguments& a, const std::filesystem::path& folder) {
   const std::vector<std::string> techniques{"plain", "second-depth", "dual-depth", "variance",
                                             "pcf5",  "sub-pixel",    "coverage",   "lists"};
   constexpr int kGap = 4;
@@ -166,7 +166,7 @@ void draw_crops(gpu::Context& context, const Arguments& a, const std::filesystem
   io::write_png(folder / "visibility_crops.png", width, height, 3, sheet);
 }
 
-void run_visibility(Arguments a) {
+void run_visibility(VisibilityArguments a) {
   if (a.quick) {
     a.options.scenes = {"ball"};
     a.options.resolutions = {128};
@@ -196,7 +196,7 @@ void run_visibility(Arguments a) {
 }  // namespace
 
 void add_bench_visibility(CLI::App& bench) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<VisibilityArguments>();
   CLI::App* s = bench.add_subcommand(
       "visibility", "errors against exact rays, and costs, of the ways to tell who sees what");
   s->add_option("--json", a->json, "file for all figures");

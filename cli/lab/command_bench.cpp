@@ -27,7 +27,7 @@ using nlohmann::ordered_json;
 using projtex::StudyCell;
 using projtex::SweepRate;
 
-struct Arguments {
+struct BenchArguments {
   std::string json, out;
   gpu::DeviceOptions device;
   projtex::StudyOptions options;
@@ -133,7 +133,7 @@ void draw(const Results& results, const std::filesystem::path& folder) {
   chart::write_png(svg, 2 * drawn.width, 2 * drawn.height, folder / "sampling.png");
 }
 
-void run_sampling(const Arguments& a) {
+void run_sampling(const BenchArguments& a) {
   Results results;
   results.options = a.options;
   results.options.validate();
@@ -160,7 +160,7 @@ void run_sampling(const Arguments& a) {
 void add_bench(CLI::App& app) {
   CLI::App* c = add_command(app, "bench");
   c->require_subcommand(1);
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<BenchArguments>();
   CLI::App* s =
       c->add_subcommand("sampling", "errors and times of the ways to resample photographs");
   s->add_option("--json", a->json, "file for all figures");

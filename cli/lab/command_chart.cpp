@@ -14,7 +14,7 @@
 namespace photohull::cli {
 namespace {
 
-struct Arguments {
+struct ChartArguments {
   std::string plan, out;
   chart::ChartOptions options;
   bool dry_run = false;
@@ -65,7 +65,7 @@ void check_arguments(const chart::ChartJob& job) {
   }
 }
 
-void run(const Arguments& a) {
+void run_chart(const ChartArguments& a) {
   chart::ChartOptions options = a.options;
   if (options.draw_only && (options.force || options.retry || a.dry_run))
     throw UsageError("--draw-only makes no runs: leave out --force, --retry and --dry-run");
@@ -89,7 +89,7 @@ void run(const Arguments& a) {
 }  // namespace
 
 void add_chart(CLI::App& app) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<ChartArguments>();
   CLI::App* c = add_command(app, "chart");
   c->add_option("plan", a->plan, "JSON file: scenes, methods, resolutions (docs/guide/charts.md)")
       ->required();
@@ -109,7 +109,7 @@ void add_chart(CLI::App& app) {
       "  photohull chart bench/plans/dev.json --out out/dev --dry-run\n"
       "  photohull chart bench/plans/dev.json --out out/dev\n"
       "  photohull chart bench/plans/dev.json --out out/dev --draw-only");
-  c->callback([a] { run(*a); });
+  c->callback([a] { run_chart(*a); });
 }
 
 }  // namespace photohull::cli

@@ -15,7 +15,7 @@
 namespace photohull::cli {
 namespace {
 
-struct Arguments {
+struct StressArguments {
   std::string plan, out;
   chart::StressOptions options;
   bool dry_run = false;
@@ -69,7 +69,7 @@ void check_arguments(const chart::StressJob& job) {
   }
 }
 
-void run(const Arguments& a) {
+void run_stress(const StressArguments& a) {
   chart::StressOptions options = a.options;
   if (options.draw_only && (options.force || options.retry || a.dry_run))
     throw UsageError("--draw-only makes no runs: leave out --force, --retry and --dry-run");
@@ -93,7 +93,7 @@ void run(const Arguments& a) {
 }  // namespace
 
 void add_stress(CLI::App& app) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<StressArguments>();
   CLI::App* c = add_command(app, "stress");
   c->add_option("plan", a->plan,
                 "JSON file: scenes, degradations, settings (docs/measurements/stability.md)")
@@ -118,7 +118,7 @@ void add_stress(CLI::App& app) {
       "  photohull stress bench/plans/stress.json --out out/stress\n"
       "  photohull stress bench/plans/stress.json --out out/new --axes pose-error --before "
       "out/stress");
-  c->callback([a] { run(*a); });
+  c->callback([a] { run_stress(*a); });
 }
 
 }  // namespace photohull::cli

@@ -53,7 +53,7 @@ bool contains(const Triangles& sorted, const std::array<std::uint32_t, 3>& trian
 }
 
 /// What distances told so far; a triangle that comes again needs no new ones.
-struct Measured {
+struct MeasuredBlock {
   Triangles near_block;  ///< sorted; all of their points are near the block
   /// For each triangle of the block, those of the result that its points are near.
   std::vector<Triangles> near_result;
@@ -64,7 +64,7 @@ struct Measured {
 class Inspection {
  public:
   Inspection(const TriMesh& block, const ClosestPoint& surface, const BlockLimits& limits,
-             const Triangles& triangles, std::size_t loose, Measured& measured)
+             const Triangles& triangles, std::size_t loose, MeasuredBlock& measured)
       : block_(block),
         surface_(surface),
         limits_(limits),
@@ -182,7 +182,7 @@ class Inspection {
   const ClosestPoint& surface_;
   const BlockLimits& limits_;
   std::size_t loose_;
-  Measured& measured_;
+  MeasuredBlock& measured_;
   TriMesh result_;
   Flags faults_;
   std::vector<glm::dvec3> normals_;
@@ -206,7 +206,7 @@ void mark_rings(const Triangles& triangles, int rings, Flags& vertices, Flags& m
 
 Triangles simplify_block(const TriMesh& block, const BlockLimits& limits, Flags& kept) {
   const ClosestPoint surface(block);
-  Measured measured{{}, std::vector<Triangles>(block.triangles.size())};
+  MeasuredBlock measured{{}, std::vector<Triangles>(block.triangles.size())};
   double aim = kQuadricShare * limits.error;
   for (int round = 0; round < kMostRounds; ++round) {
     if (round >= kRoundsAtFullAim) aim *= kLowerAim;

@@ -13,7 +13,7 @@ namespace {
 using glm::dvec3;
 
 constexpr double kFar = 10;  // along a ray
-constexpr int kImageEdge = 112;
+constexpr int kPhotoEdge = 112;
 
 /// Length of a ray to the bowl; kFar where it misses.
 double sight(const dvec3& eye, const dvec3& ray) {
@@ -37,9 +37,9 @@ PreparedView photograph(const Camera& camera) {
   PreparedView view;
   view.camera = camera;
   view.image = ray_cast(camera, colour, 2);
-  view.mask = {kImageEdge, kImageEdge, {}};
-  for (int y = 0; y < kImageEdge; ++y)
-    for (int x = 0; x < kImageEdge; ++x) {
+  view.mask = {kPhotoEdge, kPhotoEdge, {}};
+  for (int y = 0; y < kPhotoEdge; ++y)
+    for (int x = 0; x < kPhotoEdge; ++x) {
       int hits = 0;
       for (int i = 0; i < 9; ++i) {
         const glm::dvec2 pixel(x + (i % 3 - 1) / 3.0, y + (i / 3 - 1) / 3.0);
@@ -58,7 +58,7 @@ BowlScene make_scene() {
       const dvec3 direction(std::cos(e) * std::cos(turn), std::cos(e) * std::sin(turn),
                             std::sin(e));
       scene.views.push_back(
-          photograph(look_at(4.0 * direction, dvec3(0), 230, kImageEdge, kImageEdge)));
+          photograph(look_at(4.0 * direction, dvec3(0), 230, kPhotoEdge, kPhotoEdge)));
     }
   };
   add_ring(12, 60);
