@@ -1,6 +1,7 @@
 #include "carving/kernels/hull_device.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "carving/mask_pyramid.h"
 #include "core/error.h"
@@ -36,9 +37,9 @@ HullDevice::HullDevice(gpu::Context& context, const HullSpace& space,
   for (const Camera& camera : silhouettes.cameras())
     gpu_views.push_back(
         projtex::to_gpu_view(projtex::to_grid(camera, space.grid), silhouettes.size()));
-  view_buffer_ = Buffer::of(gpu_views);
-  classify_ = gpu::Program::compute(context, "carving_classify_nodes.comp.glsl");
-  distance_ = gpu::Program::compute(context, "carving_hull_distance.comp.glsl");
+  device_views_.emplace(std::move(gpu_views));
+  classify_ = gpu::Program::compute(context, "carving_classify_nodes.comp.glsl", device_views_->defines());
+  distance_ = gpu::Program::compute(context, "carving_hull_distance.comp.glsl", device_views_->defines());
 }
 
 gpu::Buffer HullDevice::bind_parameters(std::size_t items) const {
@@ -55,7 +56,7 @@ gpu::Buffer HullDevice::bind_parameters(std::size_t items) const {
   p.pyramid = {MaskPyramid::kBlock, silhouettes_.levels(), kSplitMargin, SparseVolume::kBand};
   Buffer parameters(sizeof p, &p);
   parameters.bind_uniform(shaders::kHullParametersBinding);
-  view_buffer_.bind_storage(shaders::kViewsBinding);
+  device_views_->bind();
   return parameters;
 }
 
