@@ -235,10 +235,12 @@ A GPU is used where the system has a driver for it (EGL, OpenGL 4.5); else Mesa'
 PHOTOHULL_EGL=bundled takes the renderer of this folder in any case, PHOTOHULL_EGL=system never.
 TEXT
 
+threads=1 # one block packs best
+[ "$level" -ge 6 ] || threads=0
 say "Packing $(du -sm "$top" | cut -f 1) MiB with xz -$level"
 when=$(git log -1 --format=%ct 2>/dev/null || echo 0)
 tar --create --sort=name --mtime="@${SOURCE_DATE_EPOCH:-$when}" --owner=0 --group=0 --numeric-owner \
   --format=gnu -C "$scratch" "$name" |
-  xz --threads=1 --x86 --lzma2="preset=$level$([ "$level" -lt 9 ] || echo ,dict=128MiB)" >"$out.part"
+  xz --threads="$threads" --x86 --lzma2="preset=$level$([ "$level" -lt 9 ] || echo ,dict=128MiB)" >"$out.part"
 mv "$out.part" "$out"
 say "Ready: $out, $(($(stat -c %s "$out") / 1000000)) MB"
