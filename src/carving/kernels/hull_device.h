@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -65,7 +64,7 @@ class HullDevice {
   const SilhouetteTextures& silhouettes_;
   HullOptions options_;
   int views_, words_;  ///< views, and words of a set of them
-  std::optional<projtex::DeviceViews> device_views_;
+  projtex::DeviceViews device_views_;
   std::shared_ptr<const gpu::Program> classify_, distance_;
 };
 

@@ -6,8 +6,8 @@
 #include "core/error.h"
 #include "gpu/buffer.h"
 #include "gpu/program.h"
-#include "refine/kernels/device_choice.h"
 #include "projtex/device_views.h"
+#include "refine/kernels/device_choice.h"
 #include "render/kernels/device_points.h"
 
 namespace photohull::refine {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "gpu/context.h"
+#include "projtex/device_views.h"
 #include "projtex/gpu_views.h"
 #include "projtex/image_set.h"
-#include "projtex/device_views.h"
 #include "refine/match.h"
 #include "refine/view_choice.h"
 

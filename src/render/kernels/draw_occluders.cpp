@@ -34,8 +34,9 @@ void splat(gpu::Context& context, const visibility::DepthMaps& maps,
 }  // namespace
 
 visibility::DepthMaps draw_occluders(gpu::Context& context, const GridSpec& grid,
-                                     std::span<const Camera> cameras, const projtex::DeviceViews& views,
-                                     const TriMesh& mesh, std::span<const SurfacePoint> vertices) {
+                                     std::span<const Camera> cameras,
+                                     const projtex::DeviceViews& views, const TriMesh& mesh,
+                                     std::span<const SurfacePoint> vertices) {
   visibility::DepthMaps maps = occluder_maps(cameras, grid);
   views.bind();
   maps.bind();

@@ -17,7 +17,8 @@ namespace photohull::render {
 /// that are close enough to leave no gaps. `views` are the cameras'. Throws
 /// Error when the device cannot hold the data.
 visibility::DepthMaps draw_occluders(gpu::Context& context, const GridSpec& grid,
-                                     std::span<const Camera> cameras, const projtex::DeviceViews& views,
-                                     const TriMesh& mesh, std::span<const SurfacePoint> vertices);
+                                     std::span<const Camera> cameras,
+                                     const projtex::DeviceViews& views, const TriMesh& mesh,
+                                     std::span<const SurfacePoint> vertices);
 
 }  // namespace photohull::render
