@@ -20,7 +20,7 @@ namespace {
 /// keeps its triangles and costs a round; when many do, the collapses aim lower.
 constexpr double kQuadricShare = 0.7;
 constexpr double kSliver = 0.01;  // height of triangles to mend, in their longest side
-constexpr int kMostRounds = 24, kRoundsAtFullAim = 4;
+constexpr int kMostRounds = 24, kRoundsAtFullAim = 8;
 constexpr double kLowerAim = 0.85;
 
 using Flags = std::vector<std::uint8_t>;
