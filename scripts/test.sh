@@ -174,7 +174,7 @@ else
   scripts/setup.sh
 fi
 install_missing ffmpeg colmap # films, and cameras without a sheet: 14 MB
-[ $with_all = no ] || install_missing clang clang-format clang-tidy shellcheck dpkg-dev file lintian patchelf xz-utils man-db groff python3 chromium opencv-doc parallel openmpi-bin slurm-wlm munge
+[ $with_all = no ] || install_missing clang clang-format clang-tidy shellcheck dpkg-dev file lintian patchelf xz-utils man-db groff python3 chromium python3-pil opencv-doc parallel openmpi-bin slurm-wlm munge
 [ $with_all = no ] || command -v npm >/dev/null || install_missing npm
 started=$SECONDS
 
