@@ -5,7 +5,7 @@
 
 What was found clean is kept by its contents in the user's cache folder (below XDG_CACHE_HOME or ~/.cache), as ccache keeps
 objects: by those of all files that the compiler read for it, the command, the checks and clang-tidy's version. Prints what is
-wrong, and how many files were looked at; fails where anything is wrong."""
+wrong, or, where nothing is, how many files were looked at; fails where anything is wrong."""
 import concurrent.futures
 import functools
 import hashlib
@@ -42,6 +42,12 @@ def read_files(build: Path) -> dict[str, list[Path]]:
     return files
 
 
+def is_newest(made: Path, files: list[Path]) -> bool:
+    """Whether the object was made from these files as they are now; else ninja's list may be an older one."""
+    paths = [made, *files]
+    return bool(files) and all(path.exists() for path in paths) and all(path.stat().st_mtime_ns <= made.stat().st_mtime_ns for path in files)
+
+
 def key_of(unit: dict, files: list[Path], checks: bytes) -> str:
     key = hashlib.sha256(checks + unit["command"].replace(str(ROOT), "").encode())
     for path in files:
@@ -60,13 +66,14 @@ def main() -> None:
 
     def look_at(unit: dict) -> tuple[bool, str]:
         """Whether it was looked at anew, and what is wrong."""
-        files = read.get(re.search(r" -o (\S+)", unit["command"])[1])
-        clean = cache / key_of(unit, files, checks) if files else None
+        made = re.search(r" -o (\S+)", unit["command"])[1]
+        files = read.get(made, [])
+        clean = cache / key_of(unit, files, checks) if is_newest(build / made, files) else None
         if clean and clean.exists():
             return False, ""
         done = subprocess.run(["clang-tidy", "-p", str(build), "--quiet", unit["file"]], capture_output=True, text=True, check=False)
         if done.returncode:
-            return True, done.stdout + done.stderr
+            return True, done.stdout + done.stderr or f"{unit['file']}: clang-tidy ended with {done.returncode}"
         if clean:
             clean.touch()
         return True, ""

@@ -14,6 +14,7 @@ import time
 from pathlib import Path
 from typing import Any
 
+PATIENCE = 60  # seconds
 READY = "return document.getElementById('viewport').getAttribute('aria-busy') === 'false'"
 MESSAGE = "return document.getElementById('message').textContent"
 
@@ -23,24 +24,41 @@ class Firefox:
 
     def __init__(self, profile: Path) -> None:
         (profile / "user.js").write_text('user_pref("marionette.port", 0);\n')
+        self.rest, self.last = b"", 0
         self.process = subprocess.Popen(["firefox-esr", "--no-remote", "--marionette", "--profile", str(profile)],
                                         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        port = profile / "MarionetteActivePort"
+        try:
+            self.connect(profile / "MarionetteActivePort")
+        except Exception:
+            self.end()
+            raise
+
+    def connect(self, port: Path) -> None:
+        deadline = time.monotonic() + PATIENCE
         while not (port.exists() and port.read_text().strip()):
-            if self.process.poll() is not None:
-                raise RuntimeError("firefox-esr ended; without a screen it needs xvfb-run")
+            if self.process.poll() is not None or time.monotonic() > deadline:
+                raise RuntimeError("firefox-esr did not start; without a screen it needs xvfb-run")
             time.sleep(0.1)
-        self.socket = socket.create_connection(("127.0.0.1", int(port.read_text())))
-        self.rest, self.last = b"", 0
+        self.socket = socket.create_connection(("127.0.0.1", int(port.read_text())), PATIENCE)
         self.receive()
         self.call("WebDriver:NewSession")
 
+    def end(self) -> None:
+        self.process.kill()
+        self.process.wait()
+
+    def more(self) -> bytes:
+        part = self.socket.recv(1 << 16)
+        if not part:
+            raise RuntimeError("firefox-esr ended")
+        return part
+
     def receive(self) -> Any:
         while b":" not in self.rest:
-            self.rest += self.socket.recv(1 << 16)
+            self.rest += self.more()
         length, self.rest = self.rest.split(b":", 1)
         while len(self.rest) < int(length):
-            self.rest += self.socket.recv(1 << 16)
+            self.rest += self.more()
         message, self.rest = self.rest[:int(length)], self.rest[int(length):]
         return json.loads(message)
 
@@ -67,6 +85,8 @@ def main() -> None:
             start = time.monotonic()
             firefox.call("WebDriver:Navigate", url=Path(sys.argv[1]).absolute().as_uri())
             while not firefox.run(READY):
+                if time.monotonic() - start > PATIENCE:
+                    sys.exit(f"the page is not ready after {PATIENCE} s")
                 time.sleep(0.05)
             seconds, message = time.monotonic() - start, firefox.run(MESSAGE)
             if message:
@@ -77,8 +97,7 @@ def main() -> None:
             time.sleep(1)
             Path(sys.argv[2]).write_bytes(base64.b64decode(firefox.call("WebDriver:TakeScreenshot", full=False)["value"]))
         finally:
-            firefox.process.kill()
-            firefox.process.wait()
+            firefox.end()
 
 
 if __name__ == "__main__":
