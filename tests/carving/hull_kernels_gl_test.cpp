@@ -73,7 +73,8 @@ class HullKernelTest : public ::testing::Test {
 
   Difference compare(const HullScene& scene) {
     const std::vector<ivec4> bricks = nodes_of(scene.grid, 0);
-    const std::vector<float> found = HullKernels(context_, scene).distances(bricks);
+    const std::vector<float> found = HullKernels(context_, scene).distances(bricks),
+                             by_storage = HullKernels(context_, scene, true).distances(bricks);
     const std::vector<Silhouette> silhouettes = scene.silhouettes();
     Difference out;
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -83,7 +84,8 @@ class HullKernelTest : public ::testing::Test {
       if (!decidable(scene, voxel)) continue;
       const double expected = reference::hull_distance(
           {scene.grid, scene.box}, {scene.cameras, silhouettes}, scene.options, voxel);
-      out.worst = std::max(out.worst, std::abs(found[i] - expected));
+      out.worst =
+          std::max({out.worst, std::abs(found[i] - expected), std::abs(by_storage[i] - expected)});
       out.within_band += std::abs(expected) < SparseVolume::kBand;
     }
     return out;
@@ -280,10 +282,11 @@ class ClassifyTest : public HullKernelTest {
   Agreement classify(const HullScene& scene) {
     Agreement out;
     const std::vector<Silhouette> silhouettes = scene.silhouettes();
-    HullKernels kernels(context_, scene);
+    HullKernels kernels(context_, scene), by_storage(context_, scene, true);
     for (const int level : {0, 1, 2}) {
       const std::vector<ivec4> nodes = nodes_of(scene.grid, level);
       const std::vector<std::uint32_t> found = kernels.classify(nodes, kMargin);
+      EXPECT_EQ(by_storage.classify(nodes, kMargin), found);
       for (std::size_t i = 0; i < nodes.size(); ++i) {
         const int edge = kBrickEdge << level;
         const NodeClass expected =
