@@ -95,7 +95,7 @@ function firstAtPlace(positions) {
   return first;
 }
 
-/** The picture of a text of base64; nothing for an empty one. An Image with such an address takes the browser longer. */
+/** The picture of a text of base64; nothing for an empty one. A browser takes longer to decode an Image whose address is a data: URL. */
 async function unpackImage(id) {
   const text = byId(id).textContent;
   return text ? createImageBitmap(new Blob([bytesOf(text)], { type: "image/jpeg" })) : null;
