@@ -47,7 +47,7 @@ if [ $build = yes ]; then
   install_missing patchelf xz-utils binutils gcc
   scripts/setup.sh --target installed
 fi
-for tool in patchelf xz objdump nm cc ldd; do
+for tool in patchelf xz objdump nm cc ldd python3; do
   command -v $tool >/dev/null || die "$tool is missing; run scripts/bundle.sh without --no-build."
 done
 [ -x build/release/photohull-lab ] || die "build/release has no photohull-lab; run scripts/setup.sh first."
@@ -191,7 +191,7 @@ for file in "$top"/libexec/* "$lib"/*.so* "$lib"/*/*.so* "$lib"/mesa/dri/*.so; d
   other=$(grep -vxE 'arc4random(_buf)?' <<<"$symbols" || true)
   [ -z "$other" ] || die "$(basename "$file") needs a C library newer than glibc 2.35 for $other; the archive would not run on Ubuntu 22.04."
   patchelf --add-needed libphotohull_random.so "$file"
-  scripts/replace_version.py GLIBC_2.36 GLIBC_2.4 "$file"
+  scripts/replace_version.py GLIBC_2.36 "$file"
 done
 patchelf --set-rpath "\$ORIGIN/.." "$lib"/gcc/*.so*
 

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Lets libraries ask for an older version of symbols, where a system's library lacks the newer one.
 
-    scripts/replace_version.py NEWER OLDER LIBRARY...
+    scripts/replace_version.py VERSION LIBRARY...
 
-In the libraries' lists of needed versions (.gnu.version_r, 64-bit ELF) the entry of NEWER becomes a second one of OLDER, which
-the same list must name. The symbols of NEWER must then be found in another library, one without versions. Fails where a library
-does not name both."""
+In the libraries' lists of needed versions (.gnu.version_r, 64-bit ELF) the entry of VERSION, such as GLIBC_2.36, becomes a second
+one of the oldest that the same list names. Its symbols must then be found in another library, one without versions. Fails where
+a library does not name the version, or no other."""
+import re
 import struct
 import sys
 from pathlib import Path
@@ -33,27 +34,31 @@ def entries_of_lists(elf: bytearray) -> list[dict[bytes, int]]:
     return lists
 
 
-def replace(newer: bytes, older: bytes, elf: bytearray) -> bool:
-    """Whether a list names both."""
+def age_of(version: bytes) -> list[int]:
+    return [int(number) for number in re.findall(rb"\d+", version)]
+
+
+def replace(version: bytes, elf: bytearray) -> bool:
+    """Whether a list names it and another."""
     for entries in entries_of_lists(elf):
-        if newer in entries and older in entries:
-            (digest, _, _, name, _), at = struct.unpack_from("<IHHII", elf, entries[older]), entries[newer]
-            struct.pack_into("<I", elf, at, digest)
-            struct.pack_into("<I", elf, at + 8, name)
+        others = [other for other in entries if other != version and age_of(other)]
+        if version in entries and others:
+            digest, _, _, name, _ = struct.unpack_from("<IHHII", elf, entries[min(others, key=age_of)])
+            struct.pack_into("<I", elf, entries[version], digest)
+            struct.pack_into("<I", elf, entries[version] + 8, name)
             return True
     return False
 
 
 def main() -> None:
-    if len(sys.argv) < 4:
+    if len(sys.argv) < 3:
         sys.exit(__doc__)
-    newer, older = (version.encode() for version in sys.argv[1:3])
-    for path in map(Path, sys.argv[3:]):
+    for path in map(Path, sys.argv[2:]):
         elf = bytearray(path.read_bytes())
         if elf[:6] != b"\x7fELF\x02\x01":
             sys.exit(f"{path}: no 64-bit ELF file with the low byte first")
-        if not replace(newer, older, elf):
-            sys.exit(f"{path}: does not need both {newer.decode()} and {older.decode()} of a library")
+        if not replace(sys.argv[1].encode(), elf):
+            sys.exit(f"{path}: does not need {sys.argv[1]} and another version of a library")
         path.write_bytes(elf)
 
 
