@@ -148,19 +148,25 @@ def refine(scene, *, progress=None, **options):
 def pose(photographs, *, out, board=None, make_masks=True, masks=None, ordered=False, progress=None, **options):
     """Finds the cameras of photographs, and writes a scene into the folder ``out``, which :func:`load` reads.
 
-    photographs  a path or a list of paths: files, or folders of them
+    photographs  a path or a list of paths: files, or folders of them; or a list of arrays
+                 (height, width) or (height, width, channels) of 1, 3 (RGB) or 4 (RGBA) channels,
+                 uint8 (sRGB), which are written to arrays/0000.png and so on in ``out``. Arrays say
+                 nothing of their lenses: those of one size count as one lens, and ``focal`` says
+                 where its search begins
     out          folder for the scene: transforms.json, pose.json, coverage.png and masks/
     board        the JSON file that ``photohull board`` wrote beside the sheet it printed, on which
                  the object stands: the world is the sheet's then, z = 0 is the paper, z points up,
                  lengths are millimetres unless ``unit`` says otherwise. Without it the program
                  COLMAP finds the cameras; scale and directions of the world are any
     make_masks   with a board: make masks of what differs from the sheet's picture
-    masks        without a board: a folder of masks, NAME.png or NAME.EXT.png
+    masks        without a board: a folder of masks, NAME.png or NAME.EXT.png; for arrays a list
+                 of (height, width) arrays as :func:`scene` takes them, or of None
     ordered      without a board: each photograph was taken near the one before
 
-    ``options`` are those of ``photohull.options("pose")``. Returns a dictionary, the content of
-    pose.json: cameras, photographs (with ``posed``, and the ``reason`` where one has no pose),
-    ``rms`` in pixels and warnings. What it warns of goes to ``progress``, too.
+    ``options`` are those of ``photohull.options("pose")``: ``focal``, in pixels or, as in "28mm", for
+    35 mm film, and what is known of the sheet. Returns a dictionary, the content of pose.json:
+    cameras, photographs in their order (with ``posed``, ``R`` and ``t``, or the ``reason`` why one
+    has no pose), with a board ``rms`` in pixels, and warnings, which go to ``progress``, too.
 
     >>> photohull.pose([], out="never")
     Traceback (most recent call last):

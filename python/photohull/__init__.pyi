@@ -119,12 +119,12 @@ def space_carving(scene: Scene | _Path, *, progress: _Progress | None = None, **
 def refine(scene: Scene | _Path, *, progress: _Progress | None = None, **options: Unpack[ReconstructOptions]) -> Result: ...
 def masks(scene: Scene | _Path, *, progress: _Progress | None = None, **options: Unpack[MaskOptions]) -> list[ViewMask]: ...
 def pose(
-    photographs: _Path | Sequence[_Path],
+    photographs: _Path | Sequence[_Path] | Sequence[ArrayLike] | NDArray[np.uint8],
     *,
     out: _Path,
     board: _Path | None = None,
     make_masks: bool = True,
-    masks: _Path | None = None,
+    masks: _Path | Sequence[ArrayLike | None] | None = None,
     ordered: bool = False,
     progress: _Progress | None = None,
     **options: Unpack[PoseOptions],
