@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <set>
 
 #include "core/error.h"
-#include "core/option_word.h"
 #include "io/board_images.h"
 #include "option_flags.h"
-#include "pose_colmap.h"
-#include "pose_json.h"
-#include "pose_sheet.h"
+#include "pose/pose_colmap.h"
+#include "pose/pose_sheet.h"
+#include "print_pose.h"
 #include "terminal_progress.h"
 
 namespace photohull::cli {
@@ -26,23 +24,6 @@ void print_warnings(const std::vector<std::string>& warnings) {
 }
 
 }  // namespace
-
-std::vector<std::string> names_of(const std::vector<fs::path>& images) {
-  std::multiset<std::string> files;
-  for (const fs::path& image : images) files.insert(image.filename().string());
-  std::vector<std::string> names;
-  for (const fs::path& image : images) {
-    const std::string file = image.filename().string();
-    names.push_back(files.count(file) == 1 ? file : image.string());
-  }
-  return names;
-}
-
-std::string unused_focal(const PoseJob& job, bool taken) {
-  if (!job.focal.given() || taken) return "";
-  return concat(option_word("focal"),
-                " is not used: the photographs state their focal lengths, or cannot be read");
-}
 
 void PoseArguments::add_to(CLI::App& command, const std::vector<std::string>& but) {
   command.add_option("PHOTOS", images, "photographs of the object, or folders of them");
@@ -94,13 +75,13 @@ void name_unreadable(const std::vector<std::string>& given) {
 std::string pose_photos(const PoseJob& job, bool tell) {
   TerminalProgress progress(job.board.empty() ? kColmapWeight : 1);
   if (job.board.empty()) {
-    const ColmapPose pose = pose_with_colmap(job, progress);
+    const pose::ColmapPose pose = pose::pose_with_colmap(job, progress);
     progress.finish();
     print_warnings(pose.warnings);
     if (tell) print_colmap_pose(job, pose);
     return pose.report;
   }
-  const SheetPose pose = pose_on_sheet(job, progress);
+  const pose::SheetPose pose = pose::pose_on_sheet(job, progress);
   progress.finish();
   print_warnings(pose.result.warnings);
   if (tell) {

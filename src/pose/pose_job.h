@@ -8,7 +8,7 @@
 #include "calib/pose_photographs.h"
 #include "io/photo_lens.h"
 
-namespace photohull::cli {
+namespace photohull::pose {
 
 struct PoseJob {
   std::vector<std::filesystem::path> images;
@@ -25,8 +25,11 @@ struct PoseJob {
 /// Names that tell the photographs apart: file names, or paths where two would be alike.
 std::vector<std::string> names_of(const std::vector<std::filesystem::path>& images);
 
+/// Makes the folder for the scene, or one within it. Throws Error where that fails.
+void make_scene_folder(const std::filesystem::path& folder);
+
 /// A warning where a focal length is given and none of the photographs' lenses takes it; else
 /// empty.
 std::string unused_focal(const PoseJob& job, bool taken);
 
-}  // namespace photohull::cli
+}  // namespace photohull::pose
