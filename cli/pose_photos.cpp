@@ -10,6 +10,7 @@
 #include "option_flags.h"
 #include "pose_colmap.h"
 #include "pose_json.h"
+#include "pose_passes.h"
 #include "pose_sheet.h"
 #include "terminal_progress.h"
 
@@ -21,11 +22,11 @@ namespace fs = std::filesystem;
 // io::run_colmap's stages, a look at the photographs, and the lenses.
 constexpr double kColmapWeight = 1.2;
 
+}  // namespace
+
 void print_warnings(const std::vector<std::string>& warnings) {
   for (const std::string& text : warnings) std::fprintf(stderr, "warning: %s\n", text.c_str());
 }
-
-}  // namespace
 
 std::vector<std::string> names_of(const std::vector<fs::path>& images) {
   std::multiset<std::string> files;
@@ -36,6 +37,23 @@ std::vector<std::string> names_of(const std::vector<fs::path>& images) {
     names.push_back(files.count(file) == 1 ? file : image.string());
   }
   return names;
+}
+
+std::vector<PassOfPhotos> passes_of(const std::vector<std::string>& folders) {
+  std::multiset<std::string> all;
+  const auto own_name = [](const std::string& folder) {
+    fs::path path = fs::absolute(folder).lexically_normal();
+    if (path.filename().empty()) path = path.parent_path();
+    return path.filename().string();
+  };
+  for (const std::string& folder : folders) all.insert(own_name(folder));
+  std::vector<PassOfPhotos> passes;
+  for (const std::string& folder : folders) {
+    const std::string name = own_name(folder);
+    passes.push_back({all.count(name) == 1 ? name : concat(name, "_", passes.size() + 1),
+                      io::list_images({folder})});
+  }
+  return passes;
 }
 
 std::string unused_focal(const PoseJob& job, bool taken) {
@@ -52,6 +70,9 @@ void PoseArguments::add_to(CLI::App& command, const std::vector<std::string>& bu
   add_flags_of(command, focal);
   of_the_board = {command.add_option(
       "--board", board, "JSON file that photohull board wrote beside the sheet it printed")};
+  of_the_board.push_back(command.add_option(
+      "--pass", passes,
+      "in the place of PHOTOS: two folders or more, one for each side that the object lay on"));
   Described described;
   describe(described, sheet);
   std::vector<std::string> described_names;
@@ -66,6 +87,17 @@ void PoseArguments::add_to(CLI::App& command, const std::vector<std::string>& bu
 }
 
 void PoseArguments::check() const {
+  if (!passes.empty()) {
+    if (!images.empty() || !video.empty())
+      throw UsageError(
+          "--pass takes the place of PHOTOS and --video: give all photographs in folders behind "
+          "--pass, one for each side that the object lay on");
+    if (passes.size() < 2)
+      throw UsageError(
+          "--pass: give two folders or more, one for each side that the object lay on; photographs "
+          "of one side go without --pass");
+    return;
+  }
   if (images.empty() && video.empty())
     throw UsageError("PHOTOS is missing: give photographs, folders of them, or --video FILE");
   if (!images.empty() && !video.empty())
@@ -92,6 +124,7 @@ void name_unreadable(const std::vector<std::string>& given) {
 }
 
 std::string pose_photos(const PoseJob& job, bool tell) {
+  if (!job.passes.empty()) return pose_passes(job, tell);
   TerminalProgress progress(job.board.empty() ? kColmapWeight : 1);
   if (job.board.empty()) {
     const ColmapPose pose = pose_with_colmap(job, progress);
