@@ -96,6 +96,13 @@ void PoseArguments::check() const {
       throw UsageError(
           "--pass: give two folders or more, one for each side that the object lay on; photographs "
           "of one side go without --pass");
+    std::error_code ignored;
+    for (std::size_t i = 0; i < passes.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        if (fs::equivalent(passes[i], passes[j], ignored))
+          throw UsageError(concat("--pass: ", passes[i],
+                                  " is given twice: give a folder of its own for each side that "
+                                  "the object lay on"));
     return;
   }
   if (images.empty() && video.empty())

@@ -205,9 +205,10 @@ class Joiner {
     const JoinedPass& out = result_[i];
     if (!(out.seam_sigma <= kLargestDeviation))
       return concat(to_others(i), ": ", out.tracks,
-                    " features are seen from both, but they lie so close together or along a line "
-                    "that the surface's place is open by ",
-                    out.seam_sigma, " pixels; ", kOverlap);
+                    " features are seen from both, but they lie so close together, or along a "
+                    "line, that the surface's place is open",
+                    std::isfinite(out.seam_sigma) ? concat(" by ", out.seam_sigma, " pixels") : "",
+                    "; ", kOverlap);
     if (out.outside > kLargestOutside)
       return concat(to_others(i), ": some of the surface is the same, but ",
                     int(std::lround(100 * out.outside)),

@@ -160,7 +160,8 @@ class MotionFit {
     ceres::Solve(options, &problem, &summary);
     if (!summary.IsSolutionUsable()) return false;
     apply(unknowns, start);
-    return !last || find_covariance(problem, unknowns);
+    if (last) result_.determined = find_covariance(problem, unknowns);
+    return true;
   }
 
   void apply(const std::array<double, 6>& unknowns, const RigidMotion& start) {
@@ -223,6 +224,7 @@ std::optional<RefinedMotion> refine_motion(const MotionProblem& problem) {
 
 double deviation_at(const RefinedMotion& refined, const glm::dvec3& middle,
                     const glm::dvec3& point) {
+  if (!refined.determined) return std::numeric_limits<double>::infinity();
   const glm::dvec3 x = point - middle;
   // The point's place by the six unknowns: turn x x, and the shift.
   const double by[3][6] = {

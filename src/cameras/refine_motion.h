@@ -25,6 +25,7 @@ struct RefinedMotion {
   /// Of the turn about the object's middle (radians, about the axes of the world that stays) and of
   /// the middle's place (world units).
   std::array<std::array<double, 6>, 6> covariance{};
+  bool determined = false;         ///< the tracks leave no motion open; else no covariance
   std::vector<glm::dvec3> points;  ///< of the tracks that fit, in the world that stays
   /// Pixels, median: how far from where photographs of one world show a point it lies by those of
   /// the other world alone. NaN where no track is seen twice in one of them.
@@ -34,11 +35,11 @@ struct RefinedMotion {
 /// Motion and points that minimise the distances between the points' projections and the tracks'
 /// pixels, by Ceres with a robust loss [Triggs99]; tracks that do not fit are left out and the rest
 /// fitted again. Covariance by the pixels' spread about the fit; cameras count as exact. Nothing
-/// where fewer than eight tracks seen in both worlds fit, or they leave the motion open.
+/// where fewer than eight tracks seen in both worlds fit.
 std::optional<RefinedMotion> refine_motion(const MotionProblem& problem);
 
 /// Standard deviation of where the motion puts a point of the world that stays, world units: the
-/// root of the mean over three axes.
+/// root of the mean over three axes. Infinite where it is not determined.
 double deviation_at(const RefinedMotion& refined, const glm::dvec3& middle,
                     const glm::dvec3& point);
 

@@ -1,0 +1,113 @@
+// pose of an object that was laid on another side in between, from the command line.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "child_process.h"
+#include "core/atomic_file.h"
+#include "io/load_scene.h"
+#include "sphere_scene.h"
+#include "support/scratch_folder.h"
+
+namespace photohull::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::HasSubstr;
+
+const std::string kBoard = PHOTOHULL_SOURCE "/datasets/boards/board_a4.json";
+
+class PosePasses : public testing::Test {
+ protected:
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  json read(const std::string& name) const { return json::parse(read_bytes(folder_ / name)); }
+
+  /// An arch on the sheet, photographed into a folder; `spec` in the place of some fields.
+  void photograph(const std::string& name, const json& spec) const {
+    json all = json::parse(R"({"geometry": {"shape": "arch"},
+      "material": {"base": [0.6, 0.33, 0.16], "contrast": 0.7},
+      "background": {"colour": [0.1, 0.12, 0.14]}, "sheet": {"fill": 0.5},
+      "image": {"width": 640, "height": 480, "samples": 2, "maps": false, "masks": false},
+      "cameras": {"rings": [{"count": 12, "elevation": 38}], "distance": 3.2, "fill": 0.6},
+      "degradations": {"photon_noise": 0.01, "blur": 0.4}, "truth_samples": 500})");
+    all.merge_patch(spec);
+    all["sheet"]["board"] = kBoard;
+    write_atomically(folder_ / (name + ".json"), all.dump());
+    const Finished made = run_photohull({"synthesize", path(name + ".json"), "--out", path(name)});
+    ASSERT_EQ(made.code, 0) << made.err;
+  }
+  Finished pose(const std::string& second) const {
+    return run_photohull({"pose", "--pass", path("upright/images"), path(second + "/images"),
+                          "--board", kBoard, "--out", path("scene")});
+  }
+  glm::dvec3 vector(const json& j) const { return {j[0], j[1], j[2]}; }
+
+  ScratchFolder folder_;
+};
+
+TEST_F(PosePasses, AreJoinedByTheObjectsTexture) {
+  photograph("upright", json::object());
+  photograph("lying", {{"sheet", {{"turn", {90, 0, 0}}}}, {"degradations", {{"seed", 3}}}});
+  const Finished posed = pose("lying");
+  ASSERT_EQ(posed.code, 0) << posed.err;
+  EXPECT_THAT(posed.out, HasSubstr("the object      lay turned by "));
+  EXPECT_THAT(posed.out, HasSubstr("seam "));
+  const json report = read("scene/pose.json");
+  ASSERT_EQ(report["passes"].size(), 2u);
+  EXPECT_FALSE(report["passes"][0].contains("motion"));
+  const json motion = report["passes"][1]["motion"];
+  EXPECT_LT(motion["seam"], 0.5);
+  EXPECT_LT(motion["seam_sigma"], 0.1);
+  EXPECT_LT(motion["outside"], 0.02);
+  // The exact motion: back by 90 degrees about x.
+  EXPECT_NEAR(motion["angle"], 90, 0.1);
+  EXPECT_LT(glm::distance(vector(motion["axis"]), glm::dvec3(-1, 0, 0)), 2e-3);
+  const json first = read("upright/spec.json")["result"]["sheet"],
+             second = read("lying/spec.json")["result"]["sheet"];
+  const glm::dvec3 middle = vector(second["turned_about"]);
+  const double unit = first["unit"];
+  EXPECT_NEAR(unit, second["unit"], 1e-12 * unit);
+  // The middle, which stays where it is in the world, from one sheet to the other.
+  const glm::dvec3 before = (middle - vector(first["origin"])) / unit,
+                   after = (middle - vector(second["origin"])) / unit;
+  const glm::dvec3 turned(after.x, after.z, -after.y);
+  EXPECT_LT(glm::distance(turned + vector(motion["translation"]), before), 0.1);
+  // One scene of all, with masks of both.
+  const Scene scene = io::load_scene(path("scene"), {});
+  ASSERT_EQ(scene.views.size(), 24u);
+  std::set<std::string> names;
+  for (const SourceView& view : scene.views) {
+    names.insert(view.name);
+    EXPECT_TRUE(fs::exists(view.mask)) << view.name;
+  }
+  EXPECT_EQ(names.size(), 24u);
+  ASSERT_TRUE(scene.box);
+  EXPECT_LT(scene.box->min.z, 0);
+  const glm::dvec3 eye = scene.views[12].camera.center();
+  const io::LoadSceneOptions plain;
+  const Scene exact = io::load_scene(path("lying"), plain);
+  const glm::dvec3 there = (exact.views[0].camera.center() - middle) / unit;
+  EXPECT_LT(glm::distance(eye, before + glm::dvec3(there.x, there.z, -there.y)), 1.5);
+}
+
+TEST_F(PosePasses, OfAnotherObjectAreRefused) {
+  photograph("upright", json::object());
+  photograph("other", {{"sheet", {{"turn", {90, 0, 0}}}}, {"seed", 5}});
+  const Finished posed = pose("other");
+  EXPECT_EQ(posed.code, 1);
+  EXPECT_THAT(posed.err, HasSubstr("images_2 does not fit images_1: of "));
+  EXPECT_THAT(posed.err, HasSubstr("It is another object"));
+  EXPECT_FALSE(fs::exists(folder_ / "scene/transforms.json"));
+  // No texture: nothing tells how it lies.
+  photograph("plain", {{"sheet", {{"turn", {90, 0, 0}}}}, {"material", {{"contrast", 0}}}});
+  const Finished plain = pose("plain");
+  EXPECT_EQ(plain.code, 1);
+  EXPECT_THAT(plain.err, HasSubstr("the object has too little texture"));
+}
+
+}  // namespace
+}  // namespace photohull::test
