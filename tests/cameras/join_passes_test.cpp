@@ -157,10 +157,10 @@ TEST(MatchPoints, WhatLooksAlikeInTwoPlacesIsNoMatch) {
   Randomly random;
   const auto from = places(40, random);
   const DescribedPoints a = described(40, 1, from, 0.01, random);
-  DescribedPoints twice = described(40, 1, moved(from), 0.01, random);
+  DescribedPoints twice = described(40, 1, moved(from), 0, random);
   RigidMotion away;
   away.translation = {500, 0, 0};
-  twice.add(described(40, 1, moved(from), 0.01, random), away);
+  twice.add(described(40, 1, moved(from), 0, random), away);
   EXPECT_TRUE(match_points(a, twice).empty());
   // The same point twice does not compete with itself.
   DescribedPoints same = described(40, 1, moved(from), 0.01, random);
