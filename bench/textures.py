@@ -1,12 +1,13 @@
 """Textured models beside photographs that they were not made from, and what fewer triangles and smaller files cost.
 
-    python3 -m bench textures [--scenes bunny,templeRing] [--held-out-only] [--out FILE] [--keep FOLDER]
+    python3 -m bench textures [--scenes bunny,templeRing] [--studies held-out,truth] [--out FILE] [--keep FOLDER]
 
 Three views are held out, and cameras are taken as given, for those of the held-out views could not be refined. The test
 program compare_with_photographs draws the meshes from their cameras: with the texture of mesh.glb, with the vertices'
 colours of mesh.ply, and with those of a run with twice the resolution, where a quarter of the voxels' area has a vertex
-each. Then, of the first two scenes: models within 0.5 voxels beside one within 0.02, which has nearly all triangles,
-and files with JPEG and compressed geometry beside the plain file. Prints the tables of docs/measurements/textures.md."""
+each (`held-out`). Then models within 0.5 voxels beside one within 0.02, which has nearly all triangles (`simplified`); files
+with JPEG and compressed geometry beside the plain file (`files`); and, of scenes with a gt.ply, how many texels differ from
+the surface's true colour (`truth`). Prints the tables of docs/measurements/textures.md."""
 import argparse
 import re
 import subprocess
@@ -20,17 +21,27 @@ from bench.runner import Photohull, ProgramError, add_datasets, add_keep, add_pr
 HELD_OUT = {"fountain": "3,6,8"}  # of 11 views, which all look from one side; others: the next line
 HELD_OUT_OF_RINGS = "0,8,16"
 OPTIONS = {"fountain": ("--masks", "none")}
+RESOLUTION = {"fountain": 416}  # half its default
+STUDIES = ("held-out", "simplified", "files", "truth")
 ERROR, NEARLY_NONE = 0.5, 0.02  # voxels
 FILES = {"png": (), "jpeg": ("--texture-format", "jpeg"), "png, compressed": ("--compress",),
          "jpeg, compressed": ("--texture-format", "jpeg", "--compress")}
 LAST_LINE = re.compile(r"PSNR ([-\d.]+) dB, ZNCC ([-\d.]+), contrast ([-\d.]+)")
+TRUTH_LINE = re.compile(r": (\d+) texels, of (\d+) more .*; ([\d.]+) % differ by more than [\d.]+, PSNR ([-\d.]+) dB")
+
+
+def listed_studies(text: str) -> list[str]:
+    studies = listed(text)
+    if unknown := [name for name in studies if name not in STUDIES]:
+        raise argparse.ArgumentTypeError(f"{unknown[0]} is none of {', '.join(STUDIES)}")
+    return studies
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_program(parser)
     add_datasets(parser)
-    parser.add_argument("--scenes", type=listed, default="bunny,templeRing,dinoRing,glazed,fountain")
-    parser.add_argument("--held-out-only", action="store_true", help="leave triangles and files out")
+    parser.add_argument("--scenes", type=listed, default="bunny,templeRing")
+    parser.add_argument("--studies", type=listed_studies, default=",".join(STUDIES[:3]), help=", ".join(STUDIES))
     parser.add_argument("--out", type=Path, help="file for the figures")
     add_keep(parser)
 
@@ -40,8 +51,10 @@ class Study:
         self.photohull, self.scene, self.folder = photohull, scene, folder
         self.views = HELD_OUT.get(scene.name, HELD_OUT_OF_RINGS)
 
-    def reconstruct(self, name: str, *options: object) -> tuple[Path, dict]:
+    def reconstruct(self, name: str, *options: object, resolution: int | None = None) -> tuple[Path, dict]:
         """The folder of a run, and its report."""
+        if resolution or self.scene.name in RESOLUTION:
+            options = (*options, "--resolution", resolution or RESOLUTION[self.scene.name])
         print(self.scene.name, name, file=sys.stderr, flush=True)
         out = self.folder / f"{self.scene.name}-{name.replace(', ', '-')}"
         report = self.photohull.reconstruct(self.scene, out, "--hold-out", self.views, "--refine-cameras", "off",
@@ -50,19 +63,29 @@ class Study:
 
     def likeness(self, mesh: Path, reference: Path | None = None) -> dict:
         """How much pictures of a mesh look like photographs, or like pictures of the reference."""
-        program = self.photohull.program.parent / "tests/texture/compare_with_photographs"
         like = ("--like", reference) if reference else ()
-        words = [str(word) for word in (program, self.scene, self.views, *like, mesh)]
+        said = self.judged("compare_with_photographs", self.scene, self.views, *like, mesh)
+        psnr, zncc, contrast = map(float, LAST_LINE.findall(said)[-1])
+        return {"psnr": psnr, "zncc": zncc, "contrast": contrast}
+
+    def judged(self, judge: str, *arguments: object) -> str:
+        """What a test program prints."""
+        words = [str(word) for word in (self.photohull.program.parent / "tests/texture" / judge, *arguments)]
         done = subprocess.run(words, capture_output=True, text=True, check=False)
         if done.returncode:
             raise ProgramError(words, done.returncode, done.stderr.strip())
-        psnr, zncc, contrast = map(float, LAST_LINE.findall(done.stdout)[-1])
-        return {"psnr": psnr, "zncc": zncc, "contrast": contrast}
+        return done.stdout
+
+    def truth(self) -> Iterator[dict]:
+        out, report = self.reconstruct("textured", "--export", "glb")
+        known, unknown, apart, psnr = TRUTH_LINE.findall(self.judged("compare_with_truth", self.scene, out / "mesh.glb"))[-1]
+        yield {"kind": "truth", "scene": self.scene.name, "known": int(known), "unknown": int(unknown), "apart": float(apart) / 100,
+               "psnr": float(psnr), "filled": report["texture"]["filled_share"]}
 
     def held_out(self) -> Iterator[dict]:
         out, report = self.reconstruct("textured", "--export", "glb")
         resolution = max(report["grid"]["voxels"])
-        fine, _ = self.reconstruct("twice", "--resolution", 2 * resolution)
+        fine, _ = self.reconstruct("twice", resolution=2 * resolution)
         stages = {stage["name"]: stage["cpu_seconds"] for stage in report["stages"]}
         yield {"kind": "held-out", "scene": self.scene.name, "held_out": self.views, "resolution": resolution,
                "texture": self.likeness(out / "mesh.glb"), "vertices": self.likeness(out / "mesh.ply"),
@@ -94,11 +117,11 @@ class Study:
 def run(options: argparse.Namespace) -> None:
     photohull, rows = Photohull(options.program), []
     with work_folder(options.keep) as folder:
-        for number, scene in enumerate(options.scenes):
+        for scene in options.scenes:
             study = Study(photohull, options.datasets / scene, folder)
-            rows += study.held_out()
-            if number < 2 and not options.held_out_only:
-                rows += [*study.simplified(), *study.files()]
+            for name in options.studies:
+                rows += getattr(study, name.replace("-", "_"))()
     for table in page.data("textures").values():
-        print(page.table_of(table, rows), end="\n\n")
+        if any(row["kind"] in table["where"]["kind"] for row in rows):
+            print(page.table_of(table, rows), end="\n\n")
     keep_json(options.out, rows)

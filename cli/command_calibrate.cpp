@@ -68,7 +68,8 @@ void write_result(const CalibrateArguments& a, const std::string& text) {
 
 /// The lens of --lens-from for these pictures, of the rig's camera named so; nothing where the lens
 /// is to be found, or where no picture shows the board, which is said elsewhere.
-std::optional<KnownLens> known_lens(const CalibrateArguments& a, const std::vector<BoardView>& views,
+std::optional<KnownLens> known_lens(const CalibrateArguments& a,
+                                    const std::vector<BoardView>& views,
                                     const std::string& camera = {}) {
   if (!a.lens_from) return std::nullopt;
   for (const BoardView& view : views) {

@@ -178,8 +178,8 @@ void check(const EvaluateArguments& a) {
                             ", which photohull starts where it is asked for"));
 }
 
-eval::Evaluation evaluate_by_truth(const EvaluateArguments& a, const TriMesh& given, Outputs& outputs,
-                                   Progress& progress) {
+eval::Evaluation evaluate_by_truth(const EvaluateArguments& a, const TriMesh& given,
+                                   Outputs& outputs, Progress& progress) {
   const eval::Truth truth = eval::read_truth(*a.truth);
   if (given.triangles.empty() && outputs.image)
     throw Error(concat(a.mesh, " has no faces; --error-image needs some"));

@@ -105,7 +105,8 @@ void write_masks(const fs::path& folder, const PreparedViews& prepared) {
   }
 }
 
-void print(const MasksArguments& a, const PreparedViews& prepared, const std::vector<Overlap>& known) {
+void print(const MasksArguments& a, const PreparedViews& prepared,
+           const std::vector<Overlap>& known) {
   std::printf("%-24s %-18s %10s %8s%s\n", "view", "mask from", "confidence", "object",
               known.empty() ? "" : "      IoU   missed");
   for (std::size_t i = 0; i < prepared.views.size(); ++i) {

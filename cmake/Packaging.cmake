@@ -34,6 +34,7 @@ foreach(target photohull photohull-lab photohull_python)
   endif()
 endforeach()
 
+set(CPACK_THREADS 0)  # all
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME photohull)
 set(CPACK_PACKAGE_VENDOR "The photohull authors")

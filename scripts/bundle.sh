@@ -4,7 +4,7 @@
 # Packs photohull into one archive that runs from any folder, without root and without any package:
 # programs, manual, the demo's photographs, all libraries but the C library's, and Mesa's software
 # renderer, which is taken where the system has no Mesa of its own. Drivers of a GPU are the
-# system's. The archive runs where the C library is as new as that of this machine.
+# system's. The archive runs where the C library is glibc 2.35 or newer (Ubuntu 22.04, Debian 12).
 #
 #   --out FILE   default: photohull-VERSION-linux-MACHINE.tar.xz
 #   --level N    of xz, 0 to 9 (default); 0 is for tests
@@ -47,7 +47,7 @@ if [ $build = yes ]; then
   install_missing patchelf xz-utils binutils gcc
   scripts/setup.sh --target installed
 fi
-for tool in patchelf xz objdump nm cc ldd; do
+for tool in patchelf xz objdump nm cc ldd python3; do
   command -v $tool >/dev/null || die "$tool is missing; run scripts/bundle.sh without --no-build."
 done
 [ -x build/release/photohull-lab ] || die "build/release has no photohull-lab; run scripts/setup.sh first."
@@ -160,6 +160,41 @@ patchelf --set-rpath "\$ORIGIN:\$ORIGIN/mesa" "$lib/libEGL.so.1"
 patchelf --set-rpath "\$ORIGIN:\$ORIGIN/.." "$lib"/mesa/*.so*
 patchelf --set-rpath "\$ORIGIN/..:\$ORIGIN/../.." "$lib"/mesa/dri/*.so
 
+# Debian 12's libraries take random numbers from functions that glibc has from 2.36 on. Where it is older,
+# they find them in a library of ours.
+newer_symbols() { objdump -T "$1" | sed -n 's/.*(\{0,1\}GLIBC_2\.\(3[6-9]\|[4-9][0-9]\))\{0,1\} *//p'; }
+cat >"$scratch/random.c" <<'TEXT'
+#include <errno.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <sys/random.h>
+
+void arc4random_buf(void* to, size_t bytes) {
+  for (unsigned char* at = to; bytes > 0;) {
+    const ssize_t got = getrandom(at, bytes, 0);
+    if (got < 0 && errno != EINTR) abort();
+    if (got > 0) at += got, bytes -= (size_t)got;
+  }
+}
+
+uint32_t arc4random(void) {
+  uint32_t number;
+  arc4random_buf(&number, sizeof number);
+  return number;
+}
+TEXT
+cc -shared -fPIC -s -O1 -o "$lib/libphotohull_random.so" -Wl,-soname,libphotohull_random.so -Wl,--build-id=none "$scratch/random.c"
+for file in "$top"/libexec/* "$lib"/*.so* "$lib"/*/*.so* "$lib"/mesa/dri/*.so; do
+  symbols=$(newer_symbols "$file")
+  [ -n "$symbols" ] || continue
+  other=$(grep -vxE 'arc4random(_buf)?' <<<"$symbols" || true)
+  [ -z "$other" ] || die "$(basename "$file") needs a C library newer than glibc 2.35 for $other; the archive would not run on Ubuntu 22.04."
+  patchelf --add-needed libphotohull_random.so "$file"
+  scripts/replace_version.py GLIBC_2.36 "$file"
+done
+patchelf --set-rpath "\$ORIGIN/.." "$lib"/gcc/*.so*
+
 # The number at the end of libstdc++.so.6.0.30 tells which of two is newer.
 ours=$(basename "$(readlink -f "$(find_library libstdc++.so.6)")")
 cat >"$top/bin/photohull" <<TEXT
@@ -235,10 +270,12 @@ A GPU is used where the system has a driver for it (EGL, OpenGL 4.5); else Mesa'
 PHOTOHULL_EGL=bundled takes the renderer of this folder in any case, PHOTOHULL_EGL=system never.
 TEXT
 
+threads=1 # one block packs best
+[ "$level" -ge 6 ] || threads=0
 say "Packing $(du -sm "$top" | cut -f 1) MiB with xz -$level"
 when=$(git log -1 --format=%ct 2>/dev/null || echo 0)
 tar --create --sort=name --mtime="@${SOURCE_DATE_EPOCH:-$when}" --owner=0 --group=0 --numeric-owner \
   --format=gnu -C "$scratch" "$name" |
-  xz --threads=1 --x86 --lzma2="preset=$level$([ "$level" -lt 9 ] || echo ,dict=128MiB)" >"$out.part"
+  xz --threads="$threads" --x86 --lzma2="preset=$level$([ "$level" -lt 9 ] || echo ,dict=128MiB)" >"$out.part"
 mv "$out.part" "$out"
 say "Ready: $out, $(($(stat -c %s "$out") / 1000000)) MB"

@@ -75,14 +75,6 @@ formatting() {
   [ -z "$files" ]
 }
 
-# With the sanitized build's commands, which compile a few files at a time: what headers hold is looked at less often.
-static_analysis() {
-  sed -n 's/^ *"file": "\(.*\)",\{0,1\}$/\1/p' build/asan/compile_commands.json |
-    grep -E "^$root/(build/asan/)?(src|cli)/" |
-    xargs -P "$jobs" -n 1 clang-tidy -p build/asan --quiet 2>&1 |
-    { grep -vE '^[0-9]+ warnings? generated\.$' || true; }
-}
-
 shell_scripts() { shellcheck -x scripts/*.sh .ci/run; }
 
 # Prints the [Key] and [Key; Key] that comments cite, once each. A citation may span lines.
@@ -174,7 +166,7 @@ else
   scripts/setup.sh
 fi
 install_missing ffmpeg colmap # films, and cameras without a sheet: 14 MB
-[ $with_all = no ] || install_missing clang clang-format clang-tidy shellcheck dpkg-dev file lintian patchelf xz-utils man-db groff python3 chromium opencv-doc parallel openmpi-bin slurm-wlm munge
+[ $with_all = no ] || install_missing clang clang-format clang-tidy shellcheck dpkg-dev file lintian patchelf xz-utils man-db groff python3 chromium python3-pil opencv-doc parallel openmpi-bin slurm-wlm munge
 [ $with_all = no ] || command -v npm >/dev/null || install_missing npm
 started=$SECONDS
 
@@ -196,7 +188,7 @@ if [ $with_all = yes ]; then
   check_aloud "build with sanitizers" scripts/setup.sh --preset asan --target unit_tests
   check_aloud "unit tests with sanitizers" run_tests asan --label-regex unit
   check_aloud "fuzzers" scripts/fuzz.sh --seconds 2
-  check "clang-tidy" static_analysis
+  check "clang-tidy" scripts/check_tidy.py build/asan "$jobs"
 fi
 
 say "" "Took $((SECONDS - started)) s after the build."

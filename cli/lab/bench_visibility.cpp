@@ -142,7 +142,8 @@ void draw_errors(const Study& study, const std::filesystem::path& folder) {
 }
 
 /// A row a scene, a column a technique.
-void draw_crops(gpu::Context& context, const VisibilityArguments& a, const std::filesystem::path& folder) {
+void draw_crops(gpu::Context& context, const VisibilityArguments& a,
+                const std::filesystem::path& folder) {
   const std::vector<std::string> techniques{"plain", "second-depth", "dual-depth", "variance",
                                             "pcf5",  "sub-pixel",    "coverage",   "lists"};
   constexpr int kGap = 4;

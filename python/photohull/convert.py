@@ -28,7 +28,8 @@ def to_open3d(mesh):
     """An ``open3d.geometry.TriangleMesh`` with the same vertices, normals and, as sRGB, colours. Needs Open3D."""
     import open3d
 
-    out = open3d.geometry.TriangleMesh(open3d.utility.Vector3dVector(mesh.vertices),
+    # Open3D takes only writable arrays; it copies them.
+    out = open3d.geometry.TriangleMesh(open3d.utility.Vector3dVector(mesh.vertices.astype(np.float64)),
                                        open3d.utility.Vector3iVector(mesh.faces.astype(np.int32)))
     if mesh.normals is not None:
         out.vertex_normals = open3d.utility.Vector3dVector(mesh.normals.astype(np.float64))

@@ -19,8 +19,8 @@ namespace {
 /// A quadric's error is a mean over planes: most points stay within twice of it. What does not
 /// keeps its triangles and costs a round; when many do, the collapses aim lower.
 constexpr double kQuadricShare = 0.7;
-constexpr double kSliver = 0.01;  // height of triangles to mend, in their longest side
-constexpr int kMostRounds = 24, kRoundsAtFullAim = 4;
+constexpr double kSliver = 0.02;  // height of triangles to mend, in their longest side
+constexpr int kMostRounds = 24, kRoundsAtFullAim = 10;
 constexpr double kLowerAim = 0.85;
 
 using Flags = std::vector<std::uint8_t>;

@@ -25,7 +25,7 @@ namespace {
 constexpr double kBlock = 64;  // mean edges, the side of a block
 /// Shares of the error that the passes may spend; distances add up at most. The rest is left for
 /// what lies between the points at which they are measured.
-constexpr double kPassShare[] = {0.7, 0.25};
+constexpr double kPassShare[] = {0.2, 0.75};
 constexpr double kFitShare = 0.95;  // what fits the result is measured against the mesh itself
 
 using Flags = std::vector<std::uint8_t>;

@@ -17,6 +17,8 @@
 namespace photohull::refine {
 namespace {
 
+constexpr double kMostBelowPixels = 0.1;
+
 /// One step. What is large goes as soon as it is not needed any more.
 class MatchingStep {
  public:
@@ -68,8 +70,13 @@ class MatchingStep {
   }
 
   /// What settled below the images' sampling says nothing anew; what is flat was found with
-  /// certainty before.
-  Proof proof() const {
+  /// certainty before. Nothing at all where more than kMostBelowPixels of the surfels settle there
+  /// now: scores hardly change from one offset to the next, and no peak of them proves anything.
+  Proof proof(const SettledBricks& now) const {
+    const std::vector<Settled> after = now.at(grid_, positions_);
+    if (double(std::count(after.begin(), after.end(), Settled::kPixels)) >
+        kMostBelowPixels * double(after.size()))
+      return {};
     Proof out;
     for (std::size_t i = 0; i < peaks_.size(); ++i) {
       if (before_[i] == Settled::kPixels || before_[i] == Settled::kUnseen) continue;
@@ -150,7 +157,7 @@ StepFindings matching_step(const RefineJob& job, const SettledBricks& settled,
   MatchingStep step(job, settled, place, volume);
   out.settled = step.match();
   step.look_through();
-  if (place.last && job.is_bounded()) out.proof = step.proof();
+  if (place.last && job.is_bounded()) out.proof = step.proof(out.settled);
   step.move(step.displacements(hull, volume, counts), volume, counts);
   return out;
 }

@@ -73,9 +73,9 @@ class Guesses {
 };
 
 /// The rays of a lattice, and what its places found.
-class Lattice {
+class RayLattice {
  public:
-  Lattice(std::span<const Ray> rays, int width, int height)
+  RayLattice(std::span<const Ray> rays, int width, int height)
       : rays_(rays), width_(width), height_(height), at_(std::size_t(width) * height, -1) {
     for (std::size_t i = 0; i < rays.size(); ++i)
       at_[std::size_t(rays[i].y) * width + rays[i].x] = int(i);
@@ -232,7 +232,7 @@ void RaySearch::sweep(std::span<const Ray> rays, const ViewPartners& partners,
 
 void RaySearch::spread(std::span<const Ray> rays, int width, int height,
                        const ViewPartners& partners, std::span<Finding> findings) const {
-  const Lattice lattice(rays, width, height);
+  const RayLattice lattice(rays, width, height);
   std::vector<std::size_t> unknown;
   for (std::size_t i = 0; i < rays.size(); ++i)
     if (!findings[i].known) unknown.push_back(i);

@@ -65,6 +65,7 @@ Canvas::Canvas(const TriMesh& mesh, const Planes& planes, const Chart& chart,
   own_.resize(count, glm::vec4(0));
   all_.resize(count, glm::vec4(0));
   fine_.resize(count, glm::vec4(0));
+  agreeing_.resize(count, glm::vec2(0));
   std::uint32_t last = kNoFace;
   FaceInImage seen;
   for (int y = 0; y < chart.size.y; ++y)
@@ -164,13 +165,14 @@ void Canvas::add(const CanvasView& view, double noise) {
       const auto& s = *reinterpret_cast<const WindowSums*>(sums.ptr<float>(y, x));
       const glm::vec3 shift = (s.own - s.other) / s.count;
       float agree = 0;
-      if (s.count >= kLeastInWindow && other[i].w >= kLeastWeight) {
+      if (s.count >= kLeastInWindow) {
         const float rest =
             std::max(0.0f, s.squared / s.count - glm::dot(shift, shift));  // all channels
         const float allowed = 0.5f * kShift * kShift * s.gradient / s.count + noise_part;
         agree = allowed > 0 ? std::clamp(2 - rest / allowed, 0.0f, 1.0f) : rest == 0;
+        agreeing_[i] += other[i].w * glm::vec2(agree, 1);
       }
-      const float w = std::max(agree * other[i].w, least[i]);
+      const float w = std::max(other[i].w >= kLeastWeight ? agree * other[i].w : 0, least[i]);
       if (w > 0) fine_[i] += glm::vec4(w * (glm::vec3(other[i]) + shift), w);
     }
 }
@@ -218,8 +220,11 @@ void Canvas::finish(const FillColour& fill, double detail,
       if (face(x, y) == kNoFace) continue;
       const std::size_t i = index(x, y);
       CanvasColour colour{mean[i], all_[i].w == 0 && own_[i].w == 0};
-      if (own_[i].w > 0)
-        colour.root = glm::mix(mean[i], bands[i].coarse + float(detail) * bands[i].fine, own_[i].w);
+      if (own_[i].w > 0) {
+        const float agree = agreeing_[i].y > 0 ? agreeing_[i].x / agreeing_[i].y : 1;
+        colour.root =
+            glm::mix(mean[i], bands[i].coarse + float(detail) * bands[i].fine, agree * own_[i].w);
+      }
       f({x, y}, colour);
     }
 }

@@ -29,7 +29,7 @@ struct CanvasColour {
 };
 
 /// Bytes that a canvas takes for each texel of its chart, while a photograph is added.
-inline constexpr std::int64_t kCanvasBytes = 148;
+inline constexpr std::int64_t kCanvasBytes = 156;
 
 /// Of one chart. What it refers to must outlive it.
 class Canvas {
@@ -45,8 +45,9 @@ class Canvas {
   /// `noise`: standard deviation of photographs' pixels, roots of linear light.
   void add(const CanvasView& view, double noise);
   /// The coarse part of the mean of all photographs and the fine part of those that agree, times
-  /// `detail`; the fill's colour where none is clear. Calls `f(texel, colour)` for each that shows
-  /// the surface.
+  /// `detail`; the mean itself, as far as the others do not agree with the own one, for then no
+  /// single one is right; the fill's colour where none is clear. Calls `f(texel, colour)` for each
+  /// that shows the surface.
   void finish(const FillColour& fill, double detail,
               const std::function<void(const glm::ivec2&, const CanvasColour&)>& f) const;
 
@@ -75,6 +76,8 @@ class Canvas {
   std::vector<glm::vec4> own_;     // roots of linear light, and how much of it is clear
   std::vector<glm::vec4> all_;     // sum of all photographs' colours, and of their weights
   std::vector<glm::vec4> fine_;    // the same of those that agree, on the level of the own one
+  std::vector<glm::vec2>
+      agreeing_;  // weights of the others that agree with the own one, and of all others
 };
 
 }  // namespace photohull::texture

@@ -22,8 +22,11 @@ double HullScene::distance(const glm::ivec3& voxel) const {
   return reference::hull_distance({grid, box}, {cameras, silhouettes()}, options, voxel);
 }
 
-HullKernels::HullKernels(gpu::Context& context, const HullScene& scene)
-    : context_(context), scene_(scene), words_(int(scene.cameras.size() + 31) / 32) {
+HullKernels::HullKernels(gpu::Context& context, const HullScene& scene, bool in_storage)
+    : context_(context),
+      scene_(scene),
+      words_(int(scene.cameras.size() + 31) / 32),
+      in_storage_(in_storage) {
   const int count = int(scene.cameras.size());
   const glm::ivec2 size = projtex::array_size(scene.cameras);
   const MaskPyramid shape = build_mask_pyramid({}, size.x, size.y);
@@ -37,7 +40,8 @@ HullKernels::HullKernels(gpu::Context& context, const HullScene& scene)
                   : scene.outlines[i]);
     views.push_back(projtex::to_gpu_view(projtex::to_grid(scene.cameras[i], scene.grid), size));
   }
-  views_ = gpu::Buffer::of(views);
+  stored_views_ = gpu::Buffer::of(views);
+  device_views_.emplace(views);
   const auto to_voxels = [&](const glm::dvec3& p) {
     return glm::vec4(glm::vec3((p - scene.grid.origin) / scene.grid.voxel_size), 0);
   };
@@ -65,6 +69,13 @@ void HullKernels::upload(int view, const test::Outline& outline) {
   distance_maps_.upload(view, distance_maps_.width(), distance_maps_.height(), padded.data());
 }
 
+void HullKernels::bind_views() const {
+  if (in_storage_)
+    stored_views_.bind_storage(shaders::kViewsBinding);
+  else
+    device_views_->bind();
+}
+
 std::vector<std::uint32_t> HullKernels::classify(const std::vector<glm::ivec4>& nodes,
                                                  float margin) {
   parameters_.counts.x = int(nodes.size());
@@ -73,13 +84,13 @@ std::vector<std::uint32_t> HullKernels::classify(const std::vector<glm::ivec4>& 
   const gpu::Buffer node_buffer = gpu::Buffer::of(nodes), classes(nodes.size() * 4);
   const gpu::Buffer relevant(nodes.size() * 4 * words_);
   parameters.bind_uniform(shaders::kHullParametersBinding);
-  views_.bind_storage(shaders::kViewsBinding);
+  bind_views();
   node_buffer.bind_storage(shaders::kHullNodesBinding);
   classes.bind_storage(shaders::kHullClassesBinding);
   relevant.bind_storage(shaders::kHullRelevantBinding);
   pyramid_.bind(shaders::kMaskPyramidUnit);
   distance_maps_.bind(shaders::kNodeSilhouettesUnit);
-  gpu::Program::compute(context_, "carving_classify_nodes.comp.glsl")
+  gpu::Program::compute(context_, "carving_classify_nodes.comp.glsl", defines())
       ->dispatch(context_, "carving_classify_nodes", gpu::group_count(nodes.size(), 64));
   std::vector<std::uint32_t> kinds = classes.download<std::uint32_t>(nodes.size());
   for (std::uint32_t& kind : kinds) kind &= shaders::kNodeKindMask;
@@ -100,12 +111,12 @@ std::vector<float> HullKernels::distances(const std::vector<glm::ivec4>& bricks)
   const gpu::Buffer brick_buffer = gpu::Buffer::of(unsure), list_buffer = gpu::Buffer::of(lists);
   const gpu::Buffer out(count * kBrickVoxels * 4);
   parameters.bind_uniform(shaders::kHullParametersBinding);
-  views_.bind_storage(shaders::kViewsBinding);
+  bind_views();
   brick_buffer.bind_storage(shaders::kHullBricksBinding);
   out.bind_storage(shaders::kHullDistancesBinding);
   list_buffer.bind_storage(shaders::kHullViewListsBinding);
   distance_maps_.bind(shaders::kBrickSilhouettesUnit);
-  gpu::Program::compute(context_, "carving_hull_distance.comp.glsl")
+  gpu::Program::compute(context_, "carving_hull_distance.comp.glsl", defines())
       ->dispatch(context_, "carving_hull_distance", count);
   return out.download<float>(count * kBrickVoxels);
 }

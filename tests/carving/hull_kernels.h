@@ -1,12 +1,14 @@
 // The kernels of the visual hull on their own, bound as carve_silhouette binds them.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "carving/hull.h"
 #include "gpu/buffer.h"
 #include "gpu/program.h"
 #include "gpu/texture.h"
+#include "projtex/device_views.h"
 #include "shared/hull.h"
 #include "support/silhouettes.h"
 
@@ -31,7 +33,8 @@ struct HullScene {
 
 class HullKernels {
  public:
-  HullKernels(gpu::Context& context, const HullScene& scene);
+  /// With the views as HullDevice has them: uniforms where they are few; or in a storage block.
+  HullKernels(gpu::Context& context, const HullScene& scene, bool in_storage = false);
 
   /// shaders::kNode... of each node (xyz in its own edges; w: level).
   std::vector<std::uint32_t> classify(const std::vector<glm::ivec4>& nodes, float margin);
@@ -40,12 +43,16 @@ class HullKernels {
 
  private:
   void upload(int view, const test::Outline& outline);
+  const char* defines() const { return in_storage_ ? "" : device_views_->defines(); }
+  void bind_views() const;
 
   gpu::Context& context_;
   const HullScene& scene_;
   int words_;
   gpu::TextureArray pyramid_, distance_maps_;
-  gpu::Buffer views_;
+  bool in_storage_;
+  gpu::Buffer stored_views_;
+  std::optional<projtex::DeviceViews> device_views_;
   shaders::HullParameters parameters_{};
 };
 

@@ -73,17 +73,17 @@ class HullKernelTest : public ::testing::Test {
 
   Difference compare(const HullScene& scene) {
     const std::vector<ivec4> bricks = nodes_of(scene.grid, 0);
-    const std::vector<float> found = HullKernels(context_, scene).distances(bricks);
-    const std::vector<Silhouette> silhouettes = scene.silhouettes();
+    const auto found = HullKernels(context_, scene).distances(bricks);
+    const auto by_storage = HullKernels(context_, scene, true).distances(bricks);
     Difference out;
     for (std::size_t i = 0; i < found.size(); ++i) {
       const int offset = int(i % kBrickVoxels);
       const ivec3 voxel = ivec3(bricks[i / kBrickVoxels]) * kBrickEdge +
                           ivec3(offset >> 6, (offset >> 3) & 7, offset & 7);
       if (!decidable(scene, voxel)) continue;
-      const double expected = reference::hull_distance(
-          {scene.grid, scene.box}, {scene.cameras, silhouettes}, scene.options, voxel);
-      out.worst = std::max(out.worst, std::abs(found[i] - expected));
+      const double expected = scene.distance(voxel);
+      out.worst =
+          std::max({out.worst, std::abs(found[i] - expected), std::abs(by_storage[i] - expected)});
       out.within_band += std::abs(expected) < SparseVolume::kBand;
     }
     return out;
@@ -280,10 +280,11 @@ class ClassifyTest : public HullKernelTest {
   Agreement classify(const HullScene& scene) {
     Agreement out;
     const std::vector<Silhouette> silhouettes = scene.silhouettes();
-    HullKernels kernels(context_, scene);
+    HullKernels kernels(context_, scene), by_storage(context_, scene, true);
     for (const int level : {0, 1, 2}) {
       const std::vector<ivec4> nodes = nodes_of(scene.grid, level);
-      const std::vector<std::uint32_t> found = kernels.classify(nodes, kMargin);
+      const auto found = kernels.classify(nodes, kMargin);
+      EXPECT_EQ(by_storage.classify(nodes, kMargin), found);
       for (std::size_t i = 0; i < nodes.size(); ++i) {
         const int edge = kBrickEdge << level;
         const NodeClass expected =

@@ -3,74 +3,40 @@
 
 One page is of a result that nobody made, whose names want to be markup; the other of a small reconstruction of the scene. Of
 each: nothing in the console, nothing loaded from elsewhere, the model in the picture, and controls that change it. Ends with 77
-where there is no Chromium (CHROMIUM names another program than chromium)."""
+where there is no Chromium (CHROMIUM names another program than chromium) or no Pillow (Debian: python3-pil)."""
+import functools
+import io
 import os
 import shlex
 import shutil
-import struct
 import subprocess
 import sys
 import tempfile
 import unittest
-import zlib
 from pathlib import Path
 from typing import ClassVar
 
 from browser import Page
 
-NO_BROWSER = 77
+
+NOT_RUN = 77
+try:
+    from PIL import Image, ImageChops
+except ImportError:
+    print("not run: it needs Pillow (Debian: python3-pil)")
+    sys.exit(NOT_RUN)
+
 WINDOW = (480, 640)  # pixels
 SOON = 15  # seconds
 WRITE_SAMPLE, PHOTOHULL, SCENE = sys.argv[1:4] if len(sys.argv) == 4 else ("", "", "")
 CHROMIUM = shutil.which(os.environ.get("CHROMIUM", "chromium"))
 
 
-class Picture:
-    """Pixels of a PNG as Chromium writes it: 8 bits a channel, not interlaced."""
-
-    def __init__(self, png: bytes) -> None:
-        at, packed = 8, b""
-        while at < len(png):
-            size, kind = struct.unpack(">I4s", png[at:at + 8])
-            if kind == b"IHDR":
-                self.width, self.height, depth, colours = struct.unpack(">IIBB", png[at + 8:at + 18])
-                assert depth == 8 and colours in (2, 6), (depth, colours)
-            if kind == b"IDAT":
-                packed += png[at + 8:at + 8 + size]
-            at += size + 12
-        step = 3 if colours == 2 else 4
-        data, row = zlib.decompress(packed), bytearray(self.width * step)
-        self.pixels: list[bytes] = []
-        for y in range(self.height):
-            start = y * (len(row) + 1)
-            row = self.unfiltered(data[start], bytearray(data[start + 1:start + 1 + len(row)]), row, step)
-            self.pixels += [bytes(row[x:x + 3]) for x in range(0, len(row), step)]
-
-    @staticmethod
-    def unfiltered(kind: int, row: bytearray, above: bytearray, step: int) -> bytearray:
-        for i in range(len(row)):
-            left, corner = (row[i - step], above[i - step]) if i >= step else (0, 0)
-            up = above[i]
-            if kind == 1:
-                guess = left
-            elif kind == 2:
-                guess = up
-            elif kind == 3:
-                guess = (left + up) // 2
-            elif kind == 4:
-                p = left + up - corner
-                guess = min((left, up, corner), key=lambda value: abs(p - value))
-            else:
-                guess = 0
-            row[i] = (row[i] + guess) & 255
-        return row
-
-
-def difference(one: Picture, other: Picture) -> float:
+def difference(one: Image.Image, other: Image.Image) -> float:
     """Share of the pixels that differ clearly."""
-    assert (one.width, one.height) == (other.width, other.height)
-    far = sum(1 for a, b in zip(one.pixels, other.pixels) if max(abs(x - y) for x, y in zip(a, b)) > 24)
-    return far / len(one.pixels)
+    assert one.size == other.size
+    most = functools.reduce(ImageChops.lighter, ImageChops.difference(one, other).split())  # of the three channels
+    return sum(most.histogram()[25:]) / (one.width * one.height)
 
 
 class PageCase(unittest.TestCase):
@@ -101,9 +67,9 @@ class PageCase(unittest.TestCase):
     def tearDown(self) -> None:
         self.assertEqual(self.page.errors, [])
 
-    def picture(self) -> Picture:
+    def picture(self) -> Image.Image:
         self.page.settle()
-        return Picture(self.page.screenshot("#viewport"))
+        return Image.open(io.BytesIO(self.page.screenshot("#viewport"))).convert("RGB")
 
     def click(self, selector: str) -> None:
         self.page.evaluate(f"document.querySelector('{selector}').click()")
@@ -203,7 +169,7 @@ class SamplePage(PageCase):
             self.page.evaluate(f"document.getElementById('opacity').value = {opacity}")
             self.page.evaluate("document.getElementById('opacity').dispatchEvent(new Event('input'))")
             picture = self.picture()
-            middle = picture.pixels[picture.width * (picture.height // 2) + picture.width // 2]
+            middle = picture.getpixel((picture.width // 2, picture.height // 2))
             grey = max(abs(value - 190) for value in middle) < 6
             self.assertEqual(grey, covered, middle)
         self.click("#strip button:nth-child(6)")
@@ -235,7 +201,7 @@ class LargePage(PageCase):
     def test_shows_the_texture(self) -> None:
         """Its red and green squares, which no vertex has."""
         self.click("#cameras")
-        pixels = self.picture().pixels
+        pixels = list(self.picture().getdata())
         self.click("#cameras")
         for red, green in ((220, 40), (30, 200)):
             share = sum(1 for p in pixels if abs(p[0] - red) < 16 and abs(p[1] - green) < 16) / len(pixels)
@@ -316,5 +282,5 @@ class BatchPage(unittest.TestCase):
 if __name__ == "__main__":
     if not CHROMIUM:
         print("There is no chromium here; scripts/test.sh installs it.")
-        sys.exit(NO_BROWSER)
+        sys.exit(NOT_RUN)
     unittest.main(argv=sys.argv[:1], verbosity=2)

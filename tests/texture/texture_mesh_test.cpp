@@ -172,6 +172,24 @@ TEST(TextureMesh, DetailIsMultiplied) {
   EXPECT_LT(more, 2.25 * plain);
 }
 
+TEST(TextureMesh, WhatPhotographsDoNotAgreeOnIsTheirMean) {
+  const Sphere sphere = fine_noise();
+  const TriMesh mesh = mesh_of(sphere, 4);
+  const std::vector<Camera> around = cameras(16, 120);
+  std::vector<PreparedView> views;
+  for (const Camera& camera : around) {
+    const glm::dvec3 elsewhere(10.0 * double(views.size()));
+    const auto noise = [&](const glm::dvec3& p) {
+      return 0.6 * test::noise_colour(p + elsewhere, 0.04);
+    };
+    views.push_back(photograph({{{0, 0, 0}, 1, noise}}, camera, kMagenta));
+  }
+  const double agreeing = sharpness(textured(mesh, photographs({sphere}, around)).texture);
+  const double apart = sharpness(textured(mesh, views).texture);
+  RecordProperty("share", std::to_string(apart / agreeing));
+  EXPECT_LT(apart, 0.6 * agreeing);
+}
+
 TEST(TextureMesh, TheSameBytesFromAnyNumberOfThreads) {
   const Sphere sphere = noisy();
   const TriMesh mesh = mesh_of(sphere, 3);

@@ -18,6 +18,14 @@ static_assert(HullOptions::kMostMissing == shaders::kMostMissing);
 constexpr std::size_t kBatchBricks = 16384;  // 32 MiB of distances a dispatch
 constexpr std::size_t kBatchNodes = std::size_t(1) << 20;
 
+std::vector<shaders::GpuView> views_of(const HullSpace& space,
+                                       const SilhouetteTextures& silhouettes) {
+  std::vector<shaders::GpuView> out;
+  for (const Camera& camera : silhouettes.cameras())
+    out.push_back(projtex::to_gpu_view(projtex::to_grid(camera, space.grid), silhouettes.size()));
+  return out;
+}
+
 }  // namespace
 
 HullDevice::HullDevice(gpu::Context& context, const HullSpace& space,
@@ -27,18 +35,16 @@ HullDevice::HullDevice(gpu::Context& context, const HullSpace& space,
       silhouettes_(silhouettes),
       options_(options),
       views_(int(silhouettes.cameras().size())),
-      words_((views_ + 31) / 32) {
+      words_((views_ + 31) / 32),
+      device_views_(views_of(space, silhouettes)),
+      classify_(gpu::Program::compute(context, "carving_classify_nodes.comp.glsl",
+                                      device_views_.defines())),
+      distance_(gpu::Program::compute(context, "carving_hull_distance.comp.glsl",
+                                      device_views_.defines())) {
   PHOTOHULL_CHECK(options.views_may_miss >= 0 &&
                   options.views_may_miss <= HullOptions::kMostMissing);
   PHOTOHULL_CHECK(options.full_evidence >= 0);
   PHOTOHULL_CHECK(options.full_evidence == 0 || options.views_may_miss == 0);
-  std::vector<shaders::GpuView> gpu_views;
-  for (const Camera& camera : silhouettes.cameras())
-    gpu_views.push_back(
-        projtex::to_gpu_view(projtex::to_grid(camera, space.grid), silhouettes.size()));
-  view_buffer_ = Buffer::of(gpu_views);
-  classify_ = gpu::Program::compute(context, "carving_classify_nodes.comp.glsl");
-  distance_ = gpu::Program::compute(context, "carving_hull_distance.comp.glsl");
 }
 
 gpu::Buffer HullDevice::bind_parameters(std::size_t items) const {
@@ -55,7 +61,7 @@ gpu::Buffer HullDevice::bind_parameters(std::size_t items) const {
   p.pyramid = {MaskPyramid::kBlock, silhouettes_.levels(), kSplitMargin, SparseVolume::kBand};
   Buffer parameters(sizeof p, &p);
   parameters.bind_uniform(shaders::kHullParametersBinding);
-  view_buffer_.bind_storage(shaders::kViewsBinding);
+  device_views_.bind();
   return parameters;
 }
 

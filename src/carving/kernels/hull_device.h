@@ -13,6 +13,7 @@
 #include "gpu/buffer.h"
 #include "gpu/context.h"
 #include "gpu/program.h"
+#include "projtex/device_views.h"
 
 namespace photohull::carving {
 
@@ -63,7 +64,7 @@ class HullDevice {
   const SilhouetteTextures& silhouettes_;
   HullOptions options_;
   int views_, words_;  ///< views, and words of a set of them
-  gpu::Buffer view_buffer_;
+  projtex::DeviceViews device_views_;
   std::shared_ptr<const gpu::Program> classify_, distance_;
 };
 

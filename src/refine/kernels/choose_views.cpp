@@ -7,8 +7,8 @@
 #include "core/error.h"
 #include "gpu/buffer.h"
 #include "gpu/program.h"
+#include "projtex/device_views.h"
 #include "refine/kernels/device_choice.h"
-#include "refine/kernels/device_views.h"
 #include "render/kernels/device_points.h"
 #include "render/kernels/draw_occluders.h"
 #include "render/view_lists.h"
@@ -38,12 +38,11 @@ std::vector<ViewChoice> choose_views(gpu::Context& context, const GridSpec& grid
   const std::vector<render::SurfacePoint> surfels = render::to_voxels(grid, mesh);
   const std::vector<shaders::GpuView> gpu_views =
       projtex::to_gpu_views(projtex::to_grid(cameras, grid), photographs.images);
-  const Buffer views = Buffer::of(gpu_views);
+  const projtex::DeviceViews views(gpu_views);
   const visibility::DepthMaps maps =
       render::draw_occluders(context, grid, cameras, views, mesh, surfels);
-  const DeviceViews device_views(gpu_views);
   const auto program = gpu::Program::compute(context, "refine_choose_views.comp.glsl",
-                                             concat(maps.defines(), device_views.defines()));
+                                             concat(maps.defines(), views.defines()));
   const std::size_t batch =
       render::listed_batch(sizeof(shaders::MatchChoice), kBatch, cameras.size());
   std::vector<ViewChoice> out;
@@ -57,7 +56,7 @@ std::vector<ViewChoice> choose_views(gpu::Context& context, const GridSpec& grid
         Buffer::of(render::list_views(part, gpu_views, float(options.seen_cosine)));
     const Buffer choices(part.size() * sizeof(shaders::MatchChoice));
     uniforms.bind_uniform(shaders::kChooseParametersBinding);
-    device_views.bind();
+    views.bind();
     maps.bind();
     points.bind_storage(shaders::kChooseSurfelsBinding);
     choices.bind_storage(shaders::kChooseChoicesBinding);

@@ -6,8 +6,8 @@
 #include "core/error.h"
 #include "gpu/buffer.h"
 #include "gpu/program.h"
+#include "projtex/device_views.h"
 #include "refine/kernels/device_choice.h"
-#include "refine/kernels/device_views.h"
 #include "render/kernels/device_points.h"
 
 namespace photohull::refine {
@@ -85,7 +85,7 @@ class Fitter {
   gpu::Context& context_;
   const projtex::Photographs& photographs_;
   const FitOptions& options_;
-  DeviceViews views_;
+  projtex::DeviceViews views_;
 };
 
 }  // namespace

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "gpu/context.h"
+#include "projtex/device_views.h"
 #include "projtex/gpu_views.h"
 #include "projtex/image_set.h"
-#include "refine/kernels/device_views.h"
 #include "refine/match.h"
 #include "refine/view_choice.h"
 
@@ -65,7 +65,7 @@ class PatchMatcher {
   gpu::Context& context_;
   const projtex::ImageSet& images_;
   std::vector<shaders::GpuView> gpu_views_;
-  DeviceViews views_;
+  projtex::DeviceViews views_;
   PatchRules rules_;
   const char* launch_;
 };

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <span>
 
+#include "core/error.h"
 #include "gpu/buffer.h"
 #include "gpu/program.h"
+#include "projtex/device_views.h"
 #include "render/kernels/device_points.h"
 #include "render/kernels/draw_occluders.h"
 #include "render/view_lists.h"
@@ -25,11 +27,11 @@ BakedVertices bake_vertices(gpu::Context& context, const GridSpec& grid,
   const std::span<const Camera> cameras = photographs.cameras;
   const std::vector<shaders::GpuView> gpu_views =
       projtex::to_gpu_views(projtex::to_grid(cameras, grid), photographs.images);
-  const Buffer views = Buffer::of(gpu_views);
+  const projtex::DeviceViews views(gpu_views);
   const std::vector<SurfacePoint> vertices = to_voxels(grid, mesh);
   const visibility::DepthMaps maps = draw_occluders(context, grid, cameras, views, mesh, vertices);
-  const auto program =
-      gpu::Program::compute(context, "render_bake_vertices.comp.glsl", maps.defines());
+  const auto program = gpu::Program::compute(context, "render_bake_vertices.comp.glsl",
+                                             concat(maps.defines(), views.defines()));
   const std::size_t total = vertices.size();
   constexpr std::size_t kLargest =
       std::max(sizeof(shaders::SurfacePoint), sizeof(shaders::BakeResult));
@@ -44,6 +46,7 @@ BakedVertices bake_vertices(gpu::Context& context, const GridSpec& grid,
     const Buffer uniforms(sizeof parameters, &parameters), points = to_device(part);
     const Buffer lists = Buffer::of(list_views(part, gpu_views, shaders::kBakeMinCosine));
     const Buffer baked(part.size() * sizeof(shaders::BakeResult));
+    views.bind();
     uniforms.bind_uniform(shaders::kBakeParametersBinding);
     points.bind_storage(shaders::kBakeVerticesBinding);
     baked.bind_storage(shaders::kBakeResultsBinding);

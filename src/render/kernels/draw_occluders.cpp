@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/error.h"
 #include "gpu/program.h"
 #include "render/kernels/device_points.h"
 #include "shared/surface_points.h"
@@ -12,11 +13,11 @@ namespace {
 
 constexpr std::size_t kBatch = std::size_t(1) << 20;  // points, 32 MiB a dispatch
 
-/// Into the depth maps and from the views that are bound.
+/// Into the depth maps and from the views, which are bound.
 void splat(gpu::Context& context, const visibility::DepthMaps& maps,
-           std::span<const SurfacePoint> points) {
-  const auto program =
-      gpu::Program::compute(context, "render_splat_points.comp.glsl", maps.defines());
+           const projtex::DeviceViews& views, std::span<const SurfacePoint> points) {
+  const auto program = gpu::Program::compute(context, "render_splat_points.comp.glsl",
+                                             concat(maps.defines(), views.defines()));
   const std::size_t batch = gpu::batch_size(sizeof(shaders::SurfacePoint), kBatch);
   for (std::size_t first = 0; first < points.size(); first += batch) {
     const auto part = points.subspan(first, std::min(batch, points.size() - first));
@@ -33,13 +34,14 @@ void splat(gpu::Context& context, const visibility::DepthMaps& maps,
 }  // namespace
 
 visibility::DepthMaps draw_occluders(gpu::Context& context, const GridSpec& grid,
-                                     std::span<const Camera> cameras, const gpu::Buffer& views,
-                                     const TriMesh& mesh, std::span<const SurfacePoint> vertices) {
+                                     std::span<const Camera> cameras,
+                                     const projtex::DeviceViews& views, const TriMesh& mesh,
+                                     std::span<const SurfacePoint> vertices) {
   visibility::DepthMaps maps = occluder_maps(cameras, grid);
-  views.bind_storage(shaders::kViewsBinding);
+  views.bind();
   maps.bind();
-  splat(context, maps, vertices);
-  splat(context, maps, points_between(mesh, vertices));
+  splat(context, maps, views, vertices);
+  splat(context, maps, views, points_between(mesh, vertices));
   return maps;
 }
 

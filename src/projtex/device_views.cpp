@@ -1,9 +1,9 @@
-#include "refine/kernels/device_views.h"
+#include "projtex/device_views.h"
 
 #include <cstddef>
 #include <utility>
 
-namespace photohull::refine {
+namespace photohull::projtex {
 namespace {
 
 constexpr std::size_t kMost = shaders::kMostUniformViews;
@@ -28,4 +28,4 @@ void DeviceViews::bind() const {
     buffer_.bind_storage(shaders::kViewsBinding);
 }
 
-}  // namespace photohull::refine
+}  // namespace photohull::projtex

@@ -1,4 +1,4 @@
-// The views as kernels of module refine have them; private to it.
+// The views as kernels have them.
 #pragma once
 
 #include <vector>
@@ -6,7 +6,7 @@
 #include "gpu/buffer.h"
 #include "shared/view.h"
 
-namespace photohull::refine {
+namespace photohull::projtex {
 
 /// Uniforms where they are few enough, which software devices fetch faster, else a storage block.
 class DeviceViews {
@@ -22,4 +22,4 @@ class DeviceViews {
   gpu::Buffer buffer_;
 };
 
-}  // namespace photohull::refine
+}  // namespace photohull::projtex
