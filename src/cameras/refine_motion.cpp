@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "cameras/motion_jackknife.h"
 #include "cameras/triangulate.h"
 #include "core/median.h"
 
@@ -134,18 +135,20 @@ class MotionFit {
     std::array<double, 6> unknowns{};
     ceres::Problem problem;
     auto* const loss = new ceres::CauchyLoss(kTail);
+    blocks_.clear();
     for (std::size_t t = 0; t < tracks_.size(); ++t)
       for (const Observation& o : tracks_[t].observations) {
         const Camera& camera = given_.cameras[std::size_t(o.view)];
         if (is_moved(o))
-          problem.AddResidualBlock(
+          blocks_.push_back(problem.AddResidualBlock(
               new ceres::AutoDiffCostFunction<MovedResidual, 2, 6, 3>(
                   new MovedResidual{camera, o.pixel, 1 / noise, back, given_.middle}),
-              loss, unknowns.data(), &points_[t].x);
+              loss, unknowns.data(), &points_[t].x));
         else
-          problem.AddResidualBlock(new ceres::AutoDiffCostFunction<FixedResidual, 2, 3>(
-                                       new FixedResidual{camera, o.pixel, 1 / noise}),
-                                   loss, &points_[t].x);
+          blocks_.push_back(
+              problem.AddResidualBlock(new ceres::AutoDiffCostFunction<FixedResidual, 2, 3>(
+                                           new FixedResidual{camera, o.pixel, 1 / noise}),
+                                       loss, &points_[t].x));
       }
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::DENSE_SCHUR;
@@ -160,7 +163,7 @@ class MotionFit {
     ceres::Solve(options, &problem, &summary);
     if (!summary.IsSolutionUsable()) return false;
     apply(unknowns, start);
-    if (last) result_.determined = find_covariance(problem, unknowns);
+    if (last) result_.determined = find_covariance(problem);
     return true;
   }
 
@@ -174,14 +177,27 @@ class MotionFit {
     motion_.translation = turn * (start.translation - given_.middle) + given_.middle + shift;
   }
 
-  bool find_covariance(ceres::Problem& problem, const std::array<double, 6>& unknowns) {
-    ceres::Covariance::Options options;
-    options.num_threads = 1;
-    ceres::Covariance covariance(options);
-    const double* block = unknowns.data();
-    const std::vector<std::pair<const double*, const double*>> blocks{{block, block}};
-    if (!covariance.Compute(blocks, &problem)) return false;
-    return covariance.GetCovarianceBlock(block, block, result_.covariance[0].data());
+  bool find_covariance(ceres::Problem& problem) {
+    const auto found = jackknife(linear_pixels(problem));
+    if (found) result_.covariance = *found;
+    return found.has_value();
+  }
+
+  std::vector<std::vector<LinearPixel>> linear_pixels(ceres::Problem& problem) const {
+    std::vector<std::vector<LinearPixel>> all(tracks_.size());
+    auto block = blocks_.begin();
+    for (std::size_t t = 0; t < tracks_.size(); ++t)
+      for (const Observation& o : tracks_[t].observations) {
+        LinearPixel& pixel = all[t].emplace_back();
+        pixel.view = o.view;
+        pixel.moved = is_moved(o);
+        double cost = 0;
+        double* by_point[] = {pixel.by_point[0].data()};
+        double* by_both[] = {pixel.by_motion[0].data(), pixel.by_point[0].data()};
+        problem.EvaluateResidualBlock(*block++, true, &cost, pixel.residual.data(),
+                                      pixel.moved ? by_both : by_point);
+      }
+    return all;
   }
 
   void drop_outliers() {
@@ -213,6 +229,7 @@ class MotionFit {
   RigidMotion motion_;
   std::vector<Track> tracks_;
   std::vector<glm::dvec3> points_;
+  std::vector<ceres::ResidualBlockId> blocks_;  ///< of the last fit, in the tracks' order
   RefinedMotion result_;
 };
 

@@ -25,7 +25,7 @@ struct RefinedMotion {
   /// Of the turn about the object's middle (radians, about the axes of the world that stays) and of
   /// the middle's place (world units).
   std::array<std::array<double, 6>, 6> covariance{};
-  bool determined = false;         ///< the tracks leave no motion open; else no covariance
+  bool determined = false;         ///< no motion is open, else no covariance
   std::vector<glm::dvec3> points;  ///< of the tracks that fit, in the world that stays
   /// Pixels, median: how far from where photographs of one world show a point it lies by those of
   /// the other world alone. NaN where no track is seen twice in one of them.
@@ -34,8 +34,9 @@ struct RefinedMotion {
 
 /// Motion and points that minimise the distances between the points' projections and the tracks'
 /// pixels, by Ceres with a robust loss [Triggs99]; tracks that do not fit are left out and the rest
-/// fitted again. Covariance by the pixels' spread about the fit; cameras count as exact. Nothing
-/// where fewer than eight tracks seen in both worlds fit.
+/// fitted again. Covariance by the jackknife over photographs (motion_jackknife.h): errors of their
+/// cameras count, as far as these are each photograph's own. Nothing where fewer than eight tracks
+/// seen in both worlds fit.
 std::optional<RefinedMotion> refine_motion(const MotionProblem& problem);
 
 /// Standard deviation of where the motion puts a point of the world that stays, world units: the
