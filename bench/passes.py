@@ -6,7 +6,7 @@
 Renders each object on the sheet, and then again turned onto another side (`--turn`, degrees about x, y and z), with other
 noise; joins the two passes, and compares the motion with the exact one: the turn that is left, and how far it puts the
 object's surface from where it is across the lines of sight (root mean square over the surface), each beside the standard
-deviation that the report states; and the seam. `--seeds` renders so many pairs with other noise; the last line then has root
+deviation that the report states (of the turn: about one axis); and the seam. `--seeds` renders so many pairs with other noise; the last line then has root
 mean squares. `--scan` makes models by `scan --pass`, by the exact cameras and masks of both passes, and by `scan` of the first pass
 alone, and prints F-scores at 0.25 % of the diagonal, of the surface that each pass sees and of all. `--plain` gives the object no
 texture. Needs numpy."""
@@ -33,7 +33,7 @@ OBJECTS = {
 }
 PLAIN = {"contrast": 0}
 COLUMNS = ["object", "turn off, degrees", "stated", "surface off, px", "stated", "seam, px", "points", "features", "outside"]
-ERRORS = [("degrees_off", "turn_sigma"), ("px_off", "seam_sigma")]
+ERRORS = [("degrees_off", "rotation_sigma_degrees"), ("px_off", "seam_sigma")]
 MODEL_COLUMNS = ["object", "model", "F, seen by pass 1", "F, seen by pass 2", "F, all", "of the surface found", "verdict"]
 
 
@@ -176,7 +176,7 @@ def model_rows(name: str, made: dict[str, dict]) -> list[list[object]]:
 
 def row(name: str, r: dict) -> str:
     return tables.line([
-        name, f"{r['degrees_off']:.4f}", f"{r['turn_sigma']:.4f}", f"{r['px_off']:.3f}", f"{r['seam_sigma']:.3f}", f"{r['seam']:.3f}",
+        name, f"{r['degrees_off']:.4f}", f"{r['rotation_sigma_degrees']:.4f}", f"{r['px_off']:.3f}", f"{r['seam_sigma']:.3f}", f"{r['seam']:.3f}",
         f"{r['points'][0]}, {r['points'][1]}", r["tracks"], f"{100 * r['outside']:.2f} %"])
 
 
