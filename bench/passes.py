@@ -6,10 +6,10 @@
 Renders each object on the sheet, and then again turned onto another side (`--turn`, degrees about x, y and z), with other
 noise; joins the two passes, and compares the motion with the exact one: the turn that is left, and how far it puts the
 object's surface from where it is across the lines of sight (root mean square over the surface), each beside the standard
-deviation that the report states (of the turn: about one axis); and the seam. `--seeds` renders so many pairs with other noise; the last line then has root
-mean squares. `--scan` makes models by `scan --pass`, by the exact cameras and masks of both passes, and by `scan` of the first pass
-alone, and prints F-scores at 0.25 % of the diagonal, of the surface that each pass sees and of all. `--plain` gives the object no
-texture. Needs numpy."""
+deviation that the report states (of the turn: about one axis); and the seam. `--seeds` renders so many pairs with other
+noise; the last line then has root mean squares. `--scan` makes models by `scan --pass`, by the exact cameras and masks of
+both passes, and by `scan` of the first pass alone, and prints F-scores at 0.25 % of the diagonal, of the surface that each
+pass sees and of all. `--plain` gives the object no texture. Needs numpy."""
 import argparse
 import copy
 import json
@@ -54,7 +54,8 @@ def spec_of(name: str, plain: bool, seed: int) -> dict:
     spec = {"name": name, "background": {"colour": [0.1, 0.12, 0.14]}, "sheet": {"board": str(BOARD), "fill": 0.5},
             "image": {"samples": 3, "maps": False}, "truth_samples": 200000,
             "cameras": {"rings": rings, "distance": 3.2, "fill": 0.5, "roll": 5},
-            "degradations": {"photon_noise": 0.015, "read_noise": 0.003, "blur": 0.5, "seed": seed}} | copy.deepcopy(OBJECTS[name])
+            "degradations": {"photon_noise": 0.015, "read_noise": 0.003, "blur": 0.5,
+                             "seed": seed}} | copy.deepcopy(OBJECTS[name])
     if plain:
         spec["material"] |= PLAIN
     return spec
@@ -176,8 +177,8 @@ def model_rows(name: str, made: dict[str, dict]) -> list[list[object]]:
 
 def row(name: str, r: dict) -> str:
     return tables.line([
-        name, f"{r['degrees_off']:.4f}", f"{r['rotation_sigma_degrees']:.4f}", f"{r['px_off']:.3f}", f"{r['seam_sigma']:.3f}", f"{r['seam']:.3f}",
-        f"{r['points'][0]}, {r['points'][1]}", r["tracks"], f"{100 * r['outside']:.2f} %"])
+        name, f"{r['degrees_off']:.4f}", f"{r['rotation_sigma_degrees']:.4f}", f"{r['px_off']:.3f}", f"{r['seam_sigma']:.3f}",
+        f"{r['seam']:.3f}", f"{r['points'][0]}, {r['points'][1]}", r["tracks"], f"{100 * r['outside']:.2f} %"])
 
 
 def rms_row(all_of_it: list[dict]) -> str:
