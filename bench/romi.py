@@ -1,13 +1,20 @@
-"""photohull.romi against a plain NumPy version of the same votes: CPU and wall seconds, and how far they differ.
+"""photohull.romi beside a plain NumPy version of the same votes and Open3D's carving: CPU and wall seconds, memory, and how
+far they differ.
 
-    python3 -m bench romi
+    /usr/bin/python3 -m bench romi
 
-A made-up plant of thin stems stands in the volume; its masks are drawn for cameras on two rings around it. NumPy's time
-for all views is that of the first --numpy-views of them, times the number of views, for each costs the same."""
+A made-up plant of thin stems stands in the volume; its masks are drawn for cameras on two rings around it. Each is run in
+a process of its own, with that Python for which photohull's package was built. NumPy's time for all views is that of the
+first --numpy-views of them, times the number of views, for each costs the same. Open3D (Debian: python3-open3d) keeps a
+voxel where any of its eight corners lies in the masks, the others where its centre does; it is left out where it is missing."""
 import argparse
+import importlib.util
+import multiprocessing
+import resource
 import sys
 import time
 from pathlib import Path
+from typing import NamedTuple
 
 from bench.runner import PROGRAM, ROOT
 
@@ -54,32 +61,112 @@ def drawn(points, of_view, width: int, height: int) -> np.ndarray:
     return mask
 
 
+class Volume(NamedTuple):
+    shape: tuple[int, int, int]
+    origin: tuple[float, float, float]  # the first voxel's centre
+    voxel: float
+
+
+class Cost(NamedTuple):
+    cpu: float  # seconds of all views, user and system, all threads
+    wall: float
+    making: float  # CPU seconds before the first view: what makes the volume
+    peak: float  # MiB, of the whole process
+
+
+def cpu_seconds() -> float:
+    used = resource.getrusage(resource.RUSAGE_SELF)
+    return used.ru_utime + used.ru_stime
+
+
+def cost_of(make, view, views, count=0):
+    """What `make` made, after `view` took each view, and what that cost; of the first `count` views, for all of them."""
+    begin = cpu_seconds()
+    volume = make()
+    cpu, wall = cpu_seconds(), time.perf_counter()
+    making = cpu - begin
+    some = views[:count or len(views)]
+    for of_view, mask in some:
+        view(volume, of_view, mask)
+    times = len(views) / len(some)
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    return volume, Cost((cpu_seconds() - cpu) * times, (time.perf_counter() - wall) * times, making, peak)
+
+
+def by_photohull(volume, kind, views, count):
+    """The values after `count` views, those after all, and what all cost."""
+    from photohull.romi import Backprojection
+
+    def make():
+        return Backprojection(volume.shape, volume.origin, volume.voxel, type=kind)
+
+    def view(into, of_view, mask):
+        into.process_view(*of_view, mask)
+
+    whole, cost = cost_of(make, view, views)
+    few = make()
+    for of_view, mask in views[:count]:
+        view(few, of_view, mask)
+    return few.values(), whole.values(), cost
+
+
+def by_numpy(volume, kind, views, count):
+    """The values after `count` views, and what all would cost."""
+    def view(into, of_view, mask):
+        project_back(into, volume.origin, volume.voxel, kind, of_view, mask)
+
+    return cost_of(lambda: np.zeros(volume.shape, np.int32 if kind == "carving" else np.float32), view, views, count)
+
+
+def by_open3d(volume, views):
+    """The voxels that are left, as indices, and what it cost."""
+    import open3d
+
+    def make():
+        corner = np.array(volume.origin) - 0.5 * volume.voxel
+        sides = [n * volume.voxel for n in volume.shape]
+        return open3d.geometry.VoxelGrid.create_dense(corner, np.zeros(3), volume.voxel, *sides)
+
+    def view(into, of_view, mask):
+        (fx, fy, cx, cy), rotation, translation = of_view
+        camera = open3d.camera.PinholeCameraParameters()
+        camera.intrinsic = open3d.camera.PinholeCameraIntrinsic(mask.shape[1], mask.shape[0], fx, fy, cx, cy)
+        camera.extrinsic = np.vstack([np.column_stack([rotation, translation]), [0, 0, 0, 1]])
+        into.carve_silhouette(open3d.geometry.Image(mask.astype(np.float32)), camera, True)
+
+    grid, cost = cost_of(make, view, views)
+    return np.array([voxel.grid_index for voxel in grid.get_voxels()]), cost
+
+
+def alone(function, *arguments):
+    """In a process of its own."""
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        return pool.apply(function, arguments)
+
+
+def row(kind: str, name: str, cost: Cost, ours: Cost, differs: str) -> None:
+    print(f"| {kind} | {name} | {cost.cpu:.1f} | {cost.wall:.1f} | {cost.cpu / ours.cpu:.1f} | {cost.making:.1f} | {cost.peak:.0f} | {differs} |",
+          flush=True)
+
+
 def run(options: argparse.Namespace) -> int:
     sys.path.insert(0, str(options.package))
-    from photohull.romi import Backprojection
     width, height = map(int, options.size.split("x"))
     shape = tuple(map(int, options.shape.split("x")))
     voxel = 450 / shape[2]
-    origin = tuple(-0.5 * voxel * (n - 1) for n in shape)
+    volume = Volume(shape, tuple(-0.5 * voxel * (n - 1) for n in shape), voxel)
     points = stems(np.random.default_rng(1))
     cameras = [camera(i, options.views, width, height) for i in range(options.views)]
-    masks = [drawn(points, c, width, height) for c in cameras]
+    views = [(c, drawn(points, c, width, height)) for c in cameras]
     print(f"{options.views} views of {width} x {height} into {shape[0]} x {shape[1]} x {shape[2]} voxels")
-    print("| type | photohull, CPU s | wall s | NumPy, CPU s | ratio | largest difference |\n|---|---|---|---|---|---|")
+    print("| type | by | CPU s | wall s | ratio | volume, CPU s | peak MiB | beside photohull |\n|---|---|---|---|---|---|---|---|")
     for kind in ("carving", "averaging"):
-        ours = Backprojection(shape, origin, voxel, type=kind)
-        cpu, wall = time.process_time(), time.perf_counter()
-        for of_view, mask in zip(cameras, masks):
-            ours.process_view(*of_view, mask)
-        cpu, wall = time.process_time() - cpu, time.perf_counter() - wall
-        few = Backprojection(shape, origin, voxel, type=kind)
-        theirs = np.zeros(shape, few.dtype)
-        slow = time.process_time()
-        for of_view, mask in zip(cameras[:options.numpy_views], masks):
-            project_back(theirs, origin, voxel, kind, of_view, mask)
-        slow = (time.process_time() - slow) * options.views / options.numpy_views
-        for of_view, mask in zip(cameras[:options.numpy_views], masks):
-            few.process_view(*of_view, mask)
-        worst = np.abs(few.values().astype(np.float64) - theirs).max()
-        print(f"| {kind} | {cpu:.1f} | {wall:.1f} | {slow:.0f} | {slow / cpu:.0f} | {worst:.2g} |", flush=True)
+        few, whole, ours = alone(by_photohull, volume, kind, views, options.numpy_views)
+        row(kind, "photohull", ours, ours, f"{np.count_nonzero(whole == 1)} voxels left" if kind == "carving" else "")
+        theirs, cost = alone(by_numpy, volume, kind, views, options.numpy_views)
+        row(kind, "NumPy", cost, ours, f"largest difference {np.abs(few.astype(np.float64) - theirs).max():.2g}")
+        if kind == "carving" and importlib.util.find_spec("open3d"):
+            left, cost = alone(by_open3d, volume, views)
+            kept = np.count_nonzero(whole[tuple(left.T)] == 1)
+            row(kind, "Open3D", cost, ours, f"{len(left)} voxels left, {kept} of them the same")
     return 0

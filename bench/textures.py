@@ -51,14 +51,16 @@ class Study:
         self.photohull, self.scene, self.folder = photohull, scene, folder
         self.views = HELD_OUT.get(scene.name, HELD_OUT_OF_RINGS)
 
-    def reconstruct(self, name: str, *options: object, resolution: int | None = None) -> tuple[Path, dict]:
+    def reconstruct(self, name: str, *options: object, resolution: int | None = None, held_out: bool = True) -> tuple[Path, dict]:
         """The folder of a run, and its report."""
+        if held_out:
+            options = (*options, "--hold-out", self.views)
         if resolution or self.scene.name in RESOLUTION:
             options = (*options, "--resolution", resolution or RESOLUTION[self.scene.name])
         print(self.scene.name, name, file=sys.stderr, flush=True)
         out = self.folder / f"{self.scene.name}-{name.replace(', ', '-')}"
-        report = self.photohull.reconstruct(self.scene, out, "--hold-out", self.views, "--refine-cameras", "off",
-                                            *OPTIONS.get(self.scene.name, ()), *options).report
+        report = self.photohull.reconstruct(self.scene, out, "--refine-cameras", "off", *OPTIONS.get(self.scene.name, ()),
+                                            *options).report
         return out, report
 
     def likeness(self, mesh: Path, reference: Path | None = None) -> dict:
@@ -77,10 +79,11 @@ class Study:
         return done.stdout
 
     def truth(self) -> Iterator[dict]:
-        out, report = self.reconstruct("textured", "--export", "glb")
-        known, unknown, apart, psnr = TRUTH_LINE.findall(self.judged("compare_with_truth", self.scene, out / "mesh.glb"))[-1]
-        yield {"kind": "truth", "scene": self.scene.name, "known": int(known), "unknown": int(unknown), "apart": float(apart) / 100,
-               "psnr": float(psnr), "filled": report["texture"]["filled_share"]}
+        for name, held_out in ("all photographs", False), ("textured", True):
+            out, report = self.reconstruct(name, "--export", "glb", held_out=held_out)
+            known, unknown, apart, psnr = TRUTH_LINE.findall(self.judged("compare_with_truth", self.scene, out / "mesh.glb"))[-1]
+            yield {"kind": "truth", "scene": self.scene.name, "left_out": self.views if held_out else "none", "known": int(known),
+                   "unknown": int(unknown), "apart": float(apart) / 100, "psnr": float(psnr), "filled": report["texture"]["filled_share"]}
 
     def held_out(self) -> Iterator[dict]:
         out, report = self.reconstruct("textured", "--export", "glb")

@@ -4,12 +4,13 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "json_parts.h"
+#include "pose/json_parts.h"
 
 namespace photohull::cli {
 namespace {
 
 using nlohmann::ordered_json;
+using pose::add_pose_json, pose::finite_or_null, pose::vector_json;
 
 void add_lens(const Intrinsics& k, const Distortion& distortion, LensModel lens, ordered_json& j) {
   j["image_width"] = k.width;

@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <set>
 
 #include "core/error.h"
-#include "core/option_word.h"
 #include "io/board_images.h"
 #include "option_flags.h"
-#include "pose_colmap.h"
-#include "pose_json.h"
-#include "pose_passes.h"
-#include "pose_sheet.h"
+#include "pose/pose_colmap.h"
+#include "pose/pose_passes.h"
+#include "pose/pose_sheet.h"
+#include "print_passes.h"
+#include "print_pose.h"
 #include "terminal_progress.h"
 
 namespace photohull::cli {
@@ -22,45 +21,16 @@ namespace fs = std::filesystem;
 // io::run_colmap's stages, a look at the photographs, and the lenses.
 constexpr double kColmapWeight = 1.2;
 
-}  // namespace
-
 void print_warnings(const std::vector<std::string>& warnings) {
   for (const std::string& text : warnings) std::fprintf(stderr, "warning: %s\n", text.c_str());
 }
 
-std::vector<std::string> names_of(const std::vector<fs::path>& images) {
-  std::multiset<std::string> files;
-  for (const fs::path& image : images) files.insert(image.filename().string());
-  std::vector<std::string> names;
-  for (const fs::path& image : images) {
-    const std::string file = image.filename().string();
-    names.push_back(files.count(file) == 1 ? file : image.string());
-  }
-  return names;
+double weight_of(const PoseJob& job) {
+  if (!job.passes.empty()) return pose::passes_weight(job);
+  return job.board.empty() ? kColmapWeight : 1;
 }
 
-std::vector<PassOfPhotos> passes_of(const std::vector<std::string>& folders) {
-  std::multiset<std::string> all;
-  const auto own_name = [](const std::string& folder) {
-    fs::path path = fs::absolute(folder).lexically_normal();
-    if (path.filename().empty()) path = path.parent_path();
-    return path.filename().string();
-  };
-  for (const std::string& folder : folders) all.insert(own_name(folder));
-  std::vector<PassOfPhotos> passes;
-  for (const std::string& folder : folders) {
-    const std::string name = own_name(folder);
-    passes.push_back({all.count(name) == 1 ? name : concat(name, "_", passes.size() + 1),
-                      io::list_images({folder})});
-  }
-  return passes;
-}
-
-std::string unused_focal(const PoseJob& job, bool taken) {
-  if (!job.focal.given() || taken) return "";
-  return concat(option_word("focal"),
-                " is not used: the photographs state their focal lengths, or cannot be read");
-}
+}  // namespace
 
 void PoseArguments::add_to(CLI::App& command, const std::vector<std::string>& but) {
   command.add_option("PHOTOS", images, "photographs of the object, or folders of them");
@@ -131,16 +101,22 @@ void name_unreadable(const std::vector<std::string>& given) {
 }
 
 std::string pose_photos(const PoseJob& job, bool tell) {
-  if (!job.passes.empty()) return pose_passes(job, tell);
-  TerminalProgress progress(job.board.empty() ? kColmapWeight : 1);
+  TerminalProgress progress(weight_of(job));
+  if (!job.passes.empty()) {
+    const pose::PassesPose pose = pose::pose_passes(job, progress);
+    progress.finish();
+    print_warnings(pose.warnings);
+    if (tell) print_passes(job, pose);
+    return pose.report;
+  }
   if (job.board.empty()) {
-    const ColmapPose pose = pose_with_colmap(job, progress);
+    const pose::ColmapPose pose = pose::pose_with_colmap(job, progress);
     progress.finish();
     print_warnings(pose.warnings);
     if (tell) print_colmap_pose(job, pose);
     return pose.report;
   }
-  const SheetPose pose = pose_on_sheet(job, progress);
+  const pose::SheetPose pose = pose::pose_on_sheet(job, progress);
   progress.finish();
   print_warnings(pose.result.warnings);
   if (tell) {

@@ -6,9 +6,14 @@
 #include <vector>
 
 #include "io/film_frames.h"
-#include "pose_job.h"
+#include "pose/pose_job.h"
 
 namespace photohull::cli {
+
+using pose::names_of;
+using pose::passes_of;
+using pose::PassOfPhotos;
+using pose::PoseJob;
 
 /// Arguments that both commands have.
 struct PoseArguments {
@@ -37,12 +42,9 @@ void refuse_given(const std::vector<CLI::Option*>& options, const std::string& i
 /// Prints a warning for each photograph in the folders given that cannot be read.
 void name_unreadable(const std::vector<std::string>& given);
 
-/// On standard error.
-void print_warnings(const std::vector<std::string>& warnings);
-
-/// Finds the cameras and writes the scene into the job's folder (pose_sheet.h,
-/// pose_passes.h, pose_colmap.h).
-/// Prints warnings, and a summary if `tell`. Returns pose.json.
+/// Finds the cameras and writes the scene into the job's folder (pose/pose_sheet.h,
+/// pose/pose_passes.h, pose/pose_colmap.h). Prints warnings, and a summary if `tell`. Returns
+/// pose.json.
 std::string pose_photos(const PoseJob& job, bool tell);
 
 }  // namespace photohull::cli

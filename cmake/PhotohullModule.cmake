@@ -57,9 +57,6 @@ function(photohull_test name)
   cmake_parse_arguments(ARG "" "SHARDS" "SOURCES;LIBS;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_compile_options(${name} PRIVATE ${PHOTOHULL_TEST_OPTIONS})
-  target_compile_definitions(${name} PRIVATE
-    PHOTOHULL_DATASETS="${PROJECT_SOURCE_DIR}/datasets"
-    PHOTOHULL_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
   target_link_libraries(${name} PRIVATE ${ARG_LIBS} GTest::gtest_main GTest::gmock)
   photohull_precompile(${name} photohull_test_support)
   if("unit" IN_LIST ARG_LABELS)

@@ -4,6 +4,7 @@
 
 #include "errors.h"
 #include "measure.h"
+#include "pose.h"
 #include "result.h"
 #include "romi.h"
 #include "scene.h"
@@ -16,6 +17,7 @@ PYBIND11_MODULE(_core, module) {
   bind_result(module);
   bind_measure(module);
   bind_tools(module);
+  bind_pose(module);
   bind_romi(module);
   module.attr("version") = PHOTOHULL_VERSION;
 }

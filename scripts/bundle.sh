@@ -81,34 +81,18 @@ take() {
   readlink -f "$1" >>"$scratch/sources"
 }
 
-# OpenImageIO reads films and cameras by libraries that bring two hundred others, among them those that
-# talk to GPUs; photohull reads photographs with it. stand_in SONAME PATH: a library whose functions
-# fail, in the place of one of these.
-stand_in() {
-  local reader symbol versions
-  reader=$(find_library libOpenImageIO.so.2.4)
-  nm -D --undefined-only --with-symbol-versions "$reader" | awk '{ print $2 }' | sort >"$scratch/wanted"
-  nm -D --defined-only --with-symbol-versions "$2" | awk '$2 ~ /[TW]/ { sub("@@", "@", $3); print $3 }' |
-    sort | comm -12 - "$scratch/wanted" >"$scratch/symbols"
-  versions=$(sed -n 's/.*@//p' "$scratch/symbols" | sort -u)
-  : >"$scratch/stand_in.map"
-  if [ -n "$versions" ]; then echo "$versions { global: *; };" >"$scratch/stand_in.map"; fi
-  while IFS=@ read -r symbol _; do
-    echo "long $symbol(void) { return -1; }"
-  done <"$scratch/symbols" >"$scratch/stand_in.c"
-  cc -shared -nostdlib -s -O1 -fno-builtin -o "$lib/$1" -Wl,-soname,"$1" -Wl,--build-id=none \
-    ${versions:+"-Wl,--version-script=$scratch/stand_in.map"} "$scratch/stand_in.c"
-}
-
 say "Collecting files"
 umask 022
 mkdir -p "$lib/mesa/dri" "$lib/gcc" "$notes"
 cmake --install build/release --component photohull --prefix "$top" --strip >"$scratch/log" || die "$(tail "$scratch/log")"
 mv "$top/bin" "$top/libexec"
 mkdir "$top/bin"
+# The stand-ins (cmake/StandIns.cmake).
+mv "$lib"/photohull/* "$lib"
+rmdir "$lib/photohull"
 
-stand_ins='^lib(avcodec|avformat|avutil|swscale|opencv_videoio)\.so'
-# What the programs need, but for what only those stand-ins need: by their NEEDED entries, from the programs on.
+# What the programs need, but for what only the libraries behind those stand-ins need: by their NEEDED entries, from the
+# programs on.
 declare -A seen=()
 waiting=("$top"/libexec/photohull*)
 while [ ${#waiting[@]} -gt 0 ]; do
@@ -121,10 +105,7 @@ while [ ${#waiting[@]} -gt 0 ]; do
     case $soname in
       libstdc++.so.6 | libgcc_s.so.1) take "$path" "$lib/gcc/$soname" ;;
       *)
-        if [[ $soname =~ $stand_ins ]]; then
-          stand_in "$soname" "$path"
-          continue
-        fi
+        if [ -e "$lib/$soname" ]; then continue; fi
         take "$path" "$lib/$soname"
         ;;
     esac

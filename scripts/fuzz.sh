@@ -34,7 +34,6 @@ done
 
 cd "$root"
 install_missing clang
-export CCACHE_BASEDIR=$root
 build=build/asan
 mkdir -p $build
 if ! cmake --preset asan >$build/configure.log 2>&1; then

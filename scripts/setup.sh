@@ -21,8 +21,8 @@ packages=(
   libegl-dev libopengl-dev libegl1 libegl-mesa0 libgl1-mesa-dri
   # Volumes; OpenVDB's CMake module asks for Boost.
   libopenvdb-dev libopenvdb-tools libtbb-dev libboost-iostreams-dev
-  # Meshes in other formats; distances to meshes; fewer triangles; nearest neighbours.
-  libassimp-dev libembree-dev libmeshoptimizer-dev libnanoflann-dev
+  # Meshes in other formats; distances to meshes; fewer triangles; nearest neighbours; convex hulls.
+  libassimp-dev libembree-dev libmeshoptimizer-dev libnanoflann-dev libqhull-dev
   # Images; OpenImageIO's CMake files ask for its tools.
   libopenimageio-dev openimageio-tools libopencv-dev libjpeg-dev
   libglm-dev libcli11-dev nlohmann-json3-dev

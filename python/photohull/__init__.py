@@ -31,7 +31,7 @@ from ._result import Mesh, Result, Volume
 __version__ = _core.version
 __all__ = [
     "Cancelled", "DeviceError", "Error", "Mesh", "OutOfMemory", "Result", "Scene", "UsageError", "ViewMask", "Volume",
-    "convert", "devices", "evaluate", "hull", "load", "masks", "measure", "options", "reconstruct", "refine", "romi", "scene",
+    "convert", "devices", "evaluate", "hull", "load", "masks", "measure", "options", "pose", "reconstruct", "refine", "romi", "scene",
     "space_carving", "synthesize", "voxel_coloring",
 ]
 
@@ -41,11 +41,12 @@ _LISTS = {
     "masks": _core.mask_options,
     "evaluate": _core.evaluate_options,
     "measure": _core.measure_options,
+    "pose": _core.pose_options,
 }
 
 
 def options(function="reconstruct"):
-    """The options of ``"load"``, ``"reconstruct"``, ``"masks"``, ``"evaluate"`` or ``"measure"``.
+    """The options of ``"load"``, ``"reconstruct"``, ``"masks"``, ``"evaluate"``, ``"measure"`` or ``"pose"``.
 
     Returns a list of dictionaries with ``name``, ``help``, ``values`` (which are legal), ``unit``,
     ``default`` and ``type``, all of them text.
@@ -142,6 +143,36 @@ def space_carving(scene, *, progress=None, **options):
 def refine(scene, *, progress=None, **options):
     """The hull, and the surface moved to where the photographs agree. As :func:`reconstruct` with ``method="refine"``."""
     return reconstruct(scene, progress=progress, method="refine", **options)
+
+
+def pose(photographs, *, out, board=None, make_masks=True, masks=None, ordered=False, progress=None, **options):
+    """Finds the cameras of photographs, and writes a scene into the folder ``out``, which :func:`load` reads.
+
+    photographs  a path or a list of paths: files, or folders of them; or a list of arrays
+                 (height, width) or (height, width, channels) of 1, 3 (RGB) or 4 (RGBA) channels,
+                 uint8 (sRGB), which are written to arrays/0000.png and so on in ``out``. Arrays say
+                 nothing of their lenses: those of one size count as one lens, and ``focal`` says
+                 where its search begins
+    out          folder for the scene: transforms.json, pose.json, coverage.png and masks/
+    board        the JSON file that ``photohull board`` wrote beside the sheet it printed, on which
+                 the object stands: the world is the sheet's then, z = 0 is the paper, z points up,
+                 lengths are millimetres unless ``unit`` says otherwise. Without it the program
+                 COLMAP finds the cameras; scale and directions of the world are any
+    make_masks   with a board: make masks of what differs from the sheet's picture
+    masks        without a board: a folder of masks, NAME.png or NAME.EXT.png; for arrays a list
+                 of (height, width) arrays as :func:`scene` takes them, or of None
+    ordered      without a board: each photograph was taken near the one before
+
+    ``options`` are those of ``photohull.options("pose")``: ``focal``, in pixels or, as in "28mm", for
+    35 mm film, and what is known of the sheet. Returns a dictionary, the content of pose.json:
+    cameras, photographs in their order (with ``posed``, ``R`` and ``t``, or the ``reason`` why one
+    has no pose), with a board ``rms`` in pixels, and warnings, which go to ``progress``, too.
+
+    >>> photohull.pose([], out="never")
+    Traceback (most recent call last):
+    photohull._errors.UsageError: photographs: give at least one, or a folder of them
+    """
+    return json.loads(_core.pose(photographs, out, board, make_masks, masks, ordered, options, progress))
 
 
 class ViewMask(NamedTuple):

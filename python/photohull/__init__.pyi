@@ -8,7 +8,7 @@ from typing_extensions import Unpack
 
 from . import convert as convert
 from . import romi as romi
-from ._options import EvaluateOptions, LoadOptions, MaskOptions, MeasureOptions, ReconstructOptions
+from ._options import EvaluateOptions, LoadOptions, MaskOptions, MeasureOptions, PoseOptions, ReconstructOptions
 
 __version__: str
 __all__: list[str]
@@ -118,6 +118,17 @@ def voxel_coloring(scene: Scene | _Path, *, progress: _Progress | None = None, *
 def space_carving(scene: Scene | _Path, *, progress: _Progress | None = None, **options: Unpack[ReconstructOptions]) -> Result: ...
 def refine(scene: Scene | _Path, *, progress: _Progress | None = None, **options: Unpack[ReconstructOptions]) -> Result: ...
 def masks(scene: Scene | _Path, *, progress: _Progress | None = None, **options: Unpack[MaskOptions]) -> list[ViewMask]: ...
+def pose(
+    photographs: _Path | Sequence[_Path] | Sequence[ArrayLike] | NDArray[np.uint8],
+    *,
+    out: _Path,
+    board: _Path | None = None,
+    make_masks: bool = True,
+    masks: _Path | Sequence[ArrayLike | None] | None = None,
+    ordered: bool = False,
+    progress: _Progress | None = None,
+    **options: Unpack[PoseOptions],
+) -> dict[str, Any]: ...
 def evaluate(
     mesh: Result | Mesh | _Arrays | _Path, truth: _Arrays | _Path, *, progress: _Progress | None = None, **options: Unpack[EvaluateOptions]
 ) -> dict[str, Any]: ...

@@ -186,3 +186,19 @@ class MeasureOptions(TypedDict, total=False):
     axis: Literal["up", "x", "y", "z"] | None
     # cross-sections, in the middle of as many slabs of the same height. Default: 10.
     sections: int | None
+
+class PoseOptions(TypedDict, total=False):
+    # which distortion is found. Default: brown.
+    lens: Literal["pinhole", "brown", "rational", "fisheye"] | None
+    # length of the printed bar as a ruler measures it (mm). Default: 0.
+    bar: float | None
+    # height of the box above the sheet (mm). Default: 0.
+    height: float | None
+    # height of the box's lower side above the sheet (mm). Default: 1.
+    margin: float | None
+    # unit of the scene's world (mm). Default: 1.
+    unit: float | None
+    # take the sheet for flat, and do not find out whether it is bent. Default: False.
+    flat: bool | None
+    # focal length to start from where photographs state none in their EXIF data.
+    focal: str | float | os.PathLike[str] | None

@@ -6,7 +6,7 @@ import textwrap
 from . import _LISTS, options
 
 _NAMES = {"load": "LoadOptions", "reconstruct": "ReconstructOptions", "masks": "MaskOptions", "evaluate": "EvaluateOptions",
-          "measure": "MeasureOptions"}
+          "measure": "MeasureOptions", "pose": "PoseOptions"}
 
 
 def _field(option) -> list[str]:

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "batch_scenes.h"
+#include "support/places.h"
 
 namespace photohull::test {
 namespace {
@@ -68,7 +69,7 @@ TEST_F(BatchCommand, KilledAtAnyMomentItEndsAsUndisturbed) {
   int killed = 0;
   succeed(batch(list_of(kPieces), "calm"));
   for (int kill = 0; kill < 6; ++kill) {
-    Arguments command = {PHOTOHULL_PROGRAM};
+    Arguments command = {test::program()};
     for (const std::string& word : batch(list_of(kPieces), "shaken")) command.push_back(word);
     const Finished run = run_program(command, {.signal_after = concat("s", kill % kPieces),
                                                .signal_delay_seconds = 0.13 * kill,

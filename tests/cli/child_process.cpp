@@ -19,6 +19,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "support/places.h"
 
 namespace photohull::test {
 namespace {
@@ -179,7 +180,7 @@ Finished run_program(const Arguments& command, const RunOptions& options) {
 }
 
 Finished run_photohull(const Arguments& arguments, const RunOptions& options) {
-  Arguments command = {PHOTOHULL_PROGRAM};
+  Arguments command = {test::program()};
   command.insert(command.end(), arguments.begin(), arguments.end());
   Finished finished = run_program(command, options);
   EXPECT_EQ(finished.signal, 0) << "ended by a signal\n" << finished.err;

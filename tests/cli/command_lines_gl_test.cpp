@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "sphere_scene.h"
 #include "support/effort.h"
+#include "support/places.h"
 
 namespace photohull::test {
 namespace {
@@ -69,7 +70,8 @@ class CommandLines : public SphereScene {
                 "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
                 "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
                 "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
-    for (const auto& entry : fs::directory_iterator(PHOTOHULL_COMMAND_LINES))
+    for (const auto& entry :
+         fs::directory_iterator(test::in_checkout("tests/fuzz/seeds/command-line")))
       seeds_[entry.path().filename()] = words_in(entry.path());
   }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "sphere_scene.h"
+#include "support/places.h"
 
 namespace photohull::test {
 namespace {
@@ -24,7 +25,7 @@ TEST_F(Demo, SaysWhereItsPhotographsAreMissing) {
   const std::filesystem::path program = path("bin/photohull-main");
   std::filesystem::create_directories(program.parent_path());
   std::filesystem::copy_file(
-      std::filesystem::path(PHOTOHULL_PROGRAM).parent_path() / "photohull-main", program);
+      std::filesystem::path(test::program()).parent_path() / "photohull-main", program);
   const Finished done = run_program({program.string(), "demo", "--out", out()});
   EXPECT_EQ(done.code, 1);
   EXPECT_THAT(done.err, HasSubstr(path("share/photohull/templeSparseRing") +

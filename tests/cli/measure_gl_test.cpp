@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "reconstruct_fixture.h"
+#include "support/places.h"
 
 namespace photohull::test {
 namespace {
@@ -44,7 +45,7 @@ TEST_F(Measure, TextAndTable) {
 TEST_F(Measure, SaysWhatIsWrong) {
   succeed(quick());
   const auto refuse = [&](int code, Arguments words, const std::string& sentence) {
-    words.insert(words.begin(), {PHOTOHULL_PROGRAM, "measure"});
+    words.insert(words.begin(), {test::program(), "measure"});
     const Finished run = run_program(words);
     EXPECT_EQ(run.code, code) << run.err;
     EXPECT_THAT(run.err, HasSubstr(sentence));

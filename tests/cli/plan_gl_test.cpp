@@ -13,6 +13,7 @@
 
 #include "batch_scenes.h"
 #include "core/child_process.h"
+#include "support/places.h"
 
 namespace photohull::test {
 namespace {
@@ -68,8 +69,8 @@ void PlanCommand::submit_and_compare(const std::string& engine, const Arguments&
                                      int workers) const {
   plan("job");
   Arguments words = before;
-  for (const std::string& word : Arguments{PHOTOHULL_PROGRAM, "submit", path("job"), "--with",
-                                           engine, "--workers", concat(workers)})
+  for (const std::string& word : Arguments{test::program(), "submit", path("job"), "--with", engine,
+                                           "--workers", concat(workers)})
     words.push_back(word);
   std::atomic<bool> ended = false;
   std::atomic<int> killed = 0;
@@ -191,7 +192,7 @@ TEST_F(PlanCommand, MpiMakesItThoughOneIsKilled) {
 }
 
 TEST_F(PlanCommand, SlurmMakesItThoughOneIsKilled) {
-  submit_and_compare("slurm", {PHOTOHULL_SOURCE "/tests/cli/with_slurm.sh", path("slurm")});
+  submit_and_compare("slurm", {test::in_checkout("tests/cli/with_slurm.sh"), path("slurm")});
 }
 
 }  // namespace

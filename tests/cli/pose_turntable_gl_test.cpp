@@ -12,6 +12,7 @@
 #include "io/image_file.h"
 #include "io/load_scene.h"
 #include "sphere_scene.h"
+#include "support/places.h"
 #include "support/scratch_folder.h"
 
 namespace photohull::test {
@@ -22,7 +23,7 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
 
-const std::string kBoard = PHOTOHULL_SOURCE "/datasets/boards/board_a4.json";
+const std::string kBoard = test::in_checkout("datasets/boards/board_a4.json");
 
 class PoseTurntable : public testing::Test {
  protected:
@@ -31,7 +32,7 @@ class PoseTurntable : public testing::Test {
 
   /// The rendered scene that the documentation has, with `spec` in place of some of its fields.
   void photograph(const json& spec = json::object()) const {
-    json all = json::parse(read_bytes(PHOTOHULL_SOURCE "/datasets/synthetic/on_turntable.json"),
+    json all = json::parse(read_bytes(test::in_checkout("datasets/synthetic/on_turntable.json")),
                            nullptr, true, true);
     all.merge_patch(spec);
     all["sheet"]["board"] = kBoard;

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sphere_scene.h"
+#include "support/places.h"
 
 namespace photohull::test {
 namespace {
@@ -11,7 +12,7 @@ using testing::HasSubstr;
 
 class Stress : public SphereScene {
  protected:
-  static std::string plan() { return PHOTOHULL_SOURCE "/bench/plans/stress_smoke.json"; }
+  static std::string plan() { return test::in_checkout("bench/plans/stress_smoke.json"); }
   nlohmann::json results() const {
     return nlohmann::json::parse(read_bytes(path("stress/results.json")));
   }

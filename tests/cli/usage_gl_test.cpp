@@ -8,6 +8,7 @@
 #include "io/load_scene.h"
 #include "io/write_scene.h"
 #include "sphere_scene.h"
+#include "support/places.h"
 
 namespace photohull::test {
 namespace {
@@ -38,7 +39,7 @@ TEST_F(Usage, HelpShowsExamples) {
 
 TEST_F(Usage, SaysWhichProgramIsMissingBesideIt) {
   const std::string alone = path("photohull");
-  std::filesystem::copy_file(PHOTOHULL_PROGRAM, alone);
+  std::filesystem::copy_file(test::program(), alone);
   EXPECT_THAT(run_program({alone, "--version"}).out, StartsWith("photohull "));
   const std::pair<const char*, const char*> programs[] = {{"info", "photohull-main"},
                                                           {"chart", "photohull-lab"}};
@@ -53,7 +54,7 @@ TEST_F(Usage, SaysWhichProgramIsMissingBesideIt) {
 
 TEST_F(Usage, ProgramsKeepFreedMemoryUnlessTheUserSaysHow) {
   const std::string alone = path("photohull"), main = path("photohull-main");
-  std::filesystem::copy_file(PHOTOHULL_PROGRAM, alone);
+  std::filesystem::copy_file(test::program(), alone);
   std::ofstream(main) << "#!/bin/sh\nprintf %s \"$GLIBC_TUNABLES\"\n";
   std::filesystem::permissions(main, std::filesystem::perms::owner_all);
   EXPECT_THAT(run_program({alone, "info", "scene"}).out, HasSubstr("glibc.malloc.hugetlb=1"));
@@ -378,9 +379,9 @@ TEST_F(Usage, Views) {
 
 TEST_F(Usage, AClosedPipeEndsQuietly) {
   const auto pipe = [&](const std::string& command) {
-    return run_program(
-        {"bash", "-c",
-         "(sleep 1; " PHOTOHULL_PROGRAM " " + command + "; echo \"code $?\" >&2) | true; sleep 2"});
+    return run_program({"bash", "-c",
+                        "(sleep 1; " + test::program() + " " + command +
+                            "; echo \"code $?\" >&2) | true; sleep 2"});
   };
   EXPECT_EQ(pipe("info " + scene()).err, "code 0\n");
   EXPECT_EQ(pipe("reconstruct --help").err, "code 0\n");

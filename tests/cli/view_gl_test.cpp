@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include "reconstruct_fixture.h"
+#include "support/places.h"
 
 namespace photohull::test {
 namespace {
@@ -55,7 +56,7 @@ TEST_F(View, SaysWhatIsMissing) {
                           const std::vector<std::string>& parts) {
     const Finished run = run_program(
         [&] {
-          Arguments all = {PHOTOHULL_PROGRAM};
+          Arguments all = {test::program()};
           all.insert(all.end(), arguments.begin(), arguments.end());
           return all;
         }(),
@@ -73,7 +74,7 @@ TEST_F(View, SaysWhatIsMissing) {
 TEST_F(View, SaysThatTheDesktopDidNotOpenIt) {
   succeed(quick());
   RunOptions options = desktop("3");
-  const Finished run = run_program({PHOTOHULL_PROGRAM, "view", out()}, options);
+  const Finished run = run_program({test::program(), "view", out()}, options);
   EXPECT_EQ(run.code, 1);
   EXPECT_THAT(run.err, HasSubstr("open it in a browser"));
   EXPECT_THAT(run.out, HasSubstr(path("out/report.html")));

@@ -13,6 +13,7 @@
 #include "core/folder_lock.h"
 #include "damaged_scenes.h"
 #include "sphere_scene.h"
+#include "support/places.h"
 #include "support/scratch_folder.h"
 
 namespace photohull::test {
@@ -149,7 +150,7 @@ std::string shown(std::string text) {
 }  // namespace
 
 std::vector<Way> read_ways() {
-  const json all = json::parse(read_bytes(PHOTOHULL_SOURCE "/tests/cli/ways_to_go_wrong.json"));
+  const json all = json::parse(read_bytes(test::in_checkout("tests/cli/ways_to_go_wrong.json")));
   std::vector<Way> ways;
   for (const json& group : all.at("groups"))
     for (const json& way : group.at("ways")) ways.push_back(read_way(way, group.at("name")));

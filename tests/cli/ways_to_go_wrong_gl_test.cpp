@@ -9,6 +9,7 @@
 #include <set>
 
 #include "sphere_scene.h"
+#include "support/places.h"
 #include "ways.h"
 
 namespace photohull::test {
@@ -21,7 +22,7 @@ namespace {
 using testing::AnyOf;
 using testing::StartsWith;
 
-constexpr const char* kDocument = PHOTOHULL_SOURCE "/docs/measurements/ways_to_go_wrong.md";
+const std::string kDocument = test::in_checkout("docs/measurements/ways_to_go_wrong.md");
 constexpr std::size_t kLeastWays = 60;
 
 /// What was told in each way that this process has tried, by title.

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "support/places.h"
 
 namespace photohull::test {
 namespace fs = std::filesystem;
@@ -64,7 +65,7 @@ Finished FaultScene::run_with(const Arguments& job, const Fault& fault, long num
 }
 
 void FaultScene::kill_at(const Arguments& job, const std::string& call, long number) const {
-  Arguments command = {PHOTOHULL_PROGRAM};
+  Arguments command = {test::program()};
   command.insert(command.end(), job.begin(), job.end());
   EXPECT_EQ(run_program(command, failing({call, kKill, out()}, number)).signal, SIGKILL);
 }

@@ -4,6 +4,7 @@
 
 #include "fault_runs.h"
 #include "support/effort.h"
+#include "support/places.h"
 
 namespace photohull::test {
 namespace {
@@ -24,7 +25,7 @@ class Killed : public FaultScene {
       options.signal_delay_seconds = longest_delay * double(random()) / double(random.max());
       options.may_end_before_signal = true;
       SCOPED_TRACE(options.signal_after + std::to_string(options.signal_delay_seconds));
-      Arguments command = {PHOTOHULL_PROGRAM};
+      Arguments command = {test::program()};
       command.insert(command.end(), job.begin(), job.end());
       run_program(command, options);
       for (const auto& [name, bytes] : contents(out()))

@@ -5,13 +5,14 @@
 #include <stdexcept>
 
 #include "io/mesh/write_mesh.h"
+#include "support/places.h"
 #include "synth/synthesize.h"
 
 namespace photohull::golden {
 namespace {
 
 synth::Spec small_spec(const std::string& name, int views, int width, int height) {
-  synth::Spec spec = synth::read_spec(PHOTOHULL_DATASETS "/synthetic/" + name + ".json");
+  synth::Spec spec = synth::read_spec(test::in_checkout("datasets/synthetic/" + name + ".json"));
   synth::set_view_count(spec.cameras, views);
   spec.image.width = width;
   spec.image.height = height;

@@ -1,5 +1,6 @@
 #include "io/load_scene.h"
 #include "scene_fixture.h"
+#include "support/places.h"
 
 namespace photohull::io {
 namespace {
@@ -165,8 +166,7 @@ TEST_F(ReadMiddlebury, ImagesWithoutUsableSilhouettesAreReported) {
 
 // The real thing: every camera must see the box that the README states, most of it on its image.
 TEST(MiddleburyDataset, TempleCamerasSeeTheirBox) {
-  const std::filesystem::path folder =
-      std::filesystem::path(PHOTOHULL_DATASETS) / "templeSparseRing";
+  const std::filesystem::path folder = test::in_checkout("datasets/templeSparseRing");
   const Scene scene = load_scene(folder);
   ASSERT_EQ(scene.views.size(), 16u);
   EXPECT_EQ(scene.box_source, "README.txt");

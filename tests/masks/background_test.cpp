@@ -8,6 +8,7 @@
 
 #include "io/image_file.h"
 #include "support/pictures.h"
+#include "support/places.h"
 
 namespace photohull {
 namespace {
@@ -204,7 +205,7 @@ TEST(Background, HopelessScenesAreNotUsable) {
 }
 
 TEST(Background, TempleKeepsItsColumnsAndLosesTheCloth) {
-  const std::filesystem::path folder = PHOTOHULL_DATASETS "/templeSparseRing";
+  const std::filesystem::path folder = test::in_checkout("datasets/templeSparseRing");
   std::vector<ColourImage> images;
   for (const char* name : {"01", "04", "08", "12", "16"})
     images.push_back(io::read_image(folder / (std::string("templeSR00") + name + ".png")));

@@ -175,6 +175,14 @@ TEST(ConvexHull, OfPointsInAPlaneIsEmpty) {
   const std::vector<glm::dvec3> flat = {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}, {2, 5, 1}};
   EXPECT_TRUE(convex_hull(flat).empty());
   EXPECT_TRUE(convex_hull(std::vector<glm::dvec3>(9, glm::dvec3(2))).empty());
+  EXPECT_TRUE(convex_hull(std::vector<glm::dvec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}).empty());
+  std::vector<glm::dvec3> line, slanted;
+  for (int i = 0; i < 9; ++i) {
+    line.emplace_back(0.1 * i, 0.3 * i, -0.2 * i);
+    slanted.push_back(0.1 * i * glm::dvec3(1, 2, 3) + double(i % 3) * glm::dvec3(0.3, -0.1, 0.7));
+  }
+  EXPECT_TRUE(convex_hull(line).empty());
+  EXPECT_TRUE(convex_hull(slanted).empty());
   const OrientedBox box = oriented_box(flat);
   EXPECT_NEAR(box.size.z, 0, 1e-12);
 }

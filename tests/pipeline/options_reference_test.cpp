@@ -1,4 +1,5 @@
 #include "options_reference.h"
+#include "support/places.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +10,7 @@ namespace photohull::pipeline {
 namespace {
 
 TEST(OptionsReference, IsWhatTheProgramDescribes) {
-  std::ifstream page(PHOTOHULL_DOCS "/reference/options.md");
+  std::ifstream page(test::in_checkout("docs/reference/options.md"));
   std::stringstream text;
   text << page.rdbuf();
   EXPECT_EQ(text.str(), options_reference())

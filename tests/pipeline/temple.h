@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "pipeline/reconstruct.h"
+#include "support/places.h"
 
 namespace photohull::pipeline {
 
@@ -23,8 +24,8 @@ inline Reconstruction reconstruct_temple(int resolution, Method method,
   options.device = "software";
   options.refine_cameras = RefineCameras::kOff;  // what the cameras as they are lead to
   Progress silent;
-  return Reconstructor(options).run(load_photographs(PHOTOHULL_DATASETS "/templeSparseRing", load),
-                                    silent);
+  return Reconstructor(options).run(
+      load_photographs(test::in_checkout("datasets/templeSparseRing"), load), silent);
 }
 
 }  // namespace photohull::pipeline

@@ -80,14 +80,17 @@ def scripts_of(page):
 
 
 @pytest.mark.parametrize("page, folder_of_plant", [("README.md", False), ("docs/guide/python.md", True)])
-def test_scripts_of_pages_run(page, folder_of_plant, sphere, tmp_path, monkeypatch, capsys):
+def test_scripts_of_pages_run(page, folder_of_plant, sphere, table, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path if folder_of_plant else SOURCE)
     if folder_of_plant:
         os.symlink(sphere, "plant")
+        os.symlink(table / "table/images", "photos")
+        os.symlink(table / "board.json", "board.json")
+    posed = photohull.load(table / "table")
     view = ([1000, 1000, 32, 24], np.eye(3), [0, 0, 1000], np.ones((48, 64), np.uint8))
     scripts = scripts_of(page)
     assert scripts
-    names = {"views": [view]}
+    names = {"views": [view], "pictures": [posed.image(i) for i in range(len(posed))]}
     for script in scripts:
         exec(compile(script, page, "exec"), names)  # pylint: disable=exec-used
     said = capsys.readouterr().out

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "support/places.h"
 
 namespace photohull::synth {
 namespace {
@@ -130,7 +131,7 @@ TEST(Spec, ShapeOrMeshButNotBoth) {
 TEST(Spec, EveryDatasetParses) {
   int count = 0;
   for (const auto& entry :
-       std::filesystem::directory_iterator(std::string(PHOTOHULL_DATASETS) + "/synthetic")) {
+       std::filesystem::directory_iterator(test::in_checkout("datasets/synthetic"))) {
     if (entry.path().extension() != ".json") continue;
     const Spec spec = read_spec(entry.path());
     EXPECT_EQ(spec.name, entry.path().stem().string());

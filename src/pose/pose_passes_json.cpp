@@ -1,31 +1,14 @@
 #include <cmath>
-#include <cstdio>
 #include <glm/gtc/quaternion.hpp>
 #include <nlohmann/json.hpp>
 
-#include "json_parts.h"
-#include "pose_json.h"
-#include "pose_passes.h"
+#include "pose/json_parts.h"
+#include "pose/pose_passes.h"
 
-namespace photohull::cli {
+namespace photohull::pose {
 namespace {
 
 using nlohmann::ordered_json;
-
-/// Turn by so many degrees about an axis, right-hand rule; no turn is one about z.
-struct AxisTurn {
-  glm::dvec3 axis{0, 0, 1};
-  double degrees = 0;
-};
-
-AxisTurn axis_turn(const glm::dmat3& r) {
-  const glm::dquat q = glm::normalize(glm::quat_cast(r));
-  const glm::dvec3 v(q.x, q.y, q.z);
-  const double sine = glm::length(v);
-  if (sine < 1e-12) return {};
-  const double turn = 2 * std::atan2(sine, std::abs(q.w));
-  return {(q.w < 0 ? -v : v) / sine, glm::degrees(turn)};
-}
 
 ordered_json motion_json(const JoinedPass& pass) {
   const AxisTurn turn = axis_turn(pass.motion.rotation);
@@ -44,6 +27,15 @@ ordered_json motion_json(const JoinedPass& pass) {
 int posed_photos(const PosedPass& pass) { return int(pass.pose.scene.views.size()); }
 
 }  // namespace
+
+AxisTurn axis_turn(const glm::dmat3& r) {
+  const glm::dquat q = glm::normalize(glm::quat_cast(r));
+  const glm::dvec3 v(q.x, q.y, q.z);
+  const double sine = glm::length(v);
+  if (sine < 1e-12) return {};
+  const double turn = 2 * std::atan2(sine, std::abs(q.w));
+  return {(q.w < 0 ? -v : v) / sine, glm::degrees(turn)};
+}
 
 std::string passes_json(const std::vector<PosedPass>& passes, const Scene& scene,
                         const std::vector<std::string>& warnings) {
@@ -75,21 +67,4 @@ std::string passes_json(const std::vector<PosedPass>& passes, const Scene& scene
   return j.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
-void print_passes(const std::vector<PosedPass>& passes) {
-  for (std::size_t i = 0; i < passes.size(); ++i) {
-    const PosedPass& pass = passes[i];
-    std::printf("pass %zu\n", i + 1);
-    print_pose(pass.job.names, pass.pose.result, pass.pose.turntable);
-    if (i == 0) continue;
-    const AxisTurn turn = axis_turn(pass.joined.motion.rotation);
-    std::printf(
-        "the object      lay turned by %.3f +- %.3f degrees about (%.3f, %.3f, %.3f), moved by "
-        "+- %.3g units; %d features\n",
-        turn.degrees, pass.joined.turn_sigma, turn.axis.x, turn.axis.y, turn.axis.z,
-        pass.joined.move_sigma, pass.joined.tracks);
-    std::printf("seam             %.3f px, +- %.3f px by the motion\n", pass.joined.seam,
-                pass.joined.seam_sigma);
-  }
-}
-
-}  // namespace photohull::cli
+}  // namespace photohull::pose

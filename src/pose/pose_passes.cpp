@@ -1,21 +1,19 @@
-#include "pose_passes.h"
+#include "pose/pose_passes.h"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/image_scale.h"
+#include "core/option_word.h"
 #include "io/image_file.h"
 #include "io/write_scene.h"
-#include "pose_photos.h"
-#include "terminal_progress.h"
 #include "views/undistort.h"
 
-namespace photohull::cli {
+namespace photohull::pose {
 namespace {
 
 namespace fs = std::filesystem;
@@ -25,7 +23,7 @@ constexpr double kMostGrowth = 2;    // of frames by undistortion
 constexpr double kBelow = 1;         // mm from the sheet down to the joined scene's box
 constexpr double kJoinWeight = 0.5;  // beside a pass
 
-std::vector<PosedPass> pose_each(const PoseJob& job, TerminalProgress& progress) {
+std::vector<PosedPass> pose_each(const PoseJob& job, Progress& progress) {
   std::vector<PosedPass> passes;
   for (const PassOfPhotos& pass : job.passes) {
     PosedPass one{job, {}, {}};
@@ -86,7 +84,7 @@ PhotoPass photo_pass(const PosedPass& pass, const std::string& name, double scal
   return result;
 }
 
-void join(const PoseJob& job, std::vector<PosedPass>& passes, TerminalProgress& progress) {
+void join(const PoseJob& job, std::vector<PosedPass>& passes, Progress& progress) {
   progress.stage("joining", kJoinWeight);
   const double scale = scale_of(passes);
   std::vector<PhotoPass> photos;
@@ -99,6 +97,25 @@ void join(const PoseJob& job, std::vector<PosedPass>& passes, TerminalProgress& 
   }
 }
 
+/// In the first pass's world: what the boxes of all passes have in common, each from `bottom` up.
+Box common_box(const std::vector<PosedPass>& passes, double bottom) {
+  Box common;
+  for (const PosedPass& pass : passes) {
+    Box own = pass.pose.result.box;
+    own.min.z = bottom;
+    Box moved{glm::dvec3(INFINITY), glm::dvec3(-INFINITY)};
+    for (int i = 0; i < 8; ++i) {
+      const glm::dvec3 corner(i & 1 ? own.max.x : own.min.x, i & 2 ? own.max.y : own.min.y,
+                              i & 4 ? own.max.z : own.min.z);
+      const glm::dvec3 p = pass.joined.motion(corner);
+      moved = {glm::min(moved.min, p), glm::max(moved.max, p)};
+    }
+    if (&pass == &passes.front()) common = moved;
+    common = {glm::max(common.min, moved.min), glm::min(common.max, moved.max)};
+  }
+  return common;
+}
+
 Scene scene_of_all(const PoseJob& job, const std::vector<PosedPass>& passes) {
   Scene scene;
   scene.path = job.out;
@@ -108,9 +125,7 @@ Scene scene_of_all(const PoseJob& job, const std::vector<PosedPass>& passes) {
       view.camera = pass.joined.motion.moved(view.camera);
       scene.views.push_back(std::move(view));
     }
-  Box box = passes.front().pose.result.box;
-  box.min.z = -kBelow / job.sheet.unit;
-  scene.box = box;
+  scene.box = common_box(passes, -kBelow / job.sheet.unit);
   return scene;
 }
 
@@ -124,26 +139,22 @@ std::vector<std::string> warnings_of(const PoseJob& job, const std::vector<Posed
 
 }  // namespace
 
-std::string pose_passes(const PoseJob& job, bool tell) {
+PassesPose pose_passes(const PoseJob& job, Progress& progress) {
   if (!read_sheet(job.board).is_flat())
     throw Error(concat(job.board.string(),
-                       ": a strip around a cylinder gives no masks, by which passes are joined; "
-                       "--pass is for objects on a flat sheet"));
-  TerminalProgress progress(double(job.passes.size()) + kJoinWeight);
-  std::vector<PosedPass> passes = pose_each(job, progress);
-  join(job, passes, progress);
-  progress.finish();
-  const Scene scene = scene_of_all(job, passes);
-  const std::vector<std::string> warnings = warnings_of(job, passes);
-  const std::string report = passes_json(passes, scene, warnings);
-  write_atomically(job.out / "pose.json", report);
+                       ": a strip around a cylinder gives no masks, by which passes are joined; ",
+                       option_word("pass"), " is for objects on a flat sheet"));
+  PassesPose found;
+  found.passes = pose_each(job, progress);
+  join(job, found.passes, progress);
+  const Scene scene = scene_of_all(job, found.passes);
+  found.warnings = warnings_of(job, found.passes);
+  found.report = passes_json(found.passes, scene, found.warnings);
+  write_atomically(job.out / "pose.json", found.report);
   io::write_transforms(scene, job.out);
-  print_warnings(warnings);
-  if (tell) {
-    print_passes(passes);
-    std::printf("  %s\n", job.out.c_str());
-  }
-  return report;
+  return found;
 }
 
-}  // namespace photohull::cli
+double passes_weight(const PoseJob& job) { return double(job.passes.size()) + kJoinWeight; }
+
+}  // namespace photohull::pose

@@ -1,6 +1,5 @@
-#include "pose_colmap.h"
+#include "pose/pose_colmap.h"
 
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "core/atomic_file.h"
@@ -8,13 +7,12 @@
 #include "io/image_file.h"
 #include "io/photo_lens.h"
 #include "io/write_scene.h"
-#include "json_parts.h"
 #include "photo/fine_detail.h"
 #include "photo/grey_image.h"
-#include "pose_coverage.h"
-#include "scene_arguments.h"
+#include "pose/json_parts.h"
+#include "pose/pose_coverage.h"
 
-namespace photohull::cli {
+namespace photohull::pose {
 namespace {
 
 namespace fs = std::filesystem;
@@ -113,7 +111,7 @@ ColmapPose pose_with_colmap(const PoseJob& job, Progress& progress) {
   if (!job.masks.empty()) masks = io::find_masks(job.images, job.masks);
   std::vector<io::ColmapPhotoFound> all(job.images.size());
   const Readable readable = look_at_photographs(job, masks, all, progress);
-  make_folder(job.out, "--out");
+  make_scene_folder(job.out);
   ColmapPose pose;
   pose.found = io::run_colmap({readable.photos, job.out / "colmap", job.ordered}, progress);
   for (std::size_t i = 0; i < readable.index.size(); ++i)
@@ -133,21 +131,4 @@ ColmapPose pose_with_colmap(const PoseJob& job, Progress& progress) {
   return pose;
 }
 
-void print_colmap_pose(const PoseJob& job, const ColmapPose& pose) {
-  for (std::size_t i = 0; i < job.names.size(); ++i)
-    if (!pose.found.photos[i].posed)
-      std::printf("%-32s left out: %s\n", job.names[i].c_str(),
-                  pose.found.photos[i].reason.c_str());
-  std::printf("%zu of %zu photographs have a pose, from %zu points\n",
-              pose.found.scene.views.size(), job.names.size(), pose.found.scene.points.size());
-  for (const AdjustedLens& lens : pose.lenses)
-    std::printf("focal length     %.1f +- %.1f px, principal point %.1f +- %.1f, %.1f +- %.1f px\n",
-                lens.intrinsics.fx, lens.focal_sigma, lens.intrinsics.cx, lens.principal_sigma.x,
-                lens.intrinsics.cy, lens.principal_sigma.y);
-  if (pose.found.models > 1)
-    std::printf("COLMAP made %d models that are not connected; the largest is taken\n",
-                pose.found.models);
-  std::printf("  %s, and COLMAP's model in %s\n", job.out.c_str(), pose.found.model.c_str());
-}
-
-}  // namespace photohull::cli
+}  // namespace photohull::pose

@@ -7,10 +7,10 @@
 #include "calib/find_turntable.h"
 #include "core/progress.h"
 #include "masks/still_background.h"
-#include "pose_job.h"
+#include "pose/pose_job.h"
 #include "sheet/draw_sheet.h"
 
-namespace photohull::cli {
+namespace photohull::pose {
 
 const char* to_string(Stillness stillness);
 
@@ -41,4 +41,4 @@ TurntableFinding look_for_turntable(const PoseJob& job, const Sheet& sheet,
                                     const PoseResult& result,
                                     const std::vector<double>& edge_widths, Progress& progress);
 
-}  // namespace photohull::cli
+}  // namespace photohull::pose

@@ -10,7 +10,7 @@
 #include "pipeline/check_photographs.h"
 #include "pipeline/coverage_picture.h"
 
-namespace photohull::cli {
+namespace photohull::pose {
 
 /// Photographs that were looked at, and where those stand that have a pose.
 struct PosedSides {
@@ -27,4 +27,4 @@ pipeline::SkyPlace place_of(const PosedSides& sides, const SourceView& view);
 /// where the picture cannot be written.
 std::vector<std::string> check_sides(const std::filesystem::path& folder, const PosedSides& sides);
 
-}  // namespace photohull::cli
+}  // namespace photohull::pose

@@ -6,7 +6,7 @@
 
 #include "core/camera.h"
 
-namespace photohull::cli {
+namespace photohull::pose {
 
 /// null where it is infinite or no number, which JSON cannot say.
 nlohmann::ordered_json finite_or_null(double value);
@@ -14,4 +14,4 @@ nlohmann::ordered_json vector_json(const glm::dvec3& v);
 /// Sets "R", by rows, and "t".
 void add_pose_json(const Pose& pose, nlohmann::ordered_json& j);
 
-}  // namespace photohull::cli
+}  // namespace photohull::pose

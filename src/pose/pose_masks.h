@@ -6,10 +6,10 @@
 
 #include "calib/pose_photographs.h"
 #include "core/progress.h"
-#include "pose_scenery.h"
-#include "pose_turntable.h"
+#include "pose/pose_scenery.h"
+#include "pose/pose_turntable.h"
 
-namespace photohull::cli {
+namespace photohull::pose {
 
 /// The mask of each photograph by what the sheet alone would look like, written to
 /// FOLDER/NAME.png; returns the files, an empty path where a photograph is not posed or no mask was
@@ -20,4 +20,4 @@ std::vector<std::filesystem::path> write_sheet_masks(
     const std::vector<double>& edge_widths, const Sheet& sheet, const TurntableFinding& turntable,
     const SheetScenery& scenery, PoseResult& result, Progress& progress);
 
-}  // namespace photohull::cli
+}  // namespace photohull::pose

@@ -1,12 +1,11 @@
-#include "pose_json.h"
+#include "pose/pose_json.h"
 
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "json_parts.h"
+#include "pose/json_parts.h"
 
-namespace photohull::cli {
+namespace photohull::pose {
 namespace {
 
 using nlohmann::ordered_json;
@@ -86,31 +85,4 @@ std::string pose_json(const std::vector<std::string>& names, const PoseResult& r
   return j.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
-void print_pose(const std::vector<std::string>& names, const PoseResult& result,
-                const TurntableFinding& turntable) {
-  int posed = 0;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const PosedPhoto& p = result.photos[i];
-    posed += p.posed;
-    if (!p.posed) std::printf("%-32s left out: %s\n", names[i].c_str(), p.reason.c_str());
-  }
-  std::printf("%d of %zu photographs have a pose\n", posed, names.size());
-  for (const PosedCamera& c : result.cameras)
-    std::printf("focal length     %.2f +- %.2f px, %d photographs (%s)\n", c.intrinsics.fx,
-                c.focal_sigma, c.photographs, c.name.c_str());
-  std::printf("reprojection     %.4f px rms\n", result.rms);
-  std::printf("at the object    +- %.4f px\n", result.object_error);
-  if (result.bend.found)
-    std::printf("the sheet is bent: it rises or falls by %.3g +- %.2g units at its rim\n",
-                result.bend.height, result.bend.height_sigma);
-  const TurntableMotion& motion = turntable.motion;
-  if (turntable.found())
-    std::printf(
-        "turntable        %d photographs around one axis, %.3g degrees and %.3g units rms; the "
-        "background is still\n",
-        turntable.photographs(), motion.rms_degrees, motion.rms_length);
-  else if (!turntable.stations.empty())
-    std::printf("no turntable     the cameras fit one, but %s\n", turntable.reason().c_str());
-}
-
-}  // namespace photohull::cli
+}  // namespace photohull::pose

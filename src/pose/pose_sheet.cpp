@@ -1,4 +1,4 @@
-#include "pose_sheet.h"
+#include "pose/pose_sheet.h"
 
 #include <filesystem>
 
@@ -8,12 +8,11 @@
 #include "io/image_file.h"
 #include "io/photo_lens.h"
 #include "io/write_scene.h"
-#include "pose_coverage.h"
-#include "pose_json.h"
-#include "pose_masks.h"
-#include "scene_arguments.h"
+#include "pose/pose_coverage.h"
+#include "pose/pose_json.h"
+#include "pose/pose_masks.h"
 
-namespace photohull::cli {
+namespace photohull::pose {
 namespace {
 
 namespace fs = std::filesystem;
@@ -106,7 +105,7 @@ SheetPose pose_on_sheet(const PoseJob& job, Progress& progress) {
   } else {
     pose.turntable.motion.reason = "a strip does not tell where the background behind it begins";
   }
-  make_folder(job.out, "--out");
+  make_scene_folder(job.out);
   std::vector<fs::path> masks;
   if (job.make_masks && sheet.is_flat()) {
     SheetScenery scenery;
@@ -132,4 +131,4 @@ SheetPose pose_on_sheet(const PoseJob& job, Progress& progress) {
   return pose;
 }
 
-}  // namespace photohull::cli
+}  // namespace photohull::pose

@@ -8,7 +8,7 @@
 #include "calib/pose_photographs.h"
 #include "io/photo_lens.h"
 
-namespace photohull::cli {
+namespace photohull::pose {
 
 /// Photographs during which the object did not move.
 struct PassOfPhotos {
@@ -36,8 +36,11 @@ std::vector<std::string> names_of(const std::vector<std::filesystem::path>& imag
 /// A pass for each folder (or file). Throws as io::list_images does.
 std::vector<PassOfPhotos> passes_of(const std::vector<std::string>& folders);
 
+/// Makes the folder for the scene, or one within it. Throws Error where that fails.
+void make_scene_folder(const std::filesystem::path& folder);
+
 /// A warning where a focal length is given and none of the photographs' lenses takes it; else
 /// empty.
 std::string unused_focal(const PoseJob& job, bool taken);
 
-}  // namespace photohull::cli
+}  // namespace photohull::pose

@@ -6,10 +6,10 @@
 #include "calib/pose_photographs.h"
 #include "core/progress.h"
 #include "core/scene.h"
-#include "pose_job.h"
-#include "pose_turntable.h"
+#include "pose/pose_job.h"
+#include "pose/pose_turntable.h"
 
-namespace photohull::cli {
+namespace photohull::pose {
 
 /// What was found, with an entry for each image of the job.
 struct SheetPose {
@@ -24,4 +24,4 @@ struct SheetPose {
 /// Error for a board's description or a folder that is not usable.
 SheetPose pose_on_sheet(const PoseJob& job, Progress& progress);
 
-}  // namespace photohull::cli
+}  // namespace photohull::pose

@@ -10,7 +10,7 @@
 #include "core/sheet_light.h"
 #include "core/sheet_look.h"
 
-namespace photohull::cli {
+namespace photohull::pose {
 
 /// Leaves out of `values`, of a picture of that size, what a shadow leaves out, where there is one.
 void keep_to(const Mask& shadow, int width, int height, std::vector<std::uint8_t>& values);
@@ -32,4 +32,4 @@ SheetScenery explore_sheet(const std::vector<std::filesystem::path>& images,
                            const std::vector<double>& edge_widths, const Sheet& sheet,
                            const PoseResult& result, Progress& progress);
 
-}  // namespace photohull::cli
+}  // namespace photohull::pose

@@ -1,4 +1,4 @@
-#include "pose_turntable.h"
+#include "pose/pose_turntable.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +10,9 @@
 #include "core/scaled_size.h"
 #include "io/image_file.h"
 #include "masks/sheet_mask.h"
-#include "pose_scenery.h"
+#include "pose/pose_scenery.h"
 
-namespace photohull::cli {
+namespace photohull::pose {
 namespace {
 
 constexpr double kTexelsPerMm = 4;
@@ -163,4 +163,4 @@ TurntableFinding look_for_turntable(const PoseJob& job, const Sheet& sheet,
   return TurntableSearch(job, sheet, result, edge_widths, progress).run();
 }
 
-}  // namespace photohull::cli
+}  // namespace photohull::pose

@@ -7,9 +7,9 @@
 #include "calib/adjust_lenses.h"
 #include "core/progress.h"
 #include "io/run_colmap.h"
-#include "pose_job.h"
+#include "pose/pose_job.h"
 
-namespace photohull::cli {
+namespace photohull::pose {
 
 /// Writes transforms.json, points.ply and pose.json into the job's folder, and COLMAP's work into
 /// colmap/ there, whose cameras are those before lenses are adjusted. What it found comes back for
@@ -23,7 +23,4 @@ struct ColmapPose {
 };
 ColmapPose pose_with_colmap(const PoseJob& job, Progress& progress);
 
-/// A few lines on standard output.
-void print_colmap_pose(const PoseJob& job, const ColmapPose& pose);
-
-}  // namespace photohull::cli
+}  // namespace photohull::pose

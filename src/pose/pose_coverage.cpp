@@ -1,9 +1,9 @@
-#include "pose_coverage.h"
+#include "pose/pose_coverage.h"
 
 #include "core/atomic_file.h"
 #include "io/image_file.h"
 
-namespace photohull::cli {
+namespace photohull::pose {
 
 pipeline::SkyPlace place_of(const PosedSides& sides, const SourceView& view) {
   return pipeline::find_coverage({&view, 1}, sides.middle, sides.up).places.front();
@@ -17,4 +17,4 @@ std::vector<std::string> check_sides(const std::filesystem::path& folder, const 
   return pipeline::check_photographs(sides.looks, coverage, file.string());
 }
 
-}  // namespace photohull::cli
+}  // namespace photohull::pose

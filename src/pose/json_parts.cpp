@@ -1,8 +1,8 @@
-#include "json_parts.h"
+#include "pose/json_parts.h"
 
 #include <cmath>
 
-namespace photohull::cli {
+namespace photohull::pose {
 
 using nlohmann::ordered_json;
 
@@ -18,4 +18,4 @@ void add_pose_json(const Pose& pose, ordered_json& j) {
   j["t"] = vector_json(pose.translation);
 }
 
-}  // namespace photohull::cli
+}  // namespace photohull::pose

@@ -1,15 +1,15 @@
-#include "pose_masks.h"
+#include "pose/pose_masks.h"
 
 #include <set>
 #include <string>
 
 #include "calib/sheet_look.h"
 #include "core/error.h"
+#include "core/option_word.h"
 #include "io/image_file.h"
 #include "masks/sheet_mask.h"
-#include "scene_arguments.h"
 
-namespace photohull::cli {
+namespace photohull::pose {
 namespace {
 
 namespace fs = std::filesystem;
@@ -35,7 +35,7 @@ std::vector<fs::path> write_sheet_masks(const fs::path& folder, const std::vecto
                                         const SheetScenery& scenery, PoseResult& result,
                                         Progress& progress) {
   constexpr double kMuch = 0.2;
-  make_folder(folder, "--out");
+  make_scene_folder(folder);
   const SheetPicture picture = sheet_picture(sheet, kTexelsPerMm);
   const std::vector<std::string> names = mask_names(images);
   std::vector<fs::path> files(images.size());
@@ -64,8 +64,9 @@ std::vector<fs::path> write_sheet_masks(const fs::path& folder, const std::vecto
     result.warnings.push_back(concat(
         undecided,
         " photographs show much of what is behind the sheet, of many colours, where the object may "
-        "be: their masks are too large there; give a lower --height, or look from higher up"));
+        "be: their masks are too large there; give a lower ",
+        option_word("height"), ", or look from higher up"));
   return files;
 }
 
-}  // namespace photohull::cli
+}  // namespace photohull::pose

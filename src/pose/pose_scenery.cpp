@@ -1,4 +1,4 @@
-#include "pose_scenery.h"
+#include "pose/pose_scenery.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include "masks/find_sheet_light.h"
 #include "masks/sheet_mask.h"
 
-namespace photohull::cli {
+namespace photohull::pose {
 namespace {
 
 constexpr double kTexelsPerMm = 4;
@@ -157,4 +157,4 @@ SheetScenery explore_sheet(const std::vector<std::filesystem::path>& images,
   return Exploration(images, edge_widths, sheet, result, progress).run();
 }
 
-}  // namespace photohull::cli
+}  // namespace photohull::pose
