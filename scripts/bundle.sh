@@ -47,7 +47,7 @@ if [ $build = yes ]; then
   install_missing patchelf xz-utils binutils gcc
   scripts/setup.sh --target installed
 fi
-for tool in patchelf xz objdump nm cc ldd python3; do
+for tool in patchelf xz objdump cc ldd python3; do
   command -v $tool >/dev/null || die "$tool is missing; run scripts/bundle.sh without --no-build."
 done
 [ -x build/release/photohull-lab ] || die "build/release has no photohull-lab; run scripts/setup.sh first."

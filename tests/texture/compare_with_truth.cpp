@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <mutex>
 #include <optional>
 
 #include "core/error.h"
@@ -61,6 +62,11 @@ class Truth {
     return median;
   }
 
+  /// From the true surface, world units.
+  double distance(const glm::dvec3& point) const {
+    return glm::distance(nearest_.nearest(point).point, point);
+  }
+
  private:
   std::optional<glm::dvec2> pixel_of(const glm::dvec3& point, const glm::dvec3& normal,
                                      const Camera& camera) const {
@@ -108,6 +114,8 @@ class Truth {
 
 struct Counts {
   std::atomic<std::int64_t> known{0}, unknown{0}, apart{0}, squared{0};  // squared: in 1e-9
+  std::mutex mutex;
+  std::vector<double> off;  // world units: how far the mesh is off where colours are apart
 };
 
 void look_at_triangle(const TexturedMesh& mesh, std::size_t face, const Truth& truth,
@@ -128,8 +136,9 @@ void look_at_triangle(const TexturedMesh& mesh, std::size_t face, const Truth& t
       const double b = (p.x * v.y - p.y * v.x) / area, c = (u.x * p.y - u.y * p.x) / area;
       if (b < 0 || c < 0 || b + c > 1) continue;
       const auto& t = mesh.mesh.triangles[face];
-      const auto colour = truth.colour((1 - b - c) * mesh.mesh.world(t[0]) +
-                                       b * mesh.mesh.world(t[1]) + c * mesh.mesh.world(t[2]));
+      const glm::dvec3 point = (1 - b - c) * mesh.mesh.world(t[0]) + b * mesh.mesh.world(t[1]) +
+                               c * mesh.mesh.world(t[2]);
+      const auto colour = truth.colour(point);
       if (!colour) {
         ++counts.unknown;
         continue;
@@ -137,7 +146,11 @@ void look_at_triangle(const TexturedMesh& mesh, std::size_t face, const Truth& t
       const std::uint8_t* rgb = &page.rgb[3 * (std::size_t(y) * page.width + std::size_t(x))];
       const glm::dvec3 d = glm::dvec3(rgb[0], rgb[1], rgb[2]) / 255.0 - *colour;
       ++counts.known;
-      counts.apart += std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}) > kApart;
+      if (std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}) > kApart) {
+        ++counts.apart;
+        const std::lock_guard lock(counts.mutex);
+        counts.off.push_back(truth.distance(point));
+      }
       counts.squared += std::int64_t(1e9 * glm::dot(d, d) / 3);
     }
 }
@@ -160,6 +173,10 @@ int run(const std::vector<std::string>& arguments) {
         arguments[m].c_str(), static_cast<long long>(counts.known),
         static_cast<long long>(counts.unknown), 100 * double(counts.apart) / known, kApart,
         -10 * std::log10(std::max(1e-9 * double(counts.squared) / known, 1e-12)));
+    std::ranges::sort(counts.off);
+    if (!counts.off.empty())
+      std::printf("where they do, the mesh is off by %.2g units (median), at most %.2g\n",
+                  counts.off[counts.off.size() / 2], counts.off.back());
   }
   return 0;
 }
