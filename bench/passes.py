@@ -135,6 +135,16 @@ def judged(first: Path, other: Path, report: dict) -> dict:
     return told | {"points": [p["points"] for p in report["passes"]], "degrees_off": turn, "px_off": rms / pixel_of(other)}
 
 
+def photographs_of(scene: Path) -> Path:
+    """A folder of the photographs alone: beside a scene's own lie exact masks, which are taken where one is missing."""
+    photos = scene.with_name(f"{scene.name}_photos")
+    photos.mkdir(exist_ok=True)
+    for image in (scene / "images").iterdir():
+        if not (photos / image.name).exists():
+            (photos / image.name).hardlink_to(image)
+    return photos
+
+
 def exact_scene(first: Path, other: Path, folder: Path) -> Path:
     """The views of both passes with their exact cameras and masks, in the first one's world."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -157,9 +167,10 @@ def exact_scene(first: Path, other: Path, folder: Path) -> Path:
 def models(photohull: Photohull, first: Path, other: Path, folder: Path) -> dict[str, dict]:
     name = first.name
     scanned, exact, one = folder / f"{name}_scan", folder / f"{name}_exact", folder / f"{name}_one"
-    photohull.once(scanned, "scan", "--pass", first / "images", other / "images", "--board", BOARD, "--out", scanned, "--fresh")
+    passes = [photographs_of(first), photographs_of(other)]
+    photohull.once(scanned, "scan", "--pass", *passes, "--board", BOARD, "--out", scanned, "--fresh")
     photohull.once(exact, "reconstruct", exact_scene(first, other, folder / f"{name}_both"), "--out", exact)
-    photohull.once(one, "scan", first / "images", "--board", BOARD, "--out", one, "--fresh")
+    photohull.once(one, "scan", passes[0], "--board", BOARD, "--out", one, "--fresh")
     result = {}
     for label, model in (("scan of two passes", scanned), ("exact cameras and masks", exact), ("scan of the first pass", one)):
         by_passes = [photohull.evaluate(model / "mesh.ply", "--truth", truth, "--align", "--thresholds", 0.0025)
@@ -196,7 +207,8 @@ def run(options: argparse.Namespace) -> None:
             other = photohull.synthesize(turned(spec, options.turn), folder / f"{name}_turned", "--size", options.size)
             posed = folder / f"{name}_posed"
             try:
-                photohull.once(posed, "pose", "--pass", first / "images", other / "images", "--board", BOARD, "--out", posed)
+                passes = [photographs_of(first), photographs_of(other)]
+                photohull.once(posed, "pose", "--pass", *passes, "--board", BOARD, "--out", posed)
             except ProgramError as refused:
                 print(tables.line([name, refused.message]), flush=True)
                 continue

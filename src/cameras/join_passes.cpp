@@ -13,6 +13,7 @@
 namespace photohull {
 namespace {
 
+constexpr std::size_t kFewestViews = 3;    // of a pass
 constexpr std::size_t kFewestPoints = 30;  // of a pass
 constexpr std::size_t kFewestPairs = 12;   // that agree on a motion
 constexpr std::size_t kFewestTracks = 20;  // across the seam
@@ -105,6 +106,12 @@ class Joiner {
 
  private:
   void find_points() {
+    for (const PhotoPass& pass : passes_)
+      if (pass.views.size() < kFewestViews)
+        throw Error(concat(pass.name, ": ", pass.views.size(),
+                           pass.views.size() == 1 ? " photograph has" : " photographs have",
+                           " a pose and a mask, and joining passes takes ", kFewestViews,
+                           " or more, from all around the object"));
     for (std::size_t i = 0; i < passes_.size(); ++i) {
       points_.push_back(find_described_points(passes_[i].views, passes_[i].box, progress_));
       progress_.update(0.4 * double(i + 1) / double(passes_.size()));

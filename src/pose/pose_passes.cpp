@@ -4,11 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
 
+#include "carving/object_box.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/image_scale.h"
 #include "core/option_word.h"
+#include "core/read_file.h"
 #include "io/image_file.h"
 #include "io/write_scene.h"
 #include "views/undistort.h"
@@ -84,19 +88,6 @@ PhotoPass photo_pass(const PosedPass& pass, const std::string& name, double scal
   return result;
 }
 
-void join(const PoseJob& job, std::vector<PosedPass>& passes, Progress& progress) {
-  progress.stage("joining", kJoinWeight);
-  const double scale = scale_of(passes);
-  std::vector<PhotoPass> photos;
-  for (std::size_t i = 0; i < passes.size(); ++i)
-    photos.push_back(photo_pass(passes[i], job.passes[i].name, scale, progress));
-  const std::vector<JoinedPass> joined = join_passes(photos, progress);
-  for (std::size_t i = 0; i < passes.size(); ++i) {
-    passes[i].joined = joined[i];
-    passes[i].joined.seam /= scale, passes[i].joined.seam_sigma /= scale;
-  }
-}
-
 /// In the first pass's world: what the boxes of all passes have in common, each from `bottom` up.
 Box common_box(const std::vector<PosedPass>& passes, double bottom) {
   Box common;
@@ -116,7 +107,35 @@ Box common_box(const std::vector<PosedPass>& passes, double bottom) {
   return common;
 }
 
-Scene scene_of_all(const PoseJob& job, const std::vector<PosedPass>& passes) {
+/// What the masks of all passes leave of it: in its corners are places that hardly a photograph
+/// shows.
+Box object_in(const Box& box, const std::vector<PosedPass>& passes,
+              const std::vector<PhotoPass>& photos) {
+  std::vector<PreparedView> views;
+  for (std::size_t i = 0; i < passes.size(); ++i)
+    for (const PreparedView& view : photos[i].views) {
+      views.push_back(view);
+      views.back().camera = passes[i].joined.motion.moved(view.camera);
+    }
+  return carving::object_box(box, views);
+}
+
+/// Returns the box that holds the object, in the first pass's world.
+Box join(const PoseJob& job, std::vector<PosedPass>& passes, Progress& progress) {
+  progress.stage("joining", kJoinWeight);
+  const double scale = scale_of(passes);
+  std::vector<PhotoPass> photos;
+  for (std::size_t i = 0; i < passes.size(); ++i)
+    photos.push_back(photo_pass(passes[i], job.passes[i].name, scale, progress));
+  const std::vector<JoinedPass> joined = join_passes(photos, progress);
+  for (std::size_t i = 0; i < passes.size(); ++i) {
+    passes[i].joined = joined[i];
+    passes[i].joined.seam /= scale, passes[i].joined.seam_sigma /= scale;
+  }
+  return object_in(common_box(passes, -kBelow / job.sheet.unit), passes, photos);
+}
+
+Scene scene_of_all(const PoseJob& job, const std::vector<PosedPass>& passes, const Box& box) {
   Scene scene;
   scene.path = job.out;
   scene.format = SceneFormat::kTransforms;
@@ -125,8 +144,62 @@ Scene scene_of_all(const PoseJob& job, const std::vector<PosedPass>& passes) {
       view.camera = pass.joined.motion.moved(view.camera);
       scene.views.push_back(std::move(view));
     }
-  scene.box = common_box(passes, -kBelow / job.sheet.unit);
+  scene.box = box;
   return scene;
+}
+
+/// A photograph of a pass.
+struct PassImage {
+  std::size_t pass;
+  fs::path file;
+};
+
+/// Photographs by their files' sizes; without those that cannot be read, which are told elsewhere.
+std::map<std::uintmax_t, std::vector<PassImage>> images_by_size(const PoseJob& job) {
+  std::map<std::uintmax_t, std::vector<PassImage>> all;
+  for (std::size_t i = 0; i < job.passes.size(); ++i)
+    for (const fs::path& image : job.passes[i].images) {
+      std::error_code unknown;
+      const std::uintmax_t size = fs::file_size(image, unknown);
+      if (!unknown) all[size].push_back({i, image});
+    }
+  return all;
+}
+
+/// Throws Error where a photograph was given for two passes.
+void refuse_twice(const PoseJob& job) {
+  for (const auto& [size, images] : images_by_size(job)) {
+    if (images.front().pass == images.back().pass) continue;
+    std::map<std::size_t, PassImage> by_content;
+    for (const PassImage& image : images) {
+      const std::size_t content = std::hash<std::string>{}(read_whole_file(image.file));
+      const auto [other, is_new] = by_content.try_emplace(content, image);
+      if (is_new || other->second.pass == image.pass) continue;
+      throw Error(concat(image.file.string(), " and ", other->second.file.string(),
+                         " are the same photograph: ", option_word("pass"),
+                         " takes a folder for each side that the object lay on, each with "
+                         "photographs of its own"));
+    }
+  }
+}
+
+/// Degrees by which the second world's upright axis is tilted in the first.
+double tilt(const RigidMotion& motion) {
+  return glm::degrees(std::acos(std::clamp(motion.rotation[2].z, -1.0, 1.0)));
+}
+
+/// Names passes whose sheet lies against the same side of the object, if all do.
+void warn_of_one_side(const PoseJob& job, const std::vector<PosedPass>& passes,
+                      std::vector<std::string>& warnings) {
+  constexpr double kSameSide = 15;  // degrees
+  double most = 0;
+  for (const PosedPass& pass : passes) most = std::max(most, tilt(pass.joined.motion));
+  if (most < kSameSide)
+    warnings.push_back(concat("the object lay on the same side in all passes (tilted by ",
+                              std::round(10 * most) / 10, " degrees at most between ",
+                              job.passes.front().name,
+                              " and another): what it stood on is seen in none; lay it on its side "
+                              "for one of them"));
 }
 
 std::vector<std::string> warnings_of(const PoseJob& job, const std::vector<PosedPass>& passes) {
@@ -134,6 +207,7 @@ std::vector<std::string> warnings_of(const PoseJob& job, const std::vector<Posed
   for (std::size_t i = 0; i < passes.size(); ++i)
     for (const std::string& text : passes[i].pose.result.warnings)
       all.push_back(concat(job.passes[i].name, ": ", text));
+  warn_of_one_side(job, passes, all);
   return all;
 }
 
@@ -144,10 +218,11 @@ PassesPose pose_passes(const PoseJob& job, Progress& progress) {
     throw Error(concat(job.board.string(),
                        ": a strip around a cylinder gives no masks, by which passes are joined; ",
                        option_word("pass"), " is for objects on a flat sheet"));
+  refuse_twice(job);
   PassesPose found;
   found.passes = pose_each(job, progress);
-  join(job, found.passes, progress);
-  const Scene scene = scene_of_all(job, found.passes);
+  const Box box = join(job, found.passes, progress);
+  const Scene scene = scene_of_all(job, found.passes, box);
   found.warnings = warnings_of(job, found.passes);
   found.report = passes_json(found.passes, scene, found.warnings);
   write_atomically(job.out / "pose.json", found.report);

@@ -26,9 +26,11 @@ struct PassesPose {
 
 /// Poses each pass by the sheet into pass1/, pass2/ ... of the job's folder, as photohull pose
 /// does, and joins them in the first one's world (join_passes): writes transforms.json and
-/// pose.json into the job's folder. Views are called PASS/NAME. The box is what the passes' boxes
-/// have in common, each down to below its sheet, for other passes show what stood on it. Throws as
-/// pose_on_sheet and join_passes do, and Error for a sheet around a cylinder.
+/// pose.json into the job's folder. Views are called PASS/NAME. The box is what the masks of
+/// all passes leave (carving/object_box.h) of what the passes' boxes have in common, each down to
+/// below its sheet, for other passes show what stood on it. Throws as
+/// pose_on_sheet and join_passes do, and Error for a sheet around a cylinder
+/// and for a photograph that two passes have.
 PassesPose pose_passes(const PoseJob& job, Progress& progress);
 
 /// The weights of its stages together.

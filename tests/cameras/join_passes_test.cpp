@@ -329,16 +329,44 @@ TEST(RefineMotion, NeedsTracksAcrossTheSeam) {
   EXPECT_FALSE(passes.refine(0, 0));
 }
 
-TEST(JoinPasses, AnEmptyPassIsNamed) {
-  const std::vector<PhotoPass> passes = {{"side1", {}, {}}, {"side2", {}, {}}};
+/// Grey photographs of a ring.
+PhotoPass plain_pass(const std::string& name, int count) {
+  PhotoPass pass{name, {}, {glm::dvec3(-50), glm::dvec3(50)}};
+  for (const Camera& camera : ring(count, glm::dvec3(0))) {
+    PreparedView view;
+    view.name = concat(name, "/", pass.views.size());
+    view.camera = camera;
+    const std::size_t pixels = 800 * 600;
+    view.image = {800, 600, ColourImage::Encoding::kSrgb8, false, {}};
+    view.image.bytes.assign(4 * pixels, 128);
+    view.mask = {800, 600, std::vector<std::uint8_t>(pixels, 255)};
+    pass.views.push_back(std::move(view));
+  }
+  return pass;
+}
+
+std::string refusal(const std::vector<PhotoPass>& passes) {
   Progress silent;
   try {
     join_passes(passes, silent);
-    FAIL() << "no error";
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("side1: only 0 points of the object can be told apart"));
-    EXPECT_THAT(error.what(), HasSubstr("stick or draw small marks onto it"));
+    return error.what();
   }
+  return "none";
+}
+
+TEST(JoinPasses, OfTooFewPhotographsIsNamed) {
+  EXPECT_EQ(refusal({plain_pass("side1", 3), plain_pass("side2", 2)}),
+            "side2: 2 photographs have a pose and a mask, and joining passes takes 3 or more, from "
+            "all around the object");
+  EXPECT_THAT(refusal({plain_pass("side1", 1), plain_pass("side2", 3)}),
+              HasSubstr("side1: 1 photograph has"));
+}
+
+TEST(JoinPasses, WithoutTextureIsNamed) {
+  const std::string said = refusal({plain_pass("side1", 3), plain_pass("side2", 3)});
+  EXPECT_THAT(said, HasSubstr("side1: only 0 points of the object can be told apart"));
+  EXPECT_THAT(said, HasSubstr("stick or draw small marks onto it"));
 }
 
 }  // namespace

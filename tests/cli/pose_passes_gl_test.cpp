@@ -4,12 +4,15 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "child_process.h"
 #include "core/atomic_file.h"
+#include "core/error.h"
 #include "io/load_scene.h"
 #include "sphere_scene.h"
+#include "support/places.h"
 #include "support/scratch_folder.h"
 
 namespace photohull::test {
@@ -19,15 +22,26 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using testing::HasSubstr;
 
-const std::string kBoard = PHOTOHULL_SOURCE "/datasets/boards/board_a4.json";
+const std::string kBoard = test::in_checkout("datasets/boards/board_a4.json");
 
+/// Photographs of an arch on the sheet, rendered once for all tests: upright, lying on its side,
+/// and a few of one without texture.
 class PosePasses : public testing::Test {
  protected:
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  json read(const std::string& name) const { return json::parse(read_bytes(folder_ / name)); }
+  static void SetUpTestSuite() {
+    folder_.emplace();
+    photograph("upright", json::object());
+    photograph("lying", {{"sheet", {{"turn", {90, 0, 0}}}}, {"degradations", {{"seed", 3}}}});
+    photograph("plain", {{"material", {{"contrast", 0}}},
+                         {"cameras", {{"rings", {{{"count", 3}, {"elevation", 45}}}}}}});
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+
+  static std::string path(const std::string& name) { return (*folder_ / name).string(); }
+  static json read(const std::string& name) { return json::parse(read_bytes(*folder_ / name)); }
 
   /// An arch on the sheet, photographed into a folder; `spec` in the place of some fields.
-  void photograph(const std::string& name, const json& spec) const {
+  static void photograph(const std::string& name, const json& spec) {
     json all = json::parse(R"({"geometry": {"shape": "arch"},
       "material": {"base": [0.6, 0.33, 0.16], "contrast": 0.7, "size": 0.2},
       "background": {"colour": [0.1, 0.12, 0.14]}, "sheet": {"fill": 0.7},
@@ -37,23 +51,31 @@ class PosePasses : public testing::Test {
       "degradations": {"photon_noise": 0.01, "blur": 0.4}, "truth_samples": 500})");
     all.merge_patch(spec);
     all["sheet"]["board"] = kBoard;
-    write_atomically(folder_ / (name + ".json"), all.dump());
+    write_atomically(*folder_ / (name + ".json"), all.dump());
     const Finished made = run_photohull({"synthesize", path(name + ".json"), "--out", path(name)});
     ASSERT_EQ(made.code, 0) << made.err;
   }
-  Finished pose(const std::string& second) const {
-    return run_photohull({"pose", "--pass", path("upright/images"), path(second + "/images"),
-                          "--board", kBoard, "--out", path("scene")});
+  static Finished pose(const std::string& first, const std::string& second) {
+    return run_photohull(
+        {"pose", "--pass", path(first), path(second), "--board", kBoard, "--out", path("scene")});
+  }
+  /// So many of a folder's photographs, in another folder.
+  static void copy(const std::string& from, const std::string& to, int count) {
+    fs::create_directories(path(to));
+    for (int i = 0; i < count; ++i)
+      fs::copy(path(concat(from, "/images/000", i, ".png")), path(to));
   }
   glm::dvec3 vector(const json& j) const { return {j[0], j[1], j[2]}; }
 
-  ScratchFolder folder_;
+  void TearDown() override { fs::remove_all(path("scene")); }
+
+  static std::optional<ScratchFolder> folder_;
 };
 
+std::optional<ScratchFolder> PosePasses::folder_;
+
 TEST_F(PosePasses, AreJoinedByTheObjectsTexture) {
-  photograph("upright", json::object());
-  photograph("lying", {{"sheet", {{"turn", {90, 0, 0}}}}, {"degradations", {{"seed", 3}}}});
-  const Finished posed = pose("lying");
+  const Finished posed = pose("upright/images", "lying/images");
   ASSERT_EQ(posed.code, 0) << posed.err;
   EXPECT_THAT(posed.out, HasSubstr("the object      lay turned by "));
   EXPECT_THAT(posed.out, HasSubstr("seam "));
@@ -96,16 +118,27 @@ TEST_F(PosePasses, AreJoinedByTheObjectsTexture) {
 }
 
 TEST_F(PosePasses, OfAPlainObjectAreRefused) {
-  const json plain = {{"material", {{"contrast", 0}}},
-                      {"image", {{"width", 480}, {"height", 360}}},
-                      {"cameras", {{"rings", {{{"count", 3}, {"elevation", 45}}}}}}};
-  photograph("upright", plain);
-  photograph("lying", plain);
-  const Finished posed = pose("lying");
+  const Finished posed = pose("plain/images", "lying/images");
   EXPECT_EQ(posed.code, 1);
   EXPECT_THAT(posed.err, HasSubstr("images_1: only "));
   EXPECT_THAT(posed.err, HasSubstr("the object has too little texture"));
-  EXPECT_FALSE(fs::exists(folder_ / "scene/transforms.json"));
+  EXPECT_FALSE(fs::exists(path("scene/transforms.json")));
+}
+
+TEST_F(PosePasses, OfTooFewPhotographsAreRefused) {
+  copy("lying", "few", 2);
+  const Finished posed = pose("plain/images", "few");
+  EXPECT_EQ(posed.code, 1);
+  EXPECT_THAT(posed.err, HasSubstr("few: 2 photographs have a pose and a mask, and joining passes "
+                                   "takes 3 or more"));
+}
+
+TEST_F(PosePasses, WithAPhotographInCommonAreRefused) {
+  copy("lying", "copied", 1);
+  const Finished posed = pose("lying/images", "copied");
+  EXPECT_EQ(posed.code, 1);
+  EXPECT_THAT(posed.err, HasSubstr("0000.png are the same photograph: --pass takes a folder for "
+                                   "each side that the object lay on"));
 }
 
 }  // namespace
