@@ -301,4 +301,11 @@ SheetMask mask_from_sheet(const ColourImage& image, const SheetLook& look, bool 
   return Comparison(image, look, still).run(image, cut);
 }
 
+void keep_shares(Mask& mask) {
+  constexpr std::uint8_t kHalf = 128;
+  cv::Mat coverage(mask.height, mask.width, CV_8U, mask.coverage.data()), near;
+  cv::dilate(coverage >= kHalf, near, cv::getStructuringElement(cv::MORPH_RECT, {3, 3}));
+  coverage.setTo(0, ~near);
+}
+
 }  // namespace photohull

@@ -26,4 +26,8 @@ struct SheetMask {
 SheetMask mask_from_sheet(const ColourImage& image, const SheetLook& look, bool cut,
                           const StillBackground& still = {});
 
+/// For files, which say what share of a pixel is the object's: evidence of less than a half that is
+/// not beside a pixel of more, such as a shadow's edge, would be read as a thin part, and goes.
+void keep_shares(Mask& mask);
+
 }  // namespace photohull
