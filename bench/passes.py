@@ -9,7 +9,7 @@ object's surface from where it is across the lines of sight (root mean square ov
 deviation that the report states (of the turn: about one axis); and the seam. `--seeds` renders so many pairs with other
 noise; the last line then has root mean squares. `--scan` makes models by `scan --pass`, by the exact cameras and masks of
 both passes, and by `scan` of the first pass alone, and prints F-scores at 0.25 % of the diagonal, of the surface that each
-pass sees and of all. `--plain` gives the object no texture. Needs numpy."""
+pass sees and of all, and how many edges of the mesh are open. `--plain` gives the object no texture. Needs numpy."""
 import argparse
 import copy
 import json
@@ -34,7 +34,8 @@ OBJECTS = {
 PLAIN = {"contrast": 0}
 COLUMNS = ["object", "turn off, degrees", "stated", "surface off, px", "stated", "seam, px", "points", "features", "outside"]
 ERRORS = [("degrees_off", "rotation_sigma_degrees"), ("px_off", "seam_sigma")]
-MODEL_COLUMNS = ["object", "model", "F, seen by pass 1", "F, seen by pass 2", "F, all", "of the surface found", "verdict"]
+MODEL_COLUMNS = ["object", "model", "F, seen by pass 1", "F, seen by pass 2", "F, all", "of the surface found", "open edges",
+                 "verdict"]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -167,23 +168,21 @@ def exact_scene(first: Path, other: Path, folder: Path) -> Path:
 def models(photohull: Photohull, first: Path, other: Path, folder: Path) -> dict[str, dict]:
     name = first.name
     scanned, exact, one = folder / f"{name}_scan", folder / f"{name}_exact", folder / f"{name}_one"
-    passes = [photographs_of(first), photographs_of(other)]
-    photohull.once(scanned, "scan", "--pass", *passes, "--board", BOARD, "--out", scanned, "--fresh")
     photohull.once(exact, "reconstruct", exact_scene(first, other, folder / f"{name}_both"), "--out", exact)
-    photohull.once(one, "scan", passes[0], "--board", BOARD, "--out", one, "--fresh")
+    photohull.once(one, "scan", photographs_of(first), "--board", BOARD, "--out", one, "--fresh")
     result = {}
     for label, model in (("scan of two passes", scanned), ("exact cameras and masks", exact), ("scan of the first pass", one)):
         by_passes = [photohull.evaluate(model / "mesh.ply", "--truth", truth, "--align", "--thresholds", 0.0025)
                      for truth in (first, other)]
         report = json.loads((model / "report.json").read_text(encoding="utf-8"))
         result[label] = {"seen": [e["seen"]["f"][0] for e in by_passes], "all": by_passes[0]["f"][0],
-                         "verdict": report["verdict"]["verdict"]}
+                         "open_edges": ply.open_edges(model / "mesh.ply"), "verdict": report["verdict"]["level"]}
     return result
 
 
 def model_rows(name: str, made: dict[str, dict]) -> list[list[object]]:
     return [[name, label, *(f"{100 * of['f']:.2f}" for of in m["seen"]), f"{100 * m['all']['f']:.2f}",
-             f"{100 * m['all']['recall']:.2f} %", m["verdict"]] for label, m in made.items()]
+             f"{100 * m['all']['recall']:.2f} %", m["open_edges"], m["verdict"]] for label, m in made.items()]
 
 
 def row(name: str, r: dict) -> str:
@@ -205,10 +204,14 @@ def run(options: argparse.Namespace) -> None:
             spec = spec_of(name.rsplit("_", 1)[0], options.plain, 2 * int(name.rsplit("_", 1)[1]))
             first = photohull.synthesize(spec, folder / name, "--size", options.size)
             other = photohull.synthesize(turned(spec, options.turn), folder / f"{name}_turned", "--size", options.size)
-            posed = folder / f"{name}_posed"
+            passes = ["--pass", photographs_of(first), photographs_of(other), "--board", BOARD]
+            scanned = folder / f"{name}_scan"
+            posed = scanned / "scene" if options.scan else folder / f"{name}_posed"
             try:
-                passes = [photographs_of(first), photographs_of(other)]
-                photohull.once(posed, "pose", "--pass", *passes, "--board", BOARD, "--out", posed)
+                if options.scan:
+                    photohull.once(scanned, "scan", *passes, "--out", scanned, "--fresh")
+                else:
+                    photohull.once(posed, "pose", *passes, "--out", posed)
             except ProgramError as refused:
                 print(tables.line([name, refused.message]), flush=True)
                 continue

@@ -43,9 +43,9 @@ TEST(ObjectBox, WhatWasNotPhotographedIsNoForeground) {
         view.mask.coverage[i] = 255, view.image.bytes[4 * i + 3] = 0;
       }
   }
-  EXPECT_TRUE(box_is_oversized(around(2.5 * kRadius), views));
+  EXPECT_TRUE(box_is_oversized(around(2.0 * kRadius), views));
   for (PreparedView& view : views) view.image.has_alpha = false;
-  EXPECT_FALSE(box_is_oversized(around(2.5 * kRadius), views));
+  EXPECT_FALSE(box_is_oversized(around(2.0 * kRadius), views));
 }
 
 TEST(ObjectBox, ShrinksToWhatTheSilhouettesLeave) {
