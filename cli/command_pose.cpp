@@ -35,13 +35,20 @@ void check(const PoseCommand& a) {
     refuse_given(a.photos.of_the_board, "--with colmap");
   else
     refuse_given(a.photos.of_colmap, "--board");
+  if (a.no_masks && !a.photos.passes.empty())
+    throw UsageError(
+        "--no-masks does not go together with --pass: passes are joined by what masks say is the "
+        "object");
 }
 
 void run_pose(const PoseCommand& a) {
   check(a);
   PoseJob job;
   job.out = fs::absolute(a.out).lexically_normal();
-  if (a.photos.video.empty()) {
+  if (!a.photos.passes.empty()) {
+    name_unreadable(a.photos.passes);
+    job.passes = passes_of(a.photos.passes);
+  } else if (a.photos.video.empty()) {
     name_unreadable(a.photos.images);
     job.images = io::list_images(a.photos.images);
   } else {
@@ -79,10 +86,13 @@ void add_pose(CLI::App& app) {
   c->footer(
       "With --board the world is the sheet's: z = 0 is the paper, z points up, lengths are "
       "millimetres unless --unit says otherwise. With COLMAP its scale and directions are any. "
-      "Photographs are in any order; those that get no pose are named with the reason.\n\n"
+      "Photographs are in any order; those that get no pose are named with the reason. With --pass "
+      "the object was laid on another side between folders: each is posed by the sheet, and the "
+      "object's texture then tells how they lie to each other.\n\n"
       "Examples:\n"
       "  photohull board --out board.pdf\n"
       "  photohull pose photos/ --board board.json --out scene --bar 148.5\n"
+      "  photohull pose --pass side1/ side2/ --board board.json --out scene\n"
       "  photohull pose photos/ --with colmap --out scene\n"
       "  photohull pose --video film.mp4 --with colmap --out scene\n"
       "  photohull reconstruct scene --out model");

@@ -6,6 +6,7 @@
 #include "cli/front/command_table.h"
 #include "commands.h"
 #include "core/error.h"
+#include "core/option_word.h"
 #include "core/read_file.h"
 #include "film_pictures.h"
 #include "io/board_images.h"
@@ -41,7 +42,7 @@ void check(const ScanArguments& a) {
   a.job.validate();
   a.load.validate();
   std::error_code ignored;
-  for (const std::string& given : a.photos.images)
+  for (const std::string& given : a.photos.given())
     for (const fs::path& folder : {fs::path(a.out), a.scene()})
       if (fs::is_directory(given, ignored) && fs::equivalent(given, folder, ignored))
         throw UsageError(concat("--out ", a.out,
@@ -81,7 +82,7 @@ std::vector<fs::path> frames_of(const ScanArguments& a, KeptSteps& kept) {
 fs::path board_of(const PoseArguments& photos) {
   if (!photos.board.empty()) return photos.board;
   std::error_code ignored;
-  for (const std::string& given : photos.images) {
+  for (const std::string& given : photos.given()) {
     const fs::path folder =
         fs::is_directory(given, ignored) ? fs::path(given) : fs::path(given).parent_path();
     if (fs::is_regular_file(folder / "board.json", ignored)) return folder / "board.json";
@@ -91,7 +92,10 @@ fs::path board_of(const PoseArguments& photos) {
 
 PoseJob pose_job(const ScanArguments& a, KeptSteps& kept) {
   PoseJob job;
-  if (a.photos.video.empty()) {
+  if (!a.photos.passes.empty()) {
+    name_unreadable(a.photos.passes);
+    job.passes = passes_of(a.photos.passes);
+  } else if (a.photos.video.empty()) {
     name_unreadable(a.photos.images);
     job.images = io::list_images(a.photos.images);
   } else {
@@ -111,6 +115,10 @@ PoseJob pose_job(const ScanArguments& a, KeptSteps& kept) {
 std::string identity_of(PoseJob job) {
   StepIdentity identity;
   for (const fs::path& image : job.images) identity.add_file(image);
+  for (const PassOfPhotos& pass : job.passes) {
+    identity.add(concat("pass ", pass.name));
+    for (const fs::path& image : pass.images) identity.add_file(image);
+  }
   if (!job.masks.empty())
     for (const fs::path& mask : io::list_images({job.masks.string()})) identity.add_file(mask);
   identity.add(job.board.empty() ? concat("colmap ", job.ordered)
@@ -196,6 +204,11 @@ void run_scan(ScanArguments& a) {
                                 "--board"));
   } else {
     refuse_given(a.photos.of_colmap, "a printed sheet (" + posed.board.string() + ")");
+    if (!posed.make_masks && !posed.passes.empty())
+      throw UsageError(
+          concat(option_word("masks"),
+                 " does not go together with --pass: passes are joined, and the object "
+                 "told from the sheet, by masks that are made from the sheet's picture"));
     if (!a.job.mesh_files.unit) a.job.mesh_files.unit = LengthUnit::kMillimetre;
   }
   pose(a, posed, kept);
@@ -232,6 +245,7 @@ void add_scan(CLI::App& app) {
       "Examples:\n"
       "  photohull scan photos/ --out model\n"
       "  photohull scan photos/ --board board.json --bar 149.5 --out model\n"
+      "  photohull scan --pass side1/ side2/ --board board.json --out model\n"
       "  photohull scan --video film.mp4 --frames 80 --out model\n"
       "  photohull scan photos/ --out model --masks my_masks --quality high");
   c->callback([a] { run_scan(*a); });

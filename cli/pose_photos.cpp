@@ -7,7 +7,9 @@
 #include "io/board_images.h"
 #include "option_flags.h"
 #include "pose/pose_colmap.h"
+#include "pose/pose_passes.h"
 #include "pose/pose_sheet.h"
+#include "print_passes.h"
 #include "print_pose.h"
 #include "terminal_progress.h"
 
@@ -23,6 +25,11 @@ void print_warnings(const std::vector<std::string>& warnings) {
   for (const std::string& text : warnings) std::fprintf(stderr, "warning: %s\n", text.c_str());
 }
 
+double weight_of(const PoseJob& job) {
+  if (!job.passes.empty()) return pose::passes_weight(job);
+  return job.board.empty() ? kColmapWeight : 1;
+}
+
 }  // namespace
 
 void PoseArguments::add_to(CLI::App& command, const std::vector<std::string>& but) {
@@ -33,6 +40,9 @@ void PoseArguments::add_to(CLI::App& command, const std::vector<std::string>& bu
   add_flags_of(command, focal);
   of_the_board = {command.add_option(
       "--board", board, "JSON file that photohull board wrote beside the sheet it printed")};
+  of_the_board.push_back(command.add_option(
+      "--pass", passes,
+      "in the place of PHOTOS: two folders or more, one for each side that the object lay on"));
   Described described;
   describe(described, sheet);
   std::vector<std::string> described_names;
@@ -47,6 +57,24 @@ void PoseArguments::add_to(CLI::App& command, const std::vector<std::string>& bu
 }
 
 void PoseArguments::check() const {
+  if (!passes.empty()) {
+    if (!images.empty() || !video.empty())
+      throw UsageError(
+          "--pass takes the place of PHOTOS and --video: give all photographs in folders behind "
+          "--pass, one for each side that the object lay on");
+    if (passes.size() < 2)
+      throw UsageError(
+          "--pass: give two folders or more, one for each side that the object lay on; photographs "
+          "of one side go without --pass");
+    std::error_code ignored;
+    for (std::size_t i = 0; i < passes.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        if (fs::equivalent(passes[i], passes[j], ignored))
+          throw UsageError(concat("--pass: ", passes[i],
+                                  " is given twice: give a folder of its own for each side that "
+                                  "the object lay on"));
+    return;
+  }
   if (images.empty() && video.empty())
     throw UsageError("PHOTOS is missing: give photographs, folders of them, or --video FILE");
   if (!images.empty() && !video.empty())
@@ -73,7 +101,14 @@ void name_unreadable(const std::vector<std::string>& given) {
 }
 
 std::string pose_photos(const PoseJob& job, bool tell) {
-  TerminalProgress progress(job.board.empty() ? kColmapWeight : 1);
+  TerminalProgress progress(weight_of(job));
+  if (!job.passes.empty()) {
+    const pose::PassesPose pose = pose::pose_passes(job, progress);
+    progress.finish();
+    print_warnings(pose.warnings);
+    if (tell) print_passes(job, pose);
+    return pose.report;
+  }
   if (job.board.empty()) {
     const pose::ColmapPose pose = pose::pose_with_colmap(job, progress);
     progress.finish();

@@ -11,11 +11,14 @@
 namespace photohull::cli {
 
 using pose::names_of;
+using pose::passes_of;
+using pose::PassOfPhotos;
 using pose::PoseJob;
 
 /// Arguments that both commands have.
 struct PoseArguments {
   std::vector<std::string> images;  ///< files, or folders of them
+  std::vector<std::string> passes;  ///< a folder each, in the place of images; empty: one pass
   std::string video;                ///< a film in the place of images; empty: none
   io::FrameOptions frames;
   std::string board;
@@ -26,7 +29,10 @@ struct PoseArguments {
 
   /// `but`: options of the sheet that the command has none of.
   void add_to(CLI::App& command, const std::vector<std::string>& but = {});
-  /// Throws UsageError unless there is one of photographs and film, and for options of the other.
+  /// Files and folders of all photographs.
+  const std::vector<std::string>& given() const { return passes.empty() ? images : passes; }
+  /// Throws UsageError unless there is one of photographs, passes of them, and film, and for
+  /// options of the other.
   void check() const;
 };
 
@@ -37,7 +43,8 @@ void refuse_given(const std::vector<CLI::Option*>& options, const std::string& i
 void name_unreadable(const std::vector<std::string>& given);
 
 /// Finds the cameras and writes the scene into the job's folder (pose/pose_sheet.h,
-/// pose/pose_colmap.h). Prints warnings, and a summary if `tell`. Returns pose.json.
+/// pose/pose_passes.h, pose/pose_colmap.h). Prints warnings, and a summary if `tell`. Returns
+/// pose.json.
 std::string pose_photos(const PoseJob& job, bool tell);
 
 }  // namespace photohull::cli

@@ -8,12 +8,14 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <numbers>
 #include <numeric>
 #include <opencv2/core.hpp>
 #include <opencv2/core/hal/hal.hpp>
 #include <set>
 
+#include "cameras/described_tracks.h"
 #include "cameras/features.h"
 #include "cameras/surface_patches.h"
 #include "cameras/triangulate.h"
@@ -247,10 +249,30 @@ void polish(std::span<const PreparedView> views, std::span<const Camera> cameras
   o = std::move(kept);
 }
 
-}  // namespace
+/// Descriptors of the features that tracks were joined from, as far as these kept them.
+std::vector<cv::Mat> descriptors_of(std::span<const Track> joined, std::span<const Track> kept,
+                                    const std::vector<Features>& features) {
+  using Place = std::array<double, 3>;
+  std::map<Place, int> rows;
+  for (std::size_t v = 0; v < features.size(); ++v)
+    for (std::size_t f = 0; f < features[v].pixels.size(); ++f)
+      rows[{double(v), features[v].pixels[f].x, features[v].pixels[f].y}] = int(f);
+  std::vector<cv::Mat> all;
+  for (std::size_t t = 0; t < kept.size(); ++t) {
+    cv::Mat& own = all.emplace_back();
+    for (const Observation& o : kept[t].observations)
+      for (const Observation& from : joined[t].observations)
+        if (from.view == o.view)
+          own.push_back(features[std::size_t(o.view)].descriptors.row(
+              rows.at({double(from.view), from.pixel.x, from.pixel.y})));
+  }
+  return all;
+}
 
-std::vector<Track> find_tracks(std::span<const PreparedView> views, const TrackOptions& options,
-                               Progress& progress, std::span<const Track> given, bool search) {
+/// As find_tracks; `descriptors`: where the tracks' go, if they are wanted of those found.
+std::vector<Track> search_tracks(std::span<const PreparedView> views, const TrackOptions& options,
+                                 Progress& progress, std::span<const Track> given, bool search,
+                                 std::vector<cv::Mat>* descriptors) {
   std::vector<Features> features(views.size());
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
     if (!progress.cancelled())
@@ -268,14 +290,39 @@ std::vector<Track> find_tracks(std::span<const PreparedView> views, const TrackO
   }
   progress.update(0.8);
   if (options.enough > 0) tracks = longest_first(std::move(tracks), views.size(), options.enough);
+  const std::vector<Track> joined = descriptors ? tracks : std::vector<Track>();
   std::vector<Camera> cameras;
   for (const PreparedView& view : views) cameras.push_back(view.camera);
   tbb::parallel_for(std::size_t(0), tracks.size(), [&](std::size_t t) {
     if (!progress.cancelled()) polish(views, cameras, features, options, tracks[t]);
   });
   progress.check_cancelled();
-  std::erase_if(tracks, [](const Track& t) { return t.observations.size() < 2; });
+  if (descriptors) *descriptors = descriptors_of(joined, tracks, features);
   return tracks;
+}
+
+bool is_short(const Track& track) { return track.observations.size() < 2; }
+
+}  // namespace
+
+std::vector<Track> find_tracks(std::span<const PreparedView> views, const TrackOptions& options,
+                               Progress& progress, std::span<const Track> given, bool search) {
+  std::vector<Track> tracks = search_tracks(views, options, progress, given, search, nullptr);
+  std::erase_if(tracks, is_short);
+  return tracks;
+}
+
+DescribedTracks find_described_tracks(std::span<const PreparedView> views,
+                                      const TrackOptions& options, Progress& progress) {
+  std::vector<cv::Mat> descriptors;
+  std::vector<Track> tracks = search_tracks(views, options, progress, {}, true, &descriptors);
+  DescribedTracks result;
+  for (std::size_t t = 0; t < tracks.size(); ++t) {
+    if (is_short(tracks[t])) continue;
+    result.tracks.push_back(std::move(tracks[t]));
+    result.descriptors.push_back(descriptors[t]);
+  }
+  return result;
 }
 
 std::vector<Track> undistorted_tracks(const Scene& scene, std::span<const PreparedView> views) {

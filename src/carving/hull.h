@@ -24,6 +24,7 @@ struct Silhouette {
   /// Coverage is the chance that the object is there (masks that were made), not the share of a
   /// pixel.
   bool likelihood = false;
+  const ColourImage* image = nullptr;  ///< tells what was photographed; nullptr: all was
 };
 
 struct HullOptions {

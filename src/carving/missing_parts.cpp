@@ -9,6 +9,7 @@
 
 #include "core/clip_ray.h"
 #include "core/error.h"
+#include "core/photographed.h"
 #include "masks/mask_lines.h"
 #include "masks/outline_probe.h"
 #include "masks/silhouette.h"
@@ -202,12 +203,14 @@ class Searcher {
     return {camera.center(), camera.ray(pixel), 1 / camera.intrinsics.fx};
   }
 
-  /// Is the foreground of a mask that was made little more than a guess here?
+  /// Was the place not photographed, or is the foreground of a mask that was made little more than
+  /// a guess there?
   bool is_doubtful(std::size_t view, const dvec2& pixel) const {
     const Silhouette& s = silhouettes_[view];
+    const int x = std::clamp(int(std::lround(pixel.x)), 0, s.distance->width - 1);
+    const int y = std::clamp(int(std::lround(pixel.y)), 0, s.distance->height - 1);
+    if (s.image && !is_photographed(*s.image, x, y)) return true;
     if (!s.likelihood || !s.mask) return false;
-    const int x = std::clamp(int(std::lround(pixel.x)), 0, s.mask->width - 1);
-    const int y = std::clamp(int(std::lround(pixel.y)), 0, s.mask->height - 1);
     return s.mask->coverage[std::size_t(y) * std::size_t(s.mask->width) + x] < kSureForeground;
   }
 

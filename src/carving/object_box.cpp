@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/photographed.h"
 #include "masks/mask_lines.h"
 #include "masks/silhouette.h"
 
@@ -26,12 +27,14 @@ Mask with_lines(const Mask& mask) {
   return widened;
 }
 
-/// Longer side of the foreground's bounding rectangle, pixels.
-double foreground_size(const Mask& mask) {
+/// Longer side of the bounding rectangle of the foreground that was photographed, pixels.
+double foreground_size(const PreparedView& view) {
+  const Mask mask = with_lines(view.mask);
   int x0 = mask.width, x1 = -1, y0 = mask.height, y1 = -1;
   for (int y = 0; y < mask.height; ++y)
     for (int x = 0; x < mask.width; ++x)
-      if (mask.coverage[std::size_t(y) * mask.width + x] >= 128) {
+      if (mask.coverage[std::size_t(y) * mask.width + x] >= 128 &&
+          is_photographed(view.image, x, y)) {
         x0 = std::min(x0, x), x1 = std::max(x1, x);
         y0 = std::min(y0, y), y1 = std::max(y1, y);
       }
@@ -121,7 +124,7 @@ bool box_is_oversized(const Box& box, std::span<const PreparedView> views) {
   for (const PreparedView& view : views) {
     if (view.mask.empty()) continue;
     ++masked;
-    small += foreground_size(with_lines(view.mask)) < kFilled * picture_size(box, view.camera);
+    small += foreground_size(view) < kFilled * picture_size(box, view.camera);
     if (box.contains(view.camera.center())) return true;
   }
   return masked > 0 && 2 * small > masked;

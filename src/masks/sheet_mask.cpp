@@ -336,4 +336,23 @@ SheetMask mask_from_sheet(const ColourImage& image, const SheetLook& look, bool 
   return Comparison(image, look, still).run(image, cut);
 }
 
+void keep_shares(Mask& mask) {
+  constexpr std::uint8_t kHalf = 128;
+  constexpr double kSpeck = 0.0005;  // of the largest part
+  cv::Mat coverage(mask.height, mask.width, CV_8U, mask.coverage.data()), labels, sizes, middles;
+  const int count =
+      cv::connectedComponentsWithStats(coverage >= kHalf, labels, sizes, middles, 8, CV_32S);
+  int largest = 0;
+  for (int i = 1; i < count; ++i) largest = std::max(largest, sizes.at<int>(i, cv::CC_STAT_AREA));
+  cv::Mat near(coverage.size(), CV_8U, cv::Scalar(0));
+  for (int y = 0; y < labels.rows; ++y)
+    for (int x = 0; x < labels.cols; ++x) {
+      const int part = labels.at<int>(y, x);
+      if (part > 0 && sizes.at<int>(part, cv::CC_STAT_AREA) >= kSpeck * largest)
+        near.at<std::uint8_t>(y, x) = 255;
+    }
+  cv::dilate(near, near, cv::getStructuringElement(cv::MORPH_RECT, {3, 3}));
+  coverage.setTo(0, ~near);
+}
+
 }  // namespace photohull

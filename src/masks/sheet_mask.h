@@ -26,4 +26,9 @@ struct SheetMask {
 SheetMask mask_from_sheet(const ColourImage& image, const SheetLook& look, bool cut,
                           const StillBackground& still = {});
 
+/// For files, which say what share of a pixel is the object's: evidence of less than a half that is
+/// not beside a pixel of more, such as a shadow's edge, would be read as a thin part, and goes. So
+/// do parts of less than 0.05 % of the largest one's pixels: print that is not where it should be.
+void keep_shares(Mask& mask);
+
 }  // namespace photohull

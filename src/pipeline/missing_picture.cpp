@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/photographed.h"
 #include "masks/silhouette.h"
 #include "raycast/ray_scene.h"
 
@@ -39,7 +40,8 @@ MissingPicture draw_missing(const CheckedResult& result,
       const std::size_t i = std::size_t(y) * std::size_t(used.width) + x;
       const bool hit = rays.occluded(origin, view.camera.ray({x, y}));
       const glm::vec4 light = view.image.linear(x, y);
-      const bool missed = given.pixels[i] < -kTolerance && !hit;
+      const bool missed =
+          given.pixels[i] < -kTolerance && !hit && is_photographed(view.image, x, y);
       const bool excess = used.pixels[i] > kTolerance && hit;
       for (int c = 0; c < 3; ++c)
         picture.rgb[3 * i + std::size_t(c)] =

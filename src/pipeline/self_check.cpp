@@ -9,6 +9,7 @@
 #include "assess/silhouette_check.h"
 #include "assess/surface_probes.h"
 #include "carving/fit_grid.h"
+#include "core/photographed.h"
 #include "masks/silhouette.h"
 #include "mesh/join_meshes.h"
 #include "pipeline/subject.h"
@@ -36,19 +37,34 @@ double share_of(std::span<const assess::SurfaceProbe> probes, auto&& holds) {
          double(std::max<std::size_t>(1, probes.size()));
 }
 
+/// The mask, in doubt where nothing was photographed.
+Mask photographed_mask(const PreparedView& view) {
+  constexpr std::uint8_t kInDoubt = 127;
+  Mask mask = view.mask;
+  for (int y = 0; y < mask.height; ++y)
+    for (int x = 0; x < mask.width; ++x)
+      if (!is_photographed(view.image, x, y))
+        mask.coverage[std::size_t(y) * std::size_t(mask.width) + std::size_t(x)] = kInDoubt;
+  return mask;
+}
+
 std::vector<assess::SilhouetteFit> compare_silhouettes(const CheckedResult& result,
                                                        const RayScene& rays,
                                                        std::span<const Camera> cameras,
                                                        assess::Signals& s) {
   // What a view's own mask shows is to be covered, whatever was put into its silhouette since.
   std::vector<SilhouetteDistance> given(cameras.size());
+  std::vector<Mask> masks(cameras.size());
   std::vector<assess::CheckedSilhouette> checked(cameras.size());
   tbb::parallel_for(std::size_t(0), cameras.size(), [&](std::size_t i) {
     const ViewSilhouette& silhouette = result.views[i].silhouette;
     if (silhouette.distance.pixels.empty()) return;
     const Mask& mask = result.views[i].mask;
+    if (result.views[i].image.has_alpha) masks[i] = photographed_mask(result.views[i]);
     checked[i] = {&silhouette.distance, &silhouette.distance, &silhouette.lines,
-                  mask.empty() ? nullptr : &mask};
+                  mask.empty()       ? nullptr
+                  : masks[i].empty() ? &mask
+                                     : &masks[i]};
     if (silhouette.widened.empty()) return;
     given[i] = silhouette_distance(mask);
     checked[i].given = &given[i];

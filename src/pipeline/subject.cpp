@@ -16,8 +16,8 @@ std::vector<carving::Silhouette> silhouettes_of(std::span<const PreparedView> vi
     if (view.mask.empty())
       out.push_back({&view.mask});
     else
-      out.push_back(
-          {s.widened.empty() ? &view.mask : &s.widened, &s.distance, &s.lines, s.likelihood});
+      out.push_back({s.widened.empty() ? &view.mask : &s.widened, &s.distance, &s.lines,
+                     s.likelihood, &view.image});
   }
   return out;
 }

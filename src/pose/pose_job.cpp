@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/option_word.h"
+#include "io/board_images.h"
 
 namespace photohull::pose {
 
@@ -19,6 +20,23 @@ std::vector<std::string> names_of(const std::vector<fs::path>& images) {
     names.push_back(files.count(file) == 1 ? file : image.string());
   }
   return names;
+}
+
+std::vector<PassOfPhotos> passes_of(const std::vector<std::string>& folders) {
+  std::multiset<std::string> all;
+  const auto own_name = [](const std::string& folder) {
+    fs::path path = fs::absolute(folder).lexically_normal();
+    if (path.filename().empty()) path = path.parent_path();
+    return path.filename().string();
+  };
+  for (const std::string& folder : folders) all.insert(own_name(folder));
+  std::vector<PassOfPhotos> passes;
+  for (const std::string& folder : folders) {
+    const std::string name = own_name(folder);
+    passes.push_back({all.count(name) == 1 ? name : concat(name, "_", passes.size() + 1),
+                      io::list_images({folder})});
+  }
+  return passes;
 }
 
 std::string unused_focal(const PoseJob& job, bool taken) {

@@ -10,6 +10,12 @@
 
 namespace photohull::pose {
 
+/// Photographs during which the object did not move.
+struct PassOfPhotos {
+  std::string name;  ///< of its folder, or its number where folders are called alike
+  std::vector<std::filesystem::path> images;
+};
+
 struct PoseJob {
   std::vector<std::filesystem::path> images;
   std::vector<std::string> names;  ///< of each image, as names_of gives them
@@ -20,10 +26,15 @@ struct PoseJob {
   bool make_masks = true;          ///< with a sheet: of what differs from the sheet's picture
   std::filesystem::path masks;     ///< with COLMAP: folder of masks; empty: none
   bool ordered = false;            ///< with COLMAP: each was taken near the one before
+  /// With a sheet, in the place of images: the object was laid on another side between passes.
+  std::vector<PassOfPhotos> passes;
 };
 
 /// Names that tell the photographs apart: file names, or paths where two would be alike.
 std::vector<std::string> names_of(const std::vector<std::filesystem::path>& images);
+
+/// A pass for each folder (or file). Throws as io::list_images does.
+std::vector<PassOfPhotos> passes_of(const std::vector<std::string>& folders);
 
 /// Makes the folder for the scene, or one within it. Throws Error where that fails.
 void make_scene_folder(const std::filesystem::path& folder);

@@ -28,6 +28,20 @@ std::uint8_t value_at(const Mask& mask, int x, int y, int width, int height) {
   return mask.coverage[v * std::size_t(mask.width) + u];
 }
 
+/// Of a photograph that tells nothing yet: others say where its object is.
+Mask anywhere(int width, int height) {
+  return {width, height, std::vector<std::uint8_t>(std::size_t(width) * std::size_t(height), 255)};
+}
+
+/// Is enough of the page seen where the object cannot be?
+bool sees_bare_page(const SheetLook& look) {
+  constexpr double kEnough = 0.005;  // of the picture
+  std::size_t bare = 0;
+  for (std::size_t i = 0; i < look.light.size(); ++i)
+    bare += look.light[i] >= 0 && look.possible[i] == 0;
+  return double(bare) > kEnough * double(look.light.size());
+}
+
 class Exploration {
  public:
   Exploration(const std::vector<std::filesystem::path>& images,
@@ -116,6 +130,7 @@ class Exploration {
       out_.narrow(i, look);
       masks[i] = mask_from_sheet(image, look, false).mask;
       for (std::uint8_t& c : masks[i].coverage) c = c >= kMaybe ? 255 : 0;
+      if (masks[i].empty()) masks[i] = anywhere(image.width, image.height);
     }
     ++steps_;
     return masks;
@@ -144,10 +159,12 @@ void keep_to(const Mask& shadow, int width, int height, std::vector<std::uint8_t
 
 void SheetScenery::narrow(std::size_t photo, SheetLook& look) const {
   if (shadows.empty() || shadows[photo].empty()) return;
+  const bool beside_page = sees_bare_page(look);
   std::size_t i = 0;
   for (int y = 0; y < look.height; ++y)
     for (int x = 0; x < look.width; ++x, ++i)
-      if (look.light[i] < 0 && !value_at(shadows[photo], x, y, look.width, look.height))
+      if (!(beside_page && look.light[i] >= 0) &&
+          !value_at(shadows[photo], x, y, look.width, look.height))
         look.possible[i] = 0;
 }
 

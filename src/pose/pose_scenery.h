@@ -21,7 +21,8 @@ struct SheetScenery {
   /// photographs' sizes, or empty.
   std::vector<Mask> shadows;
 
-  /// Beside the page the object can be in its shadow alone.
+  /// Beside the page the object can be in its shadow alone; on the page, too, where hardly any of
+  /// it would be known to be bare otherwise.
   void narrow(std::size_t photo, SheetLook& look) const;
 };
 

@@ -94,7 +94,7 @@ SheetPose pose_on_sheet(const PoseJob& job, Progress& progress) {
   const Sheet sheet = as_printed(read_sheet(job.board), job.sheet.bar);
   const ReadPhotos read = find_all_tags(job, sheet, progress);
   progress.stage("poses", 0.05);
-  SheetPose pose{pose_photographs(read.photos, sheet, job.sheet), {}, ""};
+  SheetPose pose{pose_photographs(read.photos, sheet, job.sheet), {}, "", {}};
   for (std::size_t i = 0; i < job.images.size(); ++i)
     if (!read.unreadable[i].empty()) pose.result.photos[i].reason = read.unreadable[i];
   std::vector<double> widths;
@@ -121,12 +121,13 @@ SheetPose pose_on_sheet(const PoseJob& job, Progress& progress) {
     pose.result.warnings.push_back(warning);
   // What stands on a turntable lies above its strip, but a pot goes through it.
   const bool has_box = sheet.is_flat() || job.sheet.height > 0;
-  const Scene scene = scene_of(job, pose.result, masks, has_box);
-  for (const std::string& warning : check_sides(job.out, sides_of(job, read, pose.result, scene)))
+  pose.scene = scene_of(job, pose.result, masks, has_box);
+  for (const std::string& warning :
+       check_sides(job.out, sides_of(job, read, pose.result, pose.scene)))
     pose.result.warnings.push_back(warning);
   pose.report = pose_json(job.names, pose.result, pose.turntable);
   write_atomically(job.out / "pose.json", pose.report);
-  io::write_transforms(scene, job.out);
+  io::write_transforms(pose.scene, job.out);
   return pose;
 }
 

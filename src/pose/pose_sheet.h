@@ -5,6 +5,7 @@
 
 #include "calib/pose_photographs.h"
 #include "core/progress.h"
+#include "core/scene.h"
 #include "pose/pose_job.h"
 #include "pose/pose_turntable.h"
 
@@ -15,6 +16,7 @@ struct SheetPose {
   PoseResult result;
   TurntableFinding turntable;
   std::string report;  ///< pose.json
+  Scene scene;         ///< transforms.json
 };
 
 /// Writes transforms.json, pose.json and, where the job wants them, masks/ into the job's folder.

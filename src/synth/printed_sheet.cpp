@@ -22,7 +22,7 @@ PrintedSheet::PrintedSheet(const Spec& spec, const Surface& surface) {
     throw Error(concat(spec.sheet.board,
                        ": diameter: it is a strip around a cylinder; give a flat sheet's file"));
   picture_ = sheet_picture(sheet, kTexelsPerMm);
-  const glm::dvec2 object(surface.box.max - surface.box.min);
+  const glm::dvec2 object(surface.own.size);
   const glm::dvec2 room = sheet.free_max - sheet.free_min;
   scale_ = std::max(object.x / room.x, object.y / room.y) / spec.sheet.fill;
   unit_ = scale_ / spec.sheet.print;

@@ -12,7 +12,8 @@
 namespace photohull::synth {
 
 /// The sheet in the world: its free space about the middle of the object's box, at the height of
-/// the box's lowest face, its axes those of the world.
+/// the box's lowest face, its axes those of the world. How large it is beside the object is told by
+/// the object before it was laid on another side.
 class PrintedSheet {
  public:
   /// Reads the board. Throws Error naming its file and what is wrong with it.

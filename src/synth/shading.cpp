@@ -50,7 +50,7 @@ Shading::Shading(const Spec& spec, const Surface& surface, double pixel, const P
     lights_.push_back({surface.box.center() + surface.diagonal * (back * p.position),
                        glm::vec3(p.colour), false});
   const MaterialSpec& m = spec.material;
-  checker_ = (m.period_pixels > 0 ? m.period_pixels * pixel : m.size * surface.diagonal) / 2;
+  checker_ = (m.period_pixels > 0 ? m.period_pixels * pixel : m.size * surface.own.diagonal) / 2;
   clutter_ = spec.background.type == "clutter";
   double farthest = 0;
   for (const double factor : spec.cameras.distances) farthest = std::max(farthest, factor);
@@ -64,7 +64,7 @@ glm::vec3 Shading::base(std::uint32_t patch) const {
 void Shading::add_checker(std::span<Point> points) const {
   const float contrast = float(spec_.material.contrast);
   for (Point& point : points) {
-    const glm::dvec3 field = floor(kSkewAxes * (point.position - surface_.box.center()) / checker_);
+    const glm::dvec3 field = floor(kSkewAxes * surface_.own.place(point.position) / checker_);
     const bool odd = std::fmod(std::abs(field.x + field.y + field.z), 2.0) == 1.0;
     point.albedo *= odd ? 1 + contrast : 1 - contrast;
   }
@@ -75,9 +75,9 @@ void Shading::add_noise_texture(std::span<Point> points) const {
   thread_local NoisePoints places;
   thread_local std::vector<float> light, red, blue;
   places.resize(points.size());
-  const double scale = 1 / (surface_.diagonal * m.size);
+  const double scale = 1 / (surface_.own.diagonal * m.size);
   for (std::size_t i = 0; i < points.size(); ++i)
-    places.set(i, glm::vec3(scale * (points[i].position - surface_.box.center())) + 57.3f);
+    places.set(i, glm::vec3(scale * surface_.own.place(points[i].position)) + 57.3f);
   light.resize(points.size());
   octave_noise(places, 1, m.octaves, float(m.gain), seed_, light);
   red.assign(points.size(), 0), blue.assign(points.size(), 0);
@@ -101,7 +101,7 @@ void Shading::add_haze(std::span<Point> points) const {
   below.assign(points.begin(), points.end());
   for (Point& p : below) {
     p.albedo = glm::vec3(1);
-    p.position -= m.haze_depth * surface_.diagonal * glm::dvec3(p.to_eye);
+    p.position -= m.haze_depth * surface_.own.diagonal * glm::dvec3(p.to_eye);
   }
   std::vector<glm::vec3> plain;
   for (Point& p : points) plain.push_back(p.albedo), p.albedo = glm::vec3(1);

@@ -75,6 +75,9 @@ struct SheetSpec {
   double print = 1;      ///< how large it is printed: 0.97 is 3 % too small
   glm::dvec3 bend{0.0};  ///< mm that it rises half its diagonal from the middle, by x^2, x y, y^2
   double hidden = 0;     ///< share of the tags that something lies on, others in every view
+  /// Degrees about x, y and z, in that order, by which the object is turned, with its pattern, to
+  /// lie on another side.
+  glm::dvec3 turn{0.0};
 };
 
 struct ImageSpec {

@@ -142,6 +142,7 @@ void visit_spec(Visitor& v, Spec& s) {
     v.number("print", s.sheet.print, 0.1, 10);
     v.vector("bend", s.sheet.bend, -100, 100);
     v.number("hidden", s.sheet.hidden, 0, 1);
+    v.vector("turn", s.sheet.turn, -360, 360);
   });
   v.object("image", [&] {
     v.integer("width", s.image.width, 8, kLargestImage);

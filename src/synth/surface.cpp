@@ -20,14 +20,19 @@ glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& fallback) {
   return size > 0 ? v / size : fallback;
 }
 
-void move(const GeometrySpec& g, TriMesh& mesh) {
+/// Degrees about x, y and z, in that order.
+glm::dmat3 turn_by(const glm::dvec3& degrees) {
   glm::dmat4 turn(1);
   for (int axis = 2; axis >= 0; --axis) {
     glm::dvec3 around(0);
     around[axis] = 1;
-    turn = glm::rotate(turn, glm::radians(g.rotate[axis]), around);
+    turn = glm::rotate(turn, glm::radians(degrees[axis]), around);
   }
-  const glm::dmat3 linear = glm::dmat3(turn) * g.scale;
+  return glm::dmat3(turn);
+}
+
+void move(const GeometrySpec& g, TriMesh& mesh) {
+  const glm::dmat3 linear = turn_by(g.rotate) * g.scale;
   for (glm::vec3& p : mesh.positions) p = glm::vec3(linear * glm::dvec3(p));
   mesh.origin = linear * mesh.origin + g.translate;
 }
@@ -157,6 +162,7 @@ Surface make_surface(TriMesh mesh, const std::string& source) {
       s.box.max = max(s.box.max, s.mesh.world(i));
     }
   s.diagonal = s.box.diagonal();
+  s.own = {glm::dmat3(1.0), s.box.center(), s.box.size(), s.diagonal};
   double area = 0;
   s.face_normals = face_normals(s.mesh, area);
   if (!(s.diagonal > 0) || !(area > 1e-12 * s.diagonal * s.diagonal))
@@ -172,6 +178,19 @@ Surface make_surface(const GeometrySpec& geometry) {
                       : make_shape(*find_shape(geometry.shape), geometry.parameters);
   move(geometry, mesh);
   return make_surface(std::move(mesh), file ? geometry.mesh : geometry.shape);
+}
+
+Surface make_surface(const GeometrySpec& geometry, const glm::dvec3& turn) {
+  Surface before = make_surface(geometry);
+  if (turn == glm::dvec3(0.0)) return before;
+  const glm::dmat3 rotation = turn_by(turn);
+  TriMesh mesh = std::move(before.mesh);
+  for (glm::vec3& p : mesh.positions) p = glm::vec3(rotation * glm::dvec3(p));
+  mesh.origin = before.own.middle + rotation * (mesh.origin - before.own.middle);
+  Surface turned = make_surface(std::move(mesh), "sheet.turn");
+  turned.own = before.own;
+  turned.own.rotation = glm::transpose(rotation);
+  return turned;
 }
 
 }  // namespace photohull::synth

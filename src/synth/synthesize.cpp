@@ -203,7 +203,10 @@ std::string result_text(const SynthesizedScene& scene, const std::vector<std::st
                            {"gains", gains},
                            {"seen_share", scene.seen},
                            {"largest_fill", scene.largest_fill}};
-  if (sheet) result["sheet"] = {{"origin", list(sheet->origin())}, {"unit", sheet->unit()}};
+  if (sheet)
+    result["sheet"] = {{"origin", list(sheet->origin())},
+                       {"unit", sheet->unit()},
+                       {"turned_about", list(surface.own.middle)}};
   return result.dump();
 }
 
@@ -226,7 +229,8 @@ SynthesizedScene synthesize(const Spec& spec, const std::filesystem::path& folde
   if (spec.light.shadows && spec.light.shadow_test != kShadowRays)
     context = gpu::Context::create(device, threads);
   progress.stage("surface", 1);
-  const Surface surface = make_surface(spec.geometry);
+  const Surface surface =
+      make_surface(spec.geometry, spec.sheet.board.empty() ? glm::dvec3(0.0) : spec.sheet.turn);
   check_orientation(surface.mesh, progress);
   progress.check_cancelled();
   const std::vector<LensCamera> all = place_cameras(spec, surface);

@@ -316,5 +316,16 @@ TEST(MendSilhouette, DrawsPartsThatAreNotWellWithin) {
     }
 }
 
+TEST(FindMissingParts, WhatWasNotPhotographedIsNotLookedAt) {
+  const Scene scene(4);
+  ColourImage nothing{kWidth, kWidth, ColourImage::Encoding::kSrgb8, true, {}};
+  nothing.bytes.assign(4 * std::size_t(kWidth) * kWidth, 0);
+  std::vector<Silhouette> silhouettes = scene.silhouettes();
+  silhouettes[1].image = &nothing;
+  const MissingParts found = find_missing_parts(kBox, scene.cameras, silhouettes, {});
+  EXPECT_GT(found.views[0].looked_at, 0);
+  EXPECT_EQ(found.views[1].looked_at, 0);
+}
+
 }  // namespace
 }  // namespace photohull::carving

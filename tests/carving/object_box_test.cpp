@@ -32,6 +32,22 @@ TEST(ObjectBox, FitsAreNotOversized) {
   EXPECT_TRUE(box_is_oversized(around(10), views));  // cameras stand inside
 }
 
+TEST(ObjectBox, WhatWasNotPhotographedIsNoForeground) {
+  std::vector<PreparedView> views = views_of_a_ball(12);
+  for (PreparedView& view : views) {
+    view.image = {kWidth, kHeight, ColourImage::Encoding::kSrgb8, true, {}};
+    view.image.bytes.assign(4 * std::size_t(kWidth) * kHeight, 255);
+    for (int y = 0; y < kHeight; ++y)
+      for (const int x : {0, kWidth - 1}) {
+        const auto i = std::size_t(y) * kWidth + std::size_t(x);
+        view.mask.coverage[i] = 255, view.image.bytes[4 * i + 3] = 0;
+      }
+  }
+  EXPECT_TRUE(box_is_oversized(around(2.0 * kRadius), views));
+  for (PreparedView& view : views) view.image.has_alpha = false;
+  EXPECT_FALSE(box_is_oversized(around(2.0 * kRadius), views));
+}
+
 TEST(ObjectBox, ShrinksToWhatTheSilhouettesLeave) {
   const std::vector<PreparedView> views = views_of_a_ball(12);
   for (const double half : {2.0, 6.0, 20.0}) {

@@ -10,6 +10,7 @@ FRAGMENTS = {
 WITHOUT_INPUT = {
     r"photohull calibrate \w+/": "there are no photographs of boards; tests/cli/calibrate_gl_test.cpp renders some",
     r"photohull (pose|scan) photos/": "there are no photographs; a rendered example follows it",
+    r"photohull (pose|scan) --pass side1/": "there are no photographs; tests/cli/pose_passes_gl_test.cpp renders some",
     r"photohull batch rig/": "there are no frames; tests/cli/batch_gl_test.cpp makes some",
     r"photohull scan --video film": "there is no film; tests/cli/scan_gl_test.cpp makes one",
     r"photohull convert (rig|table|calib)\.json": "the same: these files come from calibrate",
