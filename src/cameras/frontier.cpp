@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "masks/mask_lines.h"
+#include "masks/photographed_mask.h"
 
 namespace photohull {
 namespace {
@@ -130,7 +131,8 @@ Outline outline_of(const Mask& mask, std::span<const LinePoint> lines) {
 std::vector<Outline> outlines_of(std::span<const PreparedView> views) {
   std::vector<Outline> outlines(views.size());
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
-    if (!views[i].mask.empty()) outlines[i] = outline_of(views[i].mask);
+    if (!views[i].mask.empty())
+      outlines[i] = outline_of(photographed_mask(views[i].image, views[i].mask));
   });
   return outlines;
 }

@@ -22,10 +22,6 @@ constexpr int kMixed = 2;             ///< pixels along the contour that mix bot
 constexpr double kFullCoverage = 0.7;
 constexpr double kHalf = 128;  ///< coverage from which a pixel is the object's
 
-cv::Mat square(int radius) {
-  return cv::getStructuringElement(cv::MORPH_RECT, {2 * radius + 1, 2 * radius + 1});
-}
-
 cv::Mat distance_image(const BackgroundModel& model, const ColourImage& image) {
   cv::Mat distance(image.height, image.width, CV_8U);
   for (int y = 0; y < image.height; ++y) {

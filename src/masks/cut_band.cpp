@@ -19,10 +19,6 @@ constexpr double kContext = 3;       // bands of surroundings that the colours a
 constexpr double kMostPixels = 4e6;  // beyond, the cut takes minutes
 constexpr int kFewestCertain = 100;
 
-cv::Mat square(int radius) {
-  return cv::getStructuringElement(cv::MORPH_RECT, {2 * radius + 1, 2 * radius + 1});
-}
-
 /// 8-bit sRGB.
 cv::Mat coded(const ColourImage& image, const cv::Rect& box) {
   cv::Mat out(box.size(), CV_8UC3);

@@ -3,11 +3,18 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "core/image.h"
 #include "masks/background.h"
 
 namespace photohull {
+
+/// What OpenCV's morphology takes: a square of 2 reach + 1 pixels along each side.
+inline cv::Mat square(int reach) {
+  const int side = 2 * reach + 1;
+  return cv::getStructuringElement(cv::MORPH_RECT, {side, side});
+}
 
 /// Distances from the background and what they mean, as BackgroundModel has them.
 struct MaskEvidence {

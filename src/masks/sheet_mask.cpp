@@ -70,13 +70,10 @@ double doubt_within(const MaskEvidence& evidence) {
   constexpr int kNear = 12;
   const cv::Mat strong = evidence.distance >= evidence.strong;
   cv::Mat contour, near;
-  const auto box = [](int reach) {
-    return cv::getStructuringElement(cv::MORPH_RECT, {2 * reach + 1, 2 * reach + 1});
-  };
-  cv::dilate(strong, contour, box(kMixed));
-  cv::dilate(strong, near, box(kNear));
+  cv::dilate(strong, contour, square(kMixed));
+  cv::dilate(strong, near, square(kNear));
   cv::Mat weak = near & ~contour & (evidence.distance >= evidence.weak);
-  cv::morphologyEx(weak, weak, cv::MORPH_OPEN, box(1));
+  cv::morphologyEx(weak, weak, cv::MORPH_OPEN, square(1));
   const double doubtful = cv::countNonZero(weak), sure = cv::countNonZero(strong);
   return doubtful > 0 ? doubtful / (doubtful + sure) : 0;
 }
@@ -140,27 +137,6 @@ class Comparison {
     return true;
   }
 
-  /// Of the still background, and of shadows' edges, which are not known to the pixel.
-  cv::Mat least_deviation() const {
-    constexpr double kOff = 0.35;  // of what light differs by from a pixel to the next
-    if (paper_.empty()) return behind_ ? behind_->deviation : cv::Mat();
-    cv::Mat light(taken_.size(), CV_32F), low, high;
-    for (int y = 0; y < light.rows; ++y)
-      for (int x = 0; x < light.cols; ++x) {
-        const glm::vec3& p = paper_[index({x, y})];
-        light.at<float>(y, x) = (p.x + p.y + p.z) / 3;
-      }
-    const cv::Mat box = cv::getStructuringElement(cv::MORPH_RECT, {3, 3});
-    cv::dilate(light, high, box);
-    cv::erode(light, low, box);
-    cv::Mat out = kOff * (high - low);
-    cv::Mat inside;
-    cv::erode(page_, inside, box);
-    out.setTo(0, ~inside);
-    if (behind_) cv::max(out, behind_->deviation, out);
-    return out;
-  }
-
   /// Where all shadow on the page is known.
   cv::Mat shaded() const {
     if (!steady_) return {};
@@ -172,13 +148,10 @@ class Comparison {
   void bridge_edges_of_print(MaskEvidence& evidence) const {
     constexpr float kEdge = 0.1f;  // of the paper's light
     constexpr int kAcross = 3;     // pixels: half of what an edge is wide
-    const auto box = [](int reach) {
-      return cv::getStructuringElement(cv::MORPH_RECT, {2 * reach + 1, 2 * reach + 1});
-    };
     cv::Mat low, high, both;
-    cv::erode(light_, low, box(2));
-    cv::dilate(light_, high, box(2));
-    cv::morphologyEx(evidence.distance, both, cv::MORPH_CLOSE, box(kAcross));
+    cv::erode(light_, low, square(2));
+    cv::dilate(light_, high, square(2));
+    cv::morphologyEx(evidence.distance, both, cv::MORPH_CLOSE, square(kAcross));
     both.copyTo(evidence.distance, page_ & (high - low > kEdge) & (both >= evidence.strong));
   }
 
@@ -351,8 +324,25 @@ void keep_shares(Mask& mask) {
       if (part > 0 && sizes.at<int>(part, cv::CC_STAT_AREA) >= kSpeck * largest)
         near.at<std::uint8_t>(y, x) = 255;
     }
-  cv::dilate(near, near, cv::getStructuringElement(cv::MORPH_RECT, {3, 3}));
+  cv::dilate(near, near, square(1));
   coverage.setTo(0, ~near);
+}
+
+void keep_parts_in(const Mask& shadow, Mask& mask) {
+  constexpr std::uint8_t kHalf = 128;
+  if (shadow.empty()) return;
+  cv::Mat coverage(mask.height, mask.width, CV_8U, mask.coverage.data()), where, labels;
+  cv::resize(cv::Mat(shadow.height, shadow.width, CV_8U,
+                     const_cast<std::uint8_t*>(shadow.coverage.data())),
+             where, coverage.size(), 0, 0, cv::INTER_NEAREST);
+  std::vector<bool> met(std::size_t(cv::connectedComponents(coverage >= kHalf, labels, 8, CV_32S)));
+  for (int y = 0; y < labels.rows; ++y)
+    for (int x = 0; x < labels.cols; ++x)
+      if (where.at<std::uint8_t>(y, x)) met[std::size_t(labels.at<int>(y, x))] = true;
+  for (int y = 0; y < labels.rows; ++y)
+    for (int x = 0; x < labels.cols; ++x)
+      if (const int part = labels.at<int>(y, x); part > 0 && !met[std::size_t(part)])
+        coverage.at<std::uint8_t>(y, x) = 0;
 }
 
 }  // namespace photohull

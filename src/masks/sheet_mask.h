@@ -31,4 +31,9 @@ SheetMask mask_from_sheet(const ColourImage& image, const SheetLook& look, bool 
 /// do parts of less than 0.05 % of the largest one's pixels: print that is not where it should be.
 void keep_shares(Mask& mask);
 
+/// Parts of a mask that are nowhere in the object's shadow, as all photographs tell it, go: fine
+/// print above all, which no picture of the sheet has as exactly as a photograph. `shadow`: 0 where
+/// the object cannot be; of the mask's size or a scaled copy of it; empty: nothing is known.
+void keep_parts_in(const Mask& shadow, Mask& mask);
+
 }  // namespace photohull

@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "masks/mask_bias.h"
 #include "masks/mask_lines.h"
+#include "masks/photographed_mask.h"
 #include "masks/silhouette.h"
 #include "pipeline/rounded_pixels.h"
 #include "pipeline/subject.h"
@@ -55,8 +56,8 @@ void measure_distances(std::vector<PreparedView>& views) {
 Outlines trace_outlines(std::vector<PreparedView>& views) {
   Outlines outlines(views.size());
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
-    const Mask& mask = views[i].mask;
-    if (mask.empty()) return;
+    if (views[i].mask.empty()) return;
+    const Mask mask = photographed_mask(views[i].image, views[i].mask);
     std::vector<LinePoint>& lines = views[i].silhouette.lines;
     lines = find_lines(mask);
     if (views[i].silhouette.likelihood) lines = sure_lines(mask, std::move(lines));
