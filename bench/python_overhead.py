@@ -2,9 +2,11 @@
 
     python3 -m bench python_overhead
 
-Both write the same folder, in turn; of --repeat runs the one that took least counts."""
+Both write the same folder, in turn. What is printed is the median of --repeat rounds, and of the quotients of each round's two
+jobs: other programs that run beside them slow both of a round alike."""
 import argparse
 import os
+import statistics
 import subprocess
 import time
 from pathlib import Path
@@ -28,7 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--scene", type=Path, default=ROOT / "datasets/templeSparseRing")
     parser.add_argument("--method", default="refine")
     parser.add_argument("--resolution", type=int, default=128)
-    parser.add_argument("--repeat", type=int, default=5)
+    parser.add_argument("--repeat", type=int, default=7)
 
 
 def cost(words: list, environment: dict) -> tuple[float, float]:
@@ -56,5 +58,8 @@ def run(options: argparse.Namespace) -> int:
                 costs[way].append(cost(words, environment))
     print("| from | CPU s | wall s |\n|---|---|---|")
     for way, all_of_it in costs.items():
-        print(f"| {way} | {min(cpu for cpu, _ in all_of_it):.2f} | {min(wall for _, wall in all_of_it):.2f} |")
+        cpu, wall = (statistics.median(values) for values in zip(*all_of_it))
+        print(f"| {way} | {cpu:.2f} | {wall:.2f} |")
+    quotients = [python[0] / line[0] for python, line in zip(costs["Python"], costs["command line"])]
+    print(f"\nPython's CPU seconds are {statistics.median(quotients):.3f} of the command line's (from {min(quotients):.3f} to {max(quotients):.3f}).")
     return 0

@@ -18,6 +18,9 @@ constexpr int kDepthMapInfosBinding = 4;  // DepthMapInfo, one a camera
 constexpr int kDepthMapsBinding = 5;      // depths of all maps, in one buffer
 constexpr int kDepthMapLayersUnit = 2;    // or in the layers of an image
 
+constexpr int kSplatGroup = 64;  // threads of a work group that draws
+constexpr int kSplatRun = 16;    // points or voxels that a thread draws into a depth map
+
 struct DepthMapInfo {
   ivec4 size;   // x, y: texels; z: first texel in the buffer, or layer of the image; w: view
   vec4 scale;   // x: texels per pixel

@@ -16,8 +16,6 @@ constexpr int kSplatParametersBinding = 0;
 constexpr int kSplatPointsBinding = 1;  // SurfacePoint
 
 constexpr int kListedPoints = 64;     // points of a work group, with one list of views that may see them
-constexpr int kSplatGroup = 64;       // threads of a work group
-constexpr int kSplatRun = 16;         // points that a thread draws into a depth map
 constexpr float kSplatReach = 6.0f;   // texels: half the width of a near voxel in a depth map, at most
 
 struct SplatParameters {

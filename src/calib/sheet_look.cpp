@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <optional>
+#include <utility>
 
 #include "calib/board_model.h"
 #include "core/error.h"
@@ -14,6 +16,7 @@ namespace photohull {
 namespace {
 
 constexpr int kSamples = 2;  // along each side of a pixel
+constexpr int kStep = 8;  // pixels between which a lens is straight: to 1e-4 pixels where k1 = 0.3
 
 /// Lines of sight of one photograph, in millimetres of the sheet's frame.
 class Sight {
@@ -36,10 +39,7 @@ class Sight {
   int width() const { return camera_.intrinsics.width; }
   int height() const { return camera_.intrinsics.height; }
 
-  /// At the corners of a row's pixels: between the rows y - 1 and y.
-  std::vector<glm::dvec2> corners(int y) const {
-    std::vector<glm::dvec2> pixels;
-    for (int x = 0; x <= width(); ++x) pixels.emplace_back(x - 0.5, y - 0.5);
+  std::vector<glm::dvec2> undistorted_pixels(const std::vector<glm::dvec2>& pixels) const {
     return undistorted(pixels, model_, lens_);
   }
 
@@ -91,21 +91,63 @@ class Sight {
   glm::dvec3 eye_, low_, high_, bend_{0.0};
 };
 
-/// The mean over a pixel's area, whose corners are given row by row.
-void add_pixel(const Sight& sight, const SheetPicture& picture, const SheetLight& light,
-               const std::array<glm::dvec2, 4>& corners, SheetLook& look) {
+/// The corners of a photograph's pixels, undistorted, from those of every kStep-th.
+class PixelCorners {
+ public:
+  explicit PixelCorners(const Sight& sight) : width_(sight.width()), columns_(width_ / kStep + 2) {
+    std::vector<glm::dvec2> pixels;
+    for (int y = 0; y < sight.height() + kStep + 1; y += kStep)
+      for (int x = 0; x < columns_; ++x) pixels.emplace_back(x * kStep - 0.5, y - 0.5);
+    knots_ = sight.undistorted_pixels(pixels);
+  }
+
+  /// Of a row's pixels, at its upper edge: between the rows y - 1 and y.
+  std::vector<glm::dvec2> above(int y) const {
+    const glm::dvec2* upper = &knots_[std::size_t(y / kStep) * std::size_t(columns_)];
+    const double v = double(y % kStep) / kStep;
+    std::vector<glm::dvec2> out;
+    for (int x = 0; x <= width_; ++x) {
+      const int i = x / kStep;
+      const double u = double(x % kStep) / kStep;
+      out.push_back(glm::mix(glm::mix(upper[i], upper[i + 1], u),
+                             glm::mix(upper[i + columns_], upper[i + columns_ + 1], u), v));
+    }
+    return out;
+  }
+
+ private:
+  int width_, columns_;
+  std::vector<glm::dvec2> knots_;
+};
+
+/// What is seen at the corners of a row's pixels.
+struct CornerRow {
+  std::vector<glm::dvec2> corners;                ///< undistorted
+  std::vector<std::optional<glm::dvec2>> places;  ///< of the sheet
+
+  CornerRow(const Sight& sight, std::vector<glm::dvec2> row) : corners(std::move(row)) {
+    for (const glm::dvec2& corner : corners) places.push_back(sight.place(corner));
+  }
+};
+
+/// The mean over a pixel's area. The places of the sheet at its corners are given row by row;
+/// within a pixel they are as good as linear.
+void add_pixel(const SheetPicture& picture, const SheetLight& light,
+               const std::array<std::optional<glm::dvec2>, 4>& places, SheetLook& look) {
+  const bool hit = places[0] && places[1] && places[2] && places[3];
   float sum = 0;
   bool beside = false, agreed = true;
   glm::vec3 paper(0.0f);
   for (int k = 0; k < kSamples * kSamples; ++k) {
     const double u = (k % kSamples + 0.5) / kSamples, v = (k / kSamples + 0.5) / kSamples;
-    const auto place = sight.place(
-        glm::mix(glm::mix(corners[0], corners[1], u), glm::mix(corners[2], corners[3], u), v));
-    const float own = place ? picture.at(*place) : -1;
+    const glm::dvec2 place =
+        hit ? glm::mix(glm::mix(*places[0], *places[1], u), glm::mix(*places[2], *places[3], u), v)
+            : glm::dvec2(0.0);
+    const float own = hit ? picture.at(place) : -1;
     beside = beside || own < 0;
     sum += own / (kSamples * kSamples);
     if (beside || light.empty()) continue;
-    const SheetLight::Texel texel = light.at(*place);
+    const SheetLight::Texel texel = light.at(place);
     paper += texel.paper / float(kSamples * kSamples);
     agreed = agreed && texel.agreed;
   }
@@ -144,14 +186,17 @@ SheetLook look_at_sheet(const PoseResult& result, std::size_t photo, const Sheet
   SheetLook look;
   look.width = sight.width(), look.height = sight.height();
   look.steady = light.steady;
-  std::vector<glm::dvec2> above = sight.corners(0);
+  const PixelCorners corners(sight);
+  CornerRow above(sight, corners.above(0));
   for (int y = 0; y < look.height; ++y) {
-    const std::vector<glm::dvec2> below = sight.corners(y + 1);
+    CornerRow below(sight, corners.above(y + 1));
     for (std::size_t x = 0; x < std::size_t(look.width); ++x) {
-      add_pixel(sight, picture, light, {above[x], above[x + 1], below[x], below[x + 1]}, look);
-      look.possible.push_back(sight.meets_box(0.5 * (above[x] + below[x + 1])) ? 255 : 0);
+      add_pixel(picture, light,
+                {above.places[x], above.places[x + 1], below.places[x], below.places[x + 1]}, look);
+      look.possible.push_back(sight.meets_box(0.5 * (above.corners[x] + below.corners[x + 1])) ? 255
+                                                                                               : 0);
     }
-    above = below;
+    above = std::move(below);
   }
   if (blur > 0) blur_look(blur, look);
   return look;

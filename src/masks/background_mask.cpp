@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kSpeck = 0.002;      ///< groups below this share of all strong pixels are dropped
 constexpr double kReach = 0.01;       ///< of the shorter side: how far weak pixels may hang on
+constexpr int kFewestWeak = 5;        ///< pixels; fewer that hang together are noise
 constexpr double kHole = 0.015;       ///< of the object: enclosed background up to this is shadow
 constexpr double kFullDoubt = 0.005;  ///< from this doubt on gaps are closed at full reach
 constexpr double kLeastTrust = 0.25;  ///< share of the reach that is used without any doubt
@@ -62,6 +63,22 @@ Components select_components(const cv::Mat& picture, int connectivity, const Kee
     for (int x = 0; x < picture.cols; ++x) row[x] = value[std::size_t(label[x])];
   }
   return result;
+}
+
+/// The components of `picture` that hold a pixel of `seeds`.
+cv::Mat touching(const cv::Mat& picture, const cv::Mat& seeds) {
+  cv::Mat labels;
+  std::vector<std::uint8_t> value(std::size_t(cv::connectedComponents(picture, labels, 8, CV_32S)),
+                                  0);
+  for (int y = 0; y < picture.rows; ++y)
+    for (int x = 0; x < picture.cols; ++x)
+      if (seeds.at<std::uint8_t>(y, x)) value[std::size_t(labels.at<int>(y, x))] = 255;
+  value[0] = 0;
+  cv::Mat out(picture.size(), CV_8U);
+  for (int y = 0; y < picture.rows; ++y)
+    for (int x = 0; x < picture.cols; ++x)
+      out.at<std::uint8_t>(y, x) = value[std::size_t(labels.at<int>(y, x))];
+  return out;
 }
 
 /// Background that the object encloses in fewer than `limit` pixels becomes object.
@@ -140,14 +157,20 @@ Mask mask_from_evidence(const MaskEvidence& model) {
   distance = distance(box);
   cv::dilate(object, object, square(reach));
   object &= distance >= model.weak;
+  object = parts.selected(box) | select_components(object, 8, [](int area, const cv::Rect&) {
+                                   return area >= kFewestWeak;
+                                 }).selected;
   const cv::Mat apart = object.clone();
   cv::morphologyEx(object, object, cv::MORPH_CLOSE, square(2 * reach));
-  if (!model.bare.empty()) object &= ~model.bare(box) | apart;
+  if (!model.bare.empty()) {
+    object &= ~model.bare(box) | apart;
+    object = touching(object, apart);
+  }
   const cv::Mat closed = object.clone();
   fill_holes(object, kHole * trust * trust * cv::countNonZero(object));
   if (!model.bare.empty()) {  // what is wide enough is a hole
     cv::Mat open;
-    cv::morphologyEx(model.bare(box), open, cv::MORPH_OPEN, square(kMixed));
+    cv::morphologyEx(model.bare(box), open, cv::MORPH_OPEN, square(1));
     object &= ~open | closed;
   }
   const cv::Mat whole = object.clone();

@@ -63,6 +63,24 @@ cv::Vec6d fit(const std::vector<cv::Point>& places, const std::vector<double>& v
   return form;
 }
 
+/// MaskEvidence::doubt without the contour, where pixels show both sides in part: of thin parts,
+/// that is nearly all. Nor does noise count that is nowhere near.
+double doubt_within(const MaskEvidence& evidence) {
+  constexpr int kMixed = 2;  // pixels
+  constexpr int kNear = 12;
+  const cv::Mat strong = evidence.distance >= evidence.strong;
+  cv::Mat contour, near;
+  const auto box = [](int reach) {
+    return cv::getStructuringElement(cv::MORPH_RECT, {2 * reach + 1, 2 * reach + 1});
+  };
+  cv::dilate(strong, contour, box(kMixed));
+  cv::dilate(strong, near, box(kNear));
+  cv::Mat weak = near & ~contour & (evidence.distance >= evidence.weak);
+  cv::morphologyEx(weak, weak, cv::MORPH_OPEN, box(1));
+  const double doubtful = cv::countNonZero(weak), sure = cv::countNonZero(strong);
+  return doubtful > 0 ? doubtful / (doubtful + sure) : 0;
+}
+
 class Comparison {
  public:
   Comparison(const ColourImage& image, const SheetLook& look, const StillBackground& still)
@@ -86,8 +104,10 @@ class Comparison {
     MaskEvidence evidence =
         compare_with_expected(taken_, expected_, certain, kShadowEdge,
                               behind_ ? behind_->deviation : cv::Mat(), shaded());
+    bridge_edges_of_print(evidence);
     if (!paper_.empty()) evidence.bare = bare(evidence, unknown);
     evidence.distance.setTo(0, ~possible_);
+    evidence.doubt = doubt_within(evidence);
     if (behind_) unknown |= disbelieved(*behind_, {page_, possible_, unknown}, evidence);
     evidence.distance.setTo(255, unknown);
     out.undecided = double(cv::countNonZero(unknown)) / std::max(1, cv::countNonZero(possible_));
@@ -147,10 +167,25 @@ class Comparison {
     return cv::Mat(taken_.size(), CV_8U, const_cast<std::uint8_t*>(agreed_.data())) & page_;
   }
 
+  /// At the print's edges a pixel may have any light between paper's and ink's, and tells nothing:
+  /// it is the object's where that is on both sides of it.
+  void bridge_edges_of_print(MaskEvidence& evidence) const {
+    constexpr float kEdge = 0.1f;  // of the paper's light
+    constexpr int kAcross = 3;     // pixels: half of what an edge is wide
+    const auto box = [](int reach) {
+      return cv::getStructuringElement(cv::MORPH_RECT, {2 * reach + 1, 2 * reach + 1});
+    };
+    cv::Mat low, high, both;
+    cv::erode(light_, low, box(2));
+    cv::dilate(light_, high, box(2));
+    cv::morphologyEx(evidence.distance, both, cv::MORPH_CLOSE, box(kAcross));
+    both.copyTo(evidence.distance, page_ & (high - low > kEdge) & (both >= evidence.strong));
+  }
+
   /// Where all around a pixel is as expected, and what is expected is no guess.
   cv::Mat bare(const MaskEvidence& evidence, const cv::Mat& unknown) const {
-    cv::Mat around;
-    cv::blur(evidence.distance, around, {5, 5});
+    cv::Mat around;  // what is strong beside a pixel says no more of it than that it is not far
+    cv::blur(cv::min(evidence.distance, evidence.strong), around, {3, 3});
     const cv::Mat agreed(taken_.size(), CV_8U, const_cast<std::uint8_t*>(agreed_.data()));
     return (around < evidence.weak / 2) & ((page_ & agreed) | (~page_ & ~unknown));
   }

@@ -42,6 +42,7 @@ struct Run {
   const ReconstructOptions& options;
   const Photographs& photographs;
   Progress& progress;
+  const TakeVolume& take_volume;
   StageClock clock{progress};
   Report report{};
   std::unique_ptr<gpu::Context> context{};
@@ -178,6 +179,7 @@ class Carver {
     const Around around = surround(surface.mesh, open);
     images_.reset();
     run_.context->release_deleted();
+    hand_over_volume(out);
     judge(surface.mesh, extracted.findings, around, out.evidence);
     if (open && bounded_) surface = open_unseen(job(), surface.mesh, std::move(surface.seen));
     run_.report.mesh = {.extract = extracted.findings,
@@ -272,6 +274,15 @@ class Carver {
     });
   }
 
+  void hand_over_volume(Reconstruction& out) {
+    run_.report.voxels_kept = std::int64_t(out.volume.inside_voxels());
+    run_.report.bricks_stored = std::int64_t(out.volume.bricks.size());
+    if (!run_.take_volume) return;
+    run_.clock.run("volume", Weights::kVolume, [&] {
+      run_.take_volume(std::exchange(out.volume, {}), std::exchange(out.attributes, {}));
+    });
+  }
+
   Around surround(const TriMesh& mesh, bool open) {
     if (bounded_ || !has_surroundings(run_.options, subject_.box_found, subject_.views)) return {};
     Around around = run_.clock.run("surroundings", Weights::kSurroundings,
@@ -325,8 +336,6 @@ class Carver {
       out.shown = run_.clock.run("page", Weights::kPage, [&] {
         return show_textured(*out.textured, uniform, seen, subject_.views);
       });
-    run_.report.voxels_kept = std::int64_t(out.volume.inside_voxels());
-    run_.report.bricks_stored = std::int64_t(out.volume.bricks.size());
     run_.report.hull = hull_.findings();
     run_.clock.count_samples("hull", hull_.findings().samples);  // later stages carve hulls, too
     draw(out);
@@ -371,14 +380,15 @@ Reconstructor::Reconstructor(ReconstructOptions options) : options_(std::move(op
   options_.validate();
 }
 
-Reconstruction Reconstructor::run(const Photographs& photographs, Progress& given) const {
+Reconstruction Reconstructor::run(const Photographs& photographs, Progress& given,
+                                  const TakeVolume& take_volume) const {
   const auto start = std::chrono::steady_clock::now();
   const double cpu = process_cpu_seconds();
   check_process_limits(options_.threads);
   const auto limit = limit_threads(options_.threads);
   const OneOpenCvThread one_thread;
   RecordingProgress progress(given);
-  Run run{options_, photographs, progress};
+  Run run{options_, photographs, progress, take_volume};
   Prepared prepared = prepare(run);
   Reconstruction out = Carver(run, std::move(prepared)).carve();
   out.report = std::move(run.report);

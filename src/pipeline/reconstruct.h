@@ -1,6 +1,7 @@
 // The main job: photographs in, volume and mesh out.
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "core/grid.h"
@@ -27,7 +28,10 @@ struct Evidence {
   MissingPicture explained;  ///< what of a photograph the model explains; empty with masks
 };
 
-/// All of it in memory, in world units.
+/// Takes the volume when it is done, which then need not be held while the rest is made.
+using TakeVolume = std::function<void(SparseVolume, VolumeAttributes)>;
+
+/// All of it in memory, in world units. Volume and attributes are empty where they were taken.
 struct Reconstruction {
   SparseVolume volume;          ///< truncated signed distances, voxels, negative inside
   VolumeAttributes attributes;  ///< colours and confidence near its surface
@@ -51,7 +55,8 @@ class Reconstructor {
   /// point after its token was cancelled. Throws Error where nothing can be reconstructed;
   /// MemoryError. A result that fails its own checks is none: report.verdict tells. With the option
   /// `checkpoint`, levels that are done are kept in that folder.
-  Reconstruction run(const Photographs& photographs, Progress& progress) const;
+  Reconstruction run(const Photographs& photographs, Progress& progress,
+                     const TakeVolume& take_volume = {}) const;
 
   const ReconstructOptions& options() const { return options_; }
 

@@ -18,7 +18,8 @@ double total_weight(const ReconstructOptions& options) {
          (options.mesh_error.value > 0 ? Weights::kSimplify : 0) + Weights::kClean +
          (makes_texture(options) ? Weights::kTexture : 0) +
          (options.report_page == ReportPage::kOn ? Weights::kPage : 0) + Weights::kMesh +
-         Weights::kColour + Weights::kVerdict + Weights::kPreview + Weights::kFiles;
+         Weights::kColour + Weights::kVerdict + Weights::kPreview + Weights::kVolume +
+         Weights::kFiles;
 }
 
 }  // namespace photohull::pipeline

@@ -12,7 +12,7 @@ struct Weights {
                           kDevice = 0.5, kSilhouettes = 2.5, kHull = 1, kImages = 2, kPhoto = 110,
                           kRefine = 50, kClean = 0.2, kMesh = 0.6, kPhotometric = 1, kColour = 2,
                           kVerdict = 3, kSurroundings = 10, kSimplify = 15, kPage = 2,
-                          kTexture = 40, kPreview = 2.7, kFiles = 2;
+                          kTexture = 40, kPreview = 2.7, kVolume = 1, kFiles = 1;
   /// Of refining the cameras; by default only their agreement is looked at, unless that is bad.
   static double cameras(const ReconstructOptions& options);
 };

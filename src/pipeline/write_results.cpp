@@ -48,15 +48,15 @@ std::vector<std::string> file_names(const std::vector<std::string>& formats, boo
   return names;
 }
 
-void write_volume(const Reconstruction& result, ResultFiles& files, Progress& progress) {
-  const double voxel = result.report.grid.voxel_size;
+void write_volume(const SparseVolume& volume, const VolumeAttributes& attributes,
+                  const std::string& option_line, ResultFiles& files, Progress& progress) {
+  const double voxel = volume.grid.voxel_size;
   if (const double unit = vdb_unit(voxel); unit != 1)
     progress.warn(concat("volume.vdb counts in ", unit,
                          " scene units (its metadata scene_unit): OpenVDB has no voxels as small "
                          "as ",
                          voxel));
-  write_vdb(files.open("volume.vdb"), result.volume, result.attributes,
-            {{"photohull_options", result.report.option_line}});
+  write_vdb(files.open("volume.vdb"), volume, attributes, {{"photohull_options", option_line}});
 }
 
 /// A texture goes with the mesh that it is of.
@@ -94,16 +94,15 @@ std::string command_line(const Report& report, const std::filesystem::path& fold
                 option_word("out", shell_word(folder.string())), report.given_words);
 }
 
-Report write_all(const Reconstruction& result, const ExportChoice& exports, ResultFiles& files,
-                 Progress& given) {
+/// The report, with what writing took, and the names of all files; the volume's is there.
+Report write_rest(const Reconstruction& result, const ExportChoice& exports, ResultFiles& files,
+                  Progress& given) {
   const auto start = std::chrono::steady_clock::now();
   Report report = result.report;
   const double cpu = process_cpu_seconds();
   RecordingProgress progress(given);
   StageClock clock(progress);
   clock.run("files", Weights::kFiles, [&] {
-    write_volume(result, files, progress);
-    progress.check_cancelled();
     report.files = {"volume.vdb"};
     write_meshes(result, exports, files, report);
     io::write_png(files.open("preview.png"), result.preview);
@@ -137,7 +136,8 @@ Report write(const Reconstruction& result, const std::filesystem::path& folder, 
   for (const std::string& format : formats) find_mesh_writer("formats", format);
   ResultFiles files(folder,
                     file_names(formats, result.evidence.has_value(), result.shown.has_value()));
-  return write_all(result, {formats, mesh_files}, files, progress);
+  write_volume(result.volume, result.attributes, result.report.option_line, files, progress);
+  return write_rest(result, {formats, mesh_files}, files, progress);
 }
 
 Report reconstruct_to_folder(const ReconstructOptions& options, const Photographs& photographs,
@@ -148,8 +148,13 @@ Report reconstruct_to_folder(const ReconstructOptions& options, const Photograph
   // What can fail at once does so before the photographs are decoded.
   ResultFiles files(folder, file_names(options.exports, options.evidence,
                                        options.report_page == ReportPage::kOn));
-  const Report report = write_all(reconstructor.run(photographs, progress),
-                                  {options.exports, options.mesh_files}, files, progress);
+  // The volume is written as soon as it is there, since the stages that follow need its memory.
+  const auto take_volume = [&](const SparseVolume& volume, const VolumeAttributes& attributes) {
+    write_volume(volume, attributes, option_line(with_checkpoint, photographs.load), files,
+                 progress);
+  };
+  const Report report = write_rest(reconstructor.run(photographs, progress, take_volume),
+                                   {options.exports, options.mesh_files}, files, progress);
   remove_checkpoint(folder);
   return report;
 }

@@ -1,6 +1,5 @@
 #include "projtex/device_views.h"
 
-#include <cstddef>
 #include <utility>
 
 namespace photohull::projtex {
@@ -17,12 +16,14 @@ std::vector<shaders::GpuView> padded(std::vector<shaders::GpuView> views) {
 }  // namespace
 
 DeviceViews::DeviceViews(std::vector<shaders::GpuView> views)
-    : is_uniform_(views.size() <= kMost), buffer_(gpu::Buffer::of(padded(std::move(views)))) {}
+    : count_(views.size()), buffer_(gpu::Buffer::of(padded(std::move(views)))) {}
 
-const char* DeviceViews::defines() const { return is_uniform_ ? "#define UNIFORM_VIEWS\n" : ""; }
+const char* DeviceViews::defines_for(std::size_t views) {
+  return views <= kMost ? "#define UNIFORM_VIEWS\n" : "";
+}
 
 void DeviceViews::bind() const {
-  if (is_uniform_)
+  if (count_ <= kMost)
     buffer_.bind_uniform(shaders::kUniformViewsBinding);
   else
     buffer_.bind_storage(shaders::kViewsBinding);

@@ -1,6 +1,7 @@
 // The views as kernels have them.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "gpu/buffer.h"
@@ -14,11 +15,12 @@ class DeviceViews {
   explicit DeviceViews(std::vector<shaders::GpuView> views);
 
   /// What programs that use them are compiled with.
-  const char* defines() const;
+  const char* defines() const { return defines_for(count_); }
+  static const char* defines_for(std::size_t views);
   void bind() const;
 
  private:
-  bool is_uniform_;
+  std::size_t count_;
   gpu::Buffer buffer_;
 };
 

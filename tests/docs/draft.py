@@ -13,6 +13,8 @@ DRAFT = {
     "demo": {"--resolution": "24", "--out": "out/demo"},
     "scan": {"--resolution": "24", "--texture": "256"},
     "synthesize": {"--size": "96x72", "--views": "12"},
+    "refine-cameras": {"--views": "0-5"},
+    "render --turntable": {"--frames": "4", "--size": "160x120"},
     "chart": {"--dry-run": None},
     "stress": {"--dry-run": None},
     "bench sampling": {"--squares": "16"} | BENCH_FILES,
@@ -68,6 +70,8 @@ def drafted(text: str) -> tuple[dict[str, str], list[str]]:
     for option, value in FITTING.items():
         if option in words:
             set_option(words, option, value)
+    if command == "render" and "--turntable" in words:
+        name = "render --turntable"
     sheet = command == "synthesize" and ("on_sheet" in text or "on_turntable" in text)
     for option, value in (SHEET if sheet else DRAFT.get(name, {})).items():
         if not (option == "--resolution" and "--voxel-size" in words):

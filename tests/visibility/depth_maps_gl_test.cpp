@@ -126,6 +126,18 @@ TEST_F(DepthMapsTest, MapsThatNoStorageBlockHoldsAreTheSameInAnImage) {
   for (const float depth : image.download(2)) EXPECT_TRUE(std::isinf(depth));
 }
 
+/// As many voxels as several work groups take, by cameras in a storage block and as uniforms.
+TEST_F(DepthMapsTest, CamerasAsUniformsDrawTheSame) {
+  const std::vector<GridCamera> cameras = random_cameras(6);
+  const std::vector<ivec3> voxels = random_voxels(2500, cameras);
+  EXPECT_GT(compare(cameras, voxels), 1000);
+  DepthMaps stored(cameras, grid_), uniform(cameras, grid_);
+  splat(stored, cameras, voxels);
+  uniform.draw(context_, cameras, voxels);
+  for (std::size_t i = 0; i < cameras.size(); ++i)
+    EXPECT_EQ(uniform.download(i), stored.download(i));
+}
+
 TEST_F(DepthMapsTest, AnEmptyListDrawsNothing) { EXPECT_EQ(compare(random_cameras(3), {}), 0); }
 
 TEST_F(DepthMapsTest, ASingleVoxel) {

@@ -4,13 +4,15 @@
 
 #include "carving/search_disc.h"
 #include "core/error.h"
+#include "projtex/device_views.h"
 #include "shared/view.h"
 
 namespace photohull::carving {
 namespace {
 
-std::string defines_of(const PhotoOptions& options) {
-  return search_defines(search_disc(options.search_radius));
+std::string defines_of(const PhotoOptions& options, int views) {
+  return search_defines(search_disc(options.search_radius)) +
+         projtex::DeviceViews::defines_for(std::size_t(views));
 }
 
 }  // namespace
@@ -18,9 +20,9 @@ std::string defines_of(const PhotoOptions& options) {
 LayerSampling layer_sampling(gpu::Context& context, const projtex::ImageSet& images,
                              const PhotoOptions& options) {
   return {"projtex_project_layer",
-          gpu::Program::compute(
-              context, "projtex_project_layer.comp.glsl",
-              concat("#define SUPERSAMPLE ", options.supersample, "\n") + defines_of(options)),
+          gpu::Program::compute(context, "projtex_project_layer.comp.glsl",
+                                concat("#define SUPERSAMPLE ", options.supersample, "\n") +
+                                    defines_of(options, images.layers())),
           [&images](const gpu::Program&) { images.texture().bind(shaders::kImagesUnit); },
           {images.texture().width(), images.texture().height()},
           false};
@@ -30,7 +32,7 @@ LayerSampling layer_sampling(gpu::Context& context, const projtex::SampleImages&
                              const PhotoOptions& options) {
   return {"projtex_sample_layer",
           images.program(context, "projtex_sample_layer.comp.glsl", options.supersample,
-                         defines_of(options)),
+                         defines_of(options, images.layers())),
           [&images](const gpu::Program& program) { images.bind(program); }, images.size(), true};
 }
 

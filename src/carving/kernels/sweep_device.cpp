@@ -31,6 +31,13 @@ shaders::SweepParameters parameters_of(const PhotoOptions& options) {
   return p;
 }
 
+std::vector<shaders::GpuView> views_of(std::span<const projtex::GridCamera> cameras,
+                                       const glm::ivec2& size) {
+  std::vector<shaders::GpuView> views;
+  for (const auto& camera : cameras) views.push_back(projtex::to_gpu_view(camera, size));
+  return views;
+}
+
 }  // namespace
 
 SweepDevice::SweepDevice(gpu::Context& context, const BitVolume& bits,
@@ -44,17 +51,15 @@ SweepDevice::SweepDevice(gpu::Context& context, const BitVolume& bits,
       chunk_(gpu::batch_size(search_.size() * kSampleBytes,
                              std::max<std::size_t>(kChunk / search_.size(), 1))),
       maps_(cameras, bits.grid),
+      views_(views_of(cameras, sampling_.size)),
       select_(Program::compute(context, "carving_select_columns.comp.glsl")),
       score_(Program::compute(context, "carving_score_columns.comp.glsl",
                               statistic_defines(options.statistic, sampling_.coverage) +
-                                  search_defines(search_) + maps_.defines() +
+                                  search_defines(search_) + maps_.defines() + views_.defines() +
                                   visibility::sweep_test_defines(options.visibility))),
       update_(Program::compute(context, "carving_update_columns.comp.glsl")),
       mark_(Program::compute(context, "carving_mark_passed.comp.glsl")),
       uniforms_(sizeof(shaders::SweepParameters)) {
-  std::vector<shaders::GpuView> views;
-  for (const auto& camera : cameras) views.push_back(projtex::to_gpu_view(camera, sampling_.size));
-  views_ = Buffer::of(views);
   table_ = Buffer::of(bits.table);
   set_standing(bits);
   passed_ = Buffer(std::max<std::size_t>(bits.words.size(), 4) * 4);
@@ -100,14 +105,14 @@ void SweepDevice::bind_selection(const BandWork& work) const {
 }
 
 void SweepDevice::bind_sampling(const BandWork& work) const {
-  views_.bind_storage(shaders::kViewsBinding);
+  views_.bind();
   work.item_buffer.bind_storage(shaders::kSweepItemsBinding);
   work.selected.buffer.bind_storage(shaders::kSweepSelectedBinding);
   samples_.bind_storage(shaders::kSweepSamplesBinding);
 }
 
 void SweepDevice::bind_scoring(const BandWork& work) const {
-  views_.bind_storage(shaders::kViewsBinding);
+  views_.bind();
   work.item_buffer.bind_storage(shaders::kSweepItemsBinding);
   packed_.bind_storage(shaders::kSweepSelectedColumnsBinding);
   work.scores.bind_storage(shaders::kSweepScoresBinding);
@@ -170,8 +175,8 @@ void SweepDevice::hide_behind(int layer, const BandWork& work) {
     work.occluders.buffer.bind_storage(shaders::kOccludersBinding);
     mark_->dispatch(context_, "carving_mark_passed", gpu::group_count(count, 64));
   } else {
-    views_.bind_storage(shaders::kViewsBinding);
-    maps_.splat(context_, work.occluders.buffer, count);
+    views_.bind();
+    maps_.splat(context_, work.occluders.buffer, count, views_.defines());
   }
 }
 

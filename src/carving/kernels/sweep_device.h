@@ -15,6 +15,7 @@
 #include "gpu/buffer.h"
 #include "gpu/context.h"
 #include "gpu/program.h"
+#include "projtex/device_views.h"
 #include "projtex/gpu_views.h"
 #include "shared/sweep.h"
 #include "visibility/kernels/depth_maps.h"
@@ -65,8 +66,9 @@ class SweepDevice {
   std::vector<glm::dvec2> search_;  ///< offsets at which views look for a voxel
   std::size_t chunk_;               ///< bricks whose samples are held at once
   visibility::DepthMaps maps_;
+  projtex::DeviceViews views_;
   std::shared_ptr<const gpu::Program> select_, score_, update_, mark_;
-  gpu::Buffer views_, table_, occupancy_, active_, samples_, packed_, uniforms_;
+  gpu::Buffer table_, occupancy_, active_, samples_, packed_, uniforms_;
   gpu::Buffer passed_;  ///< bits of the voxels that hide what the sweep comes to, for rays
   std::vector<shaders::SelectedColumn> columns_of_layer_;
   SweepDirection direction_{};

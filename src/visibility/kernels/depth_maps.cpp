@@ -4,8 +4,11 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "core/error.h"
 #include "gpu/program.h"
+#include "projtex/device_views.h"
 
 namespace photohull::visibility {
 namespace {
@@ -60,11 +63,14 @@ void DepthMaps::bind() const {
     depths_.bind_storage(shaders::kDepthMapsBinding);
 }
 
-void DepthMaps::splat(gpu::Context& context, const gpu::Buffer& voxels, std::size_t count) {
+void DepthMaps::splat(gpu::Context& context, const gpu::Buffer& voxels, std::size_t count,
+                      const char* view_defines) {
   bind();
   voxels.bind_storage(shaders::kOccludersBinding);
-  gpu::Program::compute(context, "visibility_splat_voxels.comp.glsl", defines())
-      ->dispatch(context, "visibility_splat_voxels", gpu::group_count(count, 64), infos_.size());
+  gpu::Program::compute(context, "visibility_splat_voxels.comp.glsl",
+                        concat(defines(), view_defines))
+      ->dispatch(context, "visibility_splat_voxels",
+                 gpu::group_count(count, shaders::kSplatGroup * shaders::kSplatRun), infos_.size());
 }
 
 void DepthMaps::draw(gpu::Context& context, std::span<const projtex::GridCamera> cameras,
@@ -72,14 +78,14 @@ void DepthMaps::draw(gpu::Context& context, std::span<const projtex::GridCamera>
   std::vector<shaders::GpuView> views;
   for (const auto& camera : cameras)
     views.push_back(projtex::to_gpu_view(camera, glm::ivec2(camera.width, camera.height)));
-  const gpu::Buffer view_buffer = gpu::Buffer::of(views);
-  view_buffer.bind_storage(shaders::kViewsBinding);
+  const projtex::DeviceViews device_views(std::move(views));
+  device_views.bind();
   const std::size_t batch = gpu::batch_size(sizeof(glm::ivec4), kVoxels);
   for (std::size_t first = 0; first < voxels.size(); first += batch) {
     const auto part = voxels.subspan(first, std::min(batch, voxels.size() - first));
     std::vector<glm::ivec4> list{glm::ivec4(int(part.size()), 0, 0, 0)};
     for (const glm::ivec3& voxel : part) list.emplace_back(voxel, 0);
-    splat(context, gpu::Buffer::of(list), part.size());
+    splat(context, gpu::Buffer::of(list), part.size(), device_views.defines());
   }
 }
 

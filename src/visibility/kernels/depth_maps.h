@@ -37,9 +37,10 @@ class DepthMaps {
   /// What programs that use the maps are compiled with: where the depths are.
   const char* defines() const { return layers_.id() ? "#define DEPTH_MAPS_LAYERED\n" : ""; }
   /// Draws the first `count` voxels of `voxels` (ivec4, preceded by a header of 16 bytes whose
-  /// first word is the count) into all maps. Cameras must be bound to
-  /// kViewsBinding.
-  void splat(gpu::Context& context, const gpu::Buffer& voxels, std::size_t count);
+  /// first word is the count) into all maps. Cameras must be bound: to kViewsBinding, or as the
+  /// programs that `view_defines` makes read them (projtex::DeviceViews).
+  void splat(gpu::Context& context, const gpu::Buffer& voxels, std::size_t count,
+             const char* view_defines = "");
 
   /// Draws voxels into all maps; `cameras` are those that the maps were made for.
   void draw(gpu::Context& context, std::span<const projtex::GridCamera> cameras,
