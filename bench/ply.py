@@ -56,3 +56,14 @@ def open_edges(path: Path) -> int:
 def positions(vertex: np.ndarray) -> np.ndarray:
     """n x 3 coordinates in double precision."""
     return np.stack([vertex[axis] for axis in "xyz"], 1).astype(float)
+
+
+def write_mesh(path: Path, places: np.ndarray, corners: np.ndarray) -> None:
+    """Binary little-endian, nothing but vertices and triangles."""
+    faces = np.empty(len(corners), dtype=[("count", "u1"), ("corners", "<i4", 3)])
+    faces["count"], faces["corners"] = 3, corners
+    with open(path, "wb") as file:
+        file.write(f"ply\nformat binary_little_endian 1.0\nelement vertex {len(places)}\nproperty float x\nproperty float y\n"
+                   f"property float z\nelement face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n".encode())
+        file.write(places.astype("<f4").tobytes())
+        file.write(faces.tobytes())

@@ -12,7 +12,7 @@
 namespace photohull {
 namespace {
 
-constexpr int kWidth = 160, kHeight = 120;
+constexpr int kPlantWidth = 160, kPlantHeight = 120;
 
 bool is_ink(double x, double y) { return x < 20 || (x > 60 && x < 80 && y > 40 && y < 60); }
 
@@ -27,9 +27,9 @@ bool is_plant(double x, double y) {
 
 SheetLook look_of_page() {
   SheetLook look;
-  look.width = kWidth, look.height = kHeight;
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x) {
+  look.width = kPlantWidth, look.height = kPlantHeight;
+  for (int y = 0; y < kPlantHeight; ++y)
+    for (int x = 0; x < kPlantWidth; ++x) {
       look.light.push_back(is_ink(x, y) ? 0.0f : 1.0f);
       look.possible.push_back(x > 30 && x < 150 && y > 8 && y < 112 ? 255 : 0);
     }
@@ -41,7 +41,7 @@ SheetLook look_of_page() {
 ColourImage photograph_of_plant() {
   std::mt19937 random(5);
   std::normal_distribution<float> noise(0, 0.004f);
-  return paint_srgb(kWidth, kHeight, [&](double x, double y) {
+  return paint_srgb(kPlantWidth, kPlantHeight, [&](double x, double y) {
     glm::vec3 root = is_plant(x, y) ? glm::vec3(0.35f, 0.6f, 0.3f)
                      : is_ink(x + 0.3, y - 0.3)
                          ? glm::vec3(0.2f)  // print is not quite where it should be
@@ -55,9 +55,9 @@ TEST(SheetMask, GapsOverBarePaperStayOpenAndPrintCutsNothing) {
   const Mask mask = mask_from_sheet(photograph_of_plant(), look_of_page(), true).mask;
   ASSERT_FALSE(mask.empty());
   int lacking = 0, closed = 0, elsewhere = 0;
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x) {
-      const bool inside = mask.coverage[std::size_t(y * kWidth + x)] >= 128;
+  for (int y = 0; y < kPlantHeight; ++y)
+    for (int x = 0; x < kPlantWidth; ++x) {
+      const bool inside = mask.coverage[std::size_t(y * kPlantWidth + x)] >= 128;
       const bool well_within =
           is_plant(x - 1, y) && is_plant(x + 1, y) && is_plant(x, y - 1) && is_plant(x, y + 1);
       lacking += well_within && !inside;
