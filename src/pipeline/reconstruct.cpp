@@ -20,7 +20,6 @@
 #include "pipeline/given_words.h"
 #include "pipeline/judge_result.h"
 #include "pipeline/look.h"
-#include "pipeline/methods/sampler.h"
 #include "pipeline/photometric_stage.h"
 #include "pipeline/place_lattice.h"
 #include "pipeline/prepare_scene.h"
@@ -103,21 +102,6 @@ Prepared prepare(Run& run) {
           masks,
           std::move(agreeing.findings),
           std::move(found.findings)};
-}
-
-/// Does anything after the hull go by masks? The other samplers weight by them, and lines get
-/// their width from them.
-bool masks_are_needed(const ReconstructOptions& options, std::span<const PreparedView> views) {
-  return !method_of(options).from_hull || sampler_of(options) != projtex::Sampler::kMipmap ||
-         std::any_of(views.begin(), views.end(), [](const PreparedView& view) {
-           return !view.silhouette.lines.empty() || !view.silhouette.widened.empty();
-         });
-}
-
-/// To free memory; what was made of the masks stays.
-std::vector<PreparedView> without_masks(std::vector<PreparedView> views) {
-  for (PreparedView& view : views) std::vector<std::uint8_t>().swap(view.mask.coverage);
-  return views;
 }
 
 void warn_of_surroundings(const ReconstructOptions& options, bool bounded, Progress& progress) {

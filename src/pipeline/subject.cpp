@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "pipeline/methods/method.h"
+#include "pipeline/methods/sampler.h"
+
 namespace photohull::pipeline {
 
 bool any_mask(std::span<const PreparedView> views) {
@@ -35,6 +38,18 @@ std::vector<SourceView> sources_of(std::span<const PreparedView> views) {
   std::vector<SourceView> out;
   for (const PreparedView& view : views) out.push_back(view.source);
   return out;
+}
+
+bool masks_are_needed(const ReconstructOptions& options, std::span<const PreparedView> views) {
+  return !method_of(options).from_hull || sampler_of(options) != projtex::Sampler::kMipmap ||
+         std::any_of(views.begin(), views.end(), [](const PreparedView& view) {
+           return !view.silhouette.lines.empty() || !view.silhouette.widened.empty();
+         });
+}
+
+std::vector<PreparedView> without_masks(std::vector<PreparedView> views) {
+  for (PreparedView& view : views) std::vector<std::uint8_t>().swap(view.mask.coverage);
+  return views;
 }
 
 }  // namespace photohull::pipeline

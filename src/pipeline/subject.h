@@ -13,6 +13,7 @@
 #include "core/grid.h"
 #include "core/prepared_view.h"
 #include "core/scene.h"
+#include "pipeline/reconstruct_options.h"
 
 namespace photohull::pipeline {
 
@@ -38,5 +39,12 @@ std::vector<const SilhouetteDistance*> distances_of(std::span<const PreparedView
 
 /// What the scene lists of each.
 std::vector<SourceView> sources_of(std::span<const PreparedView> views);
+
+/// Does anything after the hull go by masks? The other samplers weight by them, and lines get
+/// their width from them.
+bool masks_are_needed(const ReconstructOptions& options, std::span<const PreparedView> views);
+
+/// To free memory; what was made of the masks stays.
+std::vector<PreparedView> without_masks(std::vector<PreparedView> views);
 
 }  // namespace photohull::pipeline
