@@ -40,9 +40,9 @@ struct JoinedPass {
 /// seam by the cameras, aligned [Gruen85], and the motion is fitted to their pixels [Triggs99]. A
 /// pass may be joined to the first one by way of another. Views must be of about one scale.
 ///
-/// Throws Error that says why and what to do where a pass does not fit the others: too few views or points,
-/// no motion that twelve pairs agree on, points that leave the motion open by more than a pixel, a
-/// surface that masks of the others leave out. Throws Cancelled.
+/// Throws Error that says why and what to do where a pass does not fit the others: too few views or
+/// points, no motion that twelve pairs agree on, points that leave the motion open by more than a
+/// pixel, a surface that masks of the others leave out. Throws Cancelled.
 std::vector<JoinedPass> join_passes(std::span<const PhotoPass> passes, Progress& progress);
 
 }  // namespace photohull

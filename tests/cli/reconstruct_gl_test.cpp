@@ -86,7 +86,7 @@ TEST_F(Reconstruct, ReportHasTheDocumentedFields) {
   for (const json& stage : r["stages"]) stages.push_back(stage["name"]);
   EXPECT_THAT(stages, ElementsAre("scene", "device", "views", "cameras", "silhouettes", "hull",
                                   "photometric", "images", "refine", "clean", "mesh", "colour",
-                                  "verdict", "page", "preview", "files"));
+                                  "volume", "verdict", "page", "preview", "files"));
 }
 
 TEST_F(Reconstruct, MeshErrorLeavesFewerTriangles) {

@@ -45,7 +45,7 @@ TEST_F(Refine, StagesAndResult) {
   }
   EXPECT_THAT(stages, ElementsAre("scene", "device", "views", "cameras", "silhouettes", "hull",
                                   "photometric", "images", "refine", "clean", "mesh", "colour",
-                                  "verdict", "page", "preview", "files"));
+                                  "volume", "verdict", "page", "preview", "files"));
 }
 
 TEST_F(Refine, SameBytesInEveryRunWhateverTheThreads) {
