@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kSpeck = 0.002;      ///< groups below this share of all strong pixels are dropped
 constexpr double kReach = 0.01;       ///< of the shorter side: how far weak pixels may hang on
-constexpr int kFewestWeak = 5;        ///< pixels; fewer that hang together are noise
+constexpr int kFewestWeak = 5;        ///< pixels; fewer weak ones that hang together are noise
 constexpr double kHole = 0.015;       ///< of the object: enclosed background up to this is shadow
 constexpr double kFullDoubt = 0.005;  ///< from this doubt on gaps are closed at full reach
 constexpr double kLeastTrust = 0.25;  ///< share of the reach that is used without any doubt
@@ -153,9 +153,10 @@ Mask mask_from_evidence(const MaskEvidence& model) {
   distance = distance(box);
   cv::dilate(object, object, square(reach));
   object &= distance >= model.weak;
-  object = parts.selected(box) | select_components(object, 8, [](int area, const cv::Rect&) {
-                                   return area >= kFewestWeak;
-                                 }).selected;
+  if (!model.bare.empty())  // the background is known to the pixel
+    object = parts.selected(box) | select_components(object, 8, [](int area, const cv::Rect&) {
+                                     return area >= kFewestWeak;
+                                   }).selected;
   const cv::Mat apart = object.clone();
   cv::morphologyEx(object, object, cv::MORPH_CLOSE, square(2 * reach));
   if (!model.bare.empty()) {
