@@ -54,7 +54,7 @@ std::vector<fs::path> write_sheet_masks(const fs::path& folder, const std::vecto
       continue;
     }
     turntable.keep_to_shadow(i, found.mask);
-    keep_parts_in(scenery.shadows[i], found.mask);
+    if (!scenery.shadows.empty()) keep_parts_in(scenery.shadows[i], found.mask);
     keep_shares(found.mask);
     files[i] = folder / names[i];
     io::write_png(files[i], found.mask.width, found.mask.height, 1, found.mask.coverage);
