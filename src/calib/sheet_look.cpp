@@ -16,7 +16,9 @@ namespace photohull {
 namespace {
 
 constexpr int kSamples = 2;  // along each side of a pixel
-constexpr int kStep = 8;  // pixels between which a lens is straight: to 1e-4 pixels where k1 = 0.3
+// Pixels between which undistorted places are interpolated: in the corner of a photograph of 640
+// pixels by a lens of 500, with k1 of -0.15, that puts them 0.015 pixels off.
+constexpr int kStep = 4;
 
 /// Lines of sight of one photograph, in millimetres of the sheet's frame.
 class Sight {

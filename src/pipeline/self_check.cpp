@@ -38,7 +38,7 @@ double share_of(std::span<const assess::SurfaceProbe> probes, auto&& holds) {
 }
 
 /// The mask, in doubt where nothing was photographed.
-Mask photographed_mask(const PreparedView& view) {
+Mask doubted_beside_photograph(const PreparedView& view) {
   constexpr std::uint8_t kInDoubt = 127;
   Mask mask = view.mask;
   for (int y = 0; y < mask.height; ++y)
@@ -60,7 +60,7 @@ std::vector<assess::SilhouetteFit> compare_silhouettes(const CheckedResult& resu
     const ViewSilhouette& silhouette = result.views[i].silhouette;
     if (silhouette.distance.pixels.empty()) return;
     const Mask& mask = result.views[i].mask;
-    if (result.views[i].image.has_alpha) masks[i] = photographed_mask(result.views[i]);
+    if (result.views[i].image.has_alpha) masks[i] = doubted_beside_photograph(result.views[i]);
     checked[i] = {&silhouette.distance, &silhouette.distance, &silhouette.lines,
                   mask.empty()       ? nullptr
                   : masks[i].empty() ? &mask
