@@ -14,8 +14,8 @@ from pathlib import Path
 from bench.runner import PROGRAM, ROOT, add_keep, add_program, work_folder
 
 SCRIPT = """import sys, photohull
-scene, out, method, resolution = sys.argv[1:]
-photohull.reconstruct(scene, method=method, resolution=int(resolution)).write(out)"""
+scene, out, *resolution = sys.argv[1:]
+photohull.reconstruct(scene, **({"resolution": int(resolution[0])} if resolution else {})).write(out)"""
 
 # What photohull sets for itself, so that the C library keeps freed memory.
 KEPT_MEMORY = {"GLIBC_TUNABLES": "glibc.malloc.hugetlb=1:glibc.malloc.mmap_threshold=33554432:"
@@ -28,8 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--python", default="/usr/bin/python3", help="default: %(default)s")
     parser.add_argument("--package", type=Path, default=PROGRAM.parent / "python", help="default: build/release/python")
     parser.add_argument("--scene", type=Path, default=ROOT / "datasets/templeSparseRing")
-    parser.add_argument("--method", default="refine")
-    parser.add_argument("--resolution", type=int, default=128)
+    parser.add_argument("--resolution", help="voxels along the longest side; default: what the scene has by default")
     parser.add_argument("--repeat", type=int, default=7)
 
 
@@ -42,13 +41,13 @@ def cost(words: list, environment: dict) -> tuple[float, float]:
 
 
 def run(options: argparse.Namespace) -> int:
-    job = [options.method, str(options.resolution)]
+    resolution = [options.resolution] if options.resolution else []
     python = {"PYTHONPATH": str(options.package)} | KEPT_MEMORY
     with work_folder(options.keep) as folder:
         ways = {
-            "command line": ([options.program, "reconstruct", options.scene, "--out", folder / "cli", "--method", job[0],
-                              "--resolution", job[1], "--fresh"], {}),
-            "Python": ([options.python, "-c", SCRIPT, options.scene, folder / "python", *job], python),
+            "command line": ([options.program, "reconstruct", options.scene, "--out", folder / "cli", "--fresh",
+                              *(["--resolution", *resolution] if resolution else [])], {}),
+            "Python": ([options.python, "-c", SCRIPT, options.scene, folder / "python", *resolution], python),
             "command line, start alone": ([options.program.with_name("photohull-main"), "--version"], {}),
             "Python, start alone": ([options.python, "-c", "import photohull"], python),
         }
