@@ -1,5 +1,6 @@
 #include "pipeline/reconstruct.h"
 
+#include <malloc.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>
@@ -156,7 +157,8 @@ class Carver {
         clock.run("mesh", Weights::kMesh, [&] { return extract_surface(job(), out.volume); });
     make_alike_on_mesh(extracted.mesh);
     ColouredSurface coloured = colour(std::move(extracted.mesh), out);
-    OpenSurface surface{std::move(coloured.mesh), seen_vertices(coloured.evidence), {}};
+    OpenSurface surface{
+        std::move(coloured.mesh), seen_vertices(std::exchange(coloured.evidence, {})), {}};
     // What silhouettes bound is judged by them as a whole; else what is delivered is.
     const bool open = leaves_open(run_.options, bounded_);
     if (open && !bounded_) surface = open_unseen(job(), surface.mesh, std::move(surface.seen));
@@ -265,6 +267,7 @@ class Carver {
     run_.clock.run("volume", Weights::kVolume, [&] {
       run_.take_volume(std::exchange(out.volume, {}), std::exchange(out.attributes, {}));
     });
+    malloc_trim(0);  // the C library keeps what was freed
   }
 
   Around surround(const TriMesh& mesh, bool open) {
@@ -283,6 +286,7 @@ class Carver {
       return judge_result(job(), {mesh, around, cameras_, silhouettes_, extracted.stem_vertices},
                           evidence.has_value());
     });
+    malloc_trim(0);
     run_.report.verdict = std::move(judgement.findings);
     if (!evidence) return;
     evidence->missing = std::move(judgement.missing);

@@ -59,7 +59,7 @@ struct RayScene::Device {
           "the ray caster (Embree) cannot be started: most likely too little memory or too few "
           "threads are available or allowed (ulimit -a); free some or raise the limits");
     scene = rtcNewScene(device);
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT);
   }
   ~Device() {
     rtcReleaseScene(scene);

@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <vector>
 
 #include "core/error.h"
@@ -24,14 +25,28 @@ using openvdb::Vec3fGrid;
 
 openvdb::Vec3f to_vdb(const glm::vec3& v) { return {v.x, v.y, v.z}; }
 
+using MakeGrid = std::function<openvdb::GridBase::Ptr()>;
+
 /// An archive that writes to any seekable stream. io::File ignores the stream's state when it
 /// closes, so that a full disk would go unnoticed.
 class CheckedArchive : public openvdb::io::Archive {
  public:
-  void write_to(std::ostream& out, const openvdb::GridCPtrVec& grids,
+  /// Grids of different names. Each is made when it is written and gone before the next, since
+  /// they take several times the memory of the volume.
+  void write_to(std::ostream& out, const std::vector<MakeGrid>& grids,
                 const openvdb::MetaMap& metadata) const {
     constexpr bool kSeekable = true;
-    Archive::write(out, grids, kSeekable, metadata);
+    openvdb::io::setWriteGridStatsMetadata(out, isGridStatsMetadataEnabled());
+    writeHeader(out, kSeekable);
+    metadata.writeMeta(out);
+    const auto count = std::int32_t(grids.size());
+    out.write(reinterpret_cast<const char*>(&count), sizeof count);
+    for (const MakeGrid& make : grids) {
+      const openvdb::GridBase::Ptr grid = make();
+      openvdb::io::GridDescriptor descriptor(grid->getName(), grid->type(),
+                                             grid->saveFloatAsHalf());
+      writeGrid(descriptor, grid, out, kSeekable);
+    }
   }
 };
 
@@ -172,7 +187,7 @@ std::string content_tag(const SparseVolume& volume, const VolumeAttributes& attr
   return text;
 }
 
-void write_grids(AtomicFile& file, const openvdb::GridCPtrVec& grids,
+void write_grids(AtomicFile& file, const std::vector<MakeGrid>& grids,
                  const openvdb::MetaMap& metadata, const std::string& tag) {
   std::vector<char> buffer(std::size_t(1) << 20);
   std::ofstream out;
@@ -302,15 +317,16 @@ void write_vdb(AtomicFile& file, const SparseVolume& volume, const VolumeAttribu
   openvdb::initialize();
 
   const openvdb::MetaMap map = meta_map(volume, metadata);
-  openvdb::GridCPtrVec grids;
-  const auto add = [&](const openvdb::GridBase::Ptr& grid, const char* name) {
+  const auto named = [&](openvdb::GridBase::Ptr grid, const char* name) {
     describe(*grid, name, volume, map);
-    grids.push_back(grid);
+    return grid;
   };
-  add(surface_grid(volume), "surface");
-  if (!attributes.colour.empty()) add(colour_grid(volume, attributes.colour), "Cd");
+  std::vector<MakeGrid> grids = {[&] { return named(surface_grid(volume), "surface"); }};
+  if (!attributes.colour.empty())
+    grids.push_back([&] { return named(colour_grid(volume, attributes.colour), "Cd"); });
   if (!attributes.confidence.empty())
-    add(confidence_grid(volume, attributes.confidence), "confidence");
+    grids.push_back(
+        [&] { return named(confidence_grid(volume, attributes.confidence), "confidence"); });
   write_grids(file, grids, map, content_tag(volume, attributes, metadata));
 }
 
