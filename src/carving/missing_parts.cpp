@@ -34,9 +34,8 @@ constexpr double kCoarse = 4;             // pixels of a ray that are given up a
 constexpr double kSafety = 0.8;           // of the distance to an outline that a ray may skip
 constexpr double kFarthestSkip = 4;       // pixels: likelihoods change from place to place
 constexpr double kDeep = 0.1;             // pixels within an outline: there is nothing to mend
-constexpr double kRoom = 0.75;   // pixels around a part in the silhouettes that it is put into
-constexpr double kBorne = 0.35;  // pixels beside an outline that are no disagreement
-constexpr double kShare = 0.25;  // of the depth within an outline, along a ray there
+constexpr double kBorne = 0.35;           // pixels beside an outline that are no disagreement
+constexpr double kShare = 0.25;           // of the depth within an outline, along a ray there
 constexpr int kHintSteps = 8;
 constexpr double kNeighbour = 6;     // pixels
 constexpr std::size_t kPiece = 128;  // places
@@ -364,14 +363,14 @@ MissingParts find_missing_parts(const Box& box, std::span<const Camera> cameras,
 }
 
 bool mend_silhouette(std::span<const MissingPart> parts, const Camera& camera,
-                     const SilhouetteDistance& distance, Mask& mask) {
+                     const SilhouetteDistance& distance, const Mending& mending, Mask& mask) {
   bool mended = false;
   for (const MissingPart& part : parts) {
     const auto pixel = camera.project(part.centre);
     if (!pixel || !camera.on_image(*pixel)) continue;
-    if (interpolated(distance, *pixel) < -kDeep) continue;
+    if (interpolated(distance, *pixel) < mending.from) continue;
     const double depth = camera.to_camera(part.centre).z;
-    const double radius = part.radius * camera.intrinsics.fx / depth + kRoom;
+    const double radius = part.radius * camera.intrinsics.fx / depth + mending.room;
     mended = draw_disc(*pixel, radius, mask) || mended;
   }
   return mended;

@@ -61,9 +61,21 @@ MissingParts find_missing_parts(const Box& box, std::span<const Camera> cameras,
                                 std::span<const Silhouette> silhouettes,
                                 const MissingOptions& options, Progress* progress = nullptr);
 
-/// Draws the parts into a view's silhouette, each with room for what cameras and interpolation err,
-/// where they are not well within it anyway. `distance` is that of `mask`. Was there any?
+/// How parts are drawn into a silhouette, pixels.
+struct Mending {
+  double from = 0;  ///< signed distance from the outline, from where on a part lacks in the view
+  double room = 0;  ///< around a part
+};
+/// For masks that may be trusted, where what lacks are sub-pixel parts: each gets room for what
+/// cameras and interpolation err, where it is not well within the outline anyway.
+constexpr Mending kMendThinParts{-0.1, 0.75};
+/// For masks that are wrong in places, where parts of any width lack: only views that leave a part
+/// out altogether get it, or all views would be mended until the object is too thick.
+constexpr Mending kMendGaps{0.35, 0};
+
+/// Draws the parts into a view's silhouette where it lacks them. `distance` is that of `mask`. Was
+/// there any?
 bool mend_silhouette(std::span<const MissingPart> parts, const Camera& camera,
-                     const SilhouetteDistance& distance, Mask& mask);
+                     const SilhouetteDistance& distance, const Mending& mending, Mask& mask);
 
 }  // namespace photohull::carving

@@ -42,6 +42,7 @@ struct SourceView {
   Camera camera;                ///< pixel centres already converted to (0, 0)
   Distortion distortion;
   bool silhouette = true;  ///< false: the scene says that no usable one can be cut from the picture
+  bool mask_made = false;  ///< the mask was made from the photographs: it is wrong in places
   std::filesystem::path plate{};  ///< the same view without the object; empty where there is none
 };
 

@@ -13,9 +13,10 @@ namespace photohull::io {
 
 /// A view as its file states it, before images were looked for.
 struct RawView {
-  std::string listed;  ///< image name or path as written in the file
-  std::string where;   ///< "FILE line 12", opens error messages
-  std::string mask;    ///< mask path relative to the scene file's folder; empty: none stated
+  std::string listed;      ///< image name or path as written in the file
+  std::string where;       ///< "FILE line 12", opens error messages
+  std::string mask;        ///< mask path relative to the scene file's folder; empty: none stated
+  bool mask_made = false;  ///< SourceView::mask_made
   /// Principal point in the file's pixel convention, NaN where not stated (the image's centre is
   /// meant); width and height 0 where not stated; fx and fy 0 where a field of view is.
   Camera camera;

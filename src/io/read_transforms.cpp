@@ -246,6 +246,7 @@ RawScene read_transforms(const fs::path& json_file) {
     view.listed = fields.own_text("file_path");
     if (view.listed.empty()) throw Error(concat(where, ": file_path is missing or empty"));
     view.mask = fields.own_text("mask_path");
+    view.mask_made = fields.flag("mask_made");
     read_intrinsics(fields, view);
     view.distortion = read_distortion(fields);
     view.camera.cam_from_world = read_pose(frames[i], where);

@@ -111,6 +111,7 @@ void attach_from_directory(const LoadSceneOptions& options, const std::vector<Ra
 
 void attach_stated(const fs::path& scene_folder, const RawView& raw, SourceView& view) {
   view.mask = scene_folder / raw.mask;
+  view.mask_made = raw.mask_made;
   for (const std::string& path : shorter_paths(raw.mask))  // the name alone may be the photograph's
     if (!is_file(view.mask) && path.find('/') != std::string::npos && is_file(scene_folder / path))
       view.mask = scene_folder / path;

@@ -60,6 +60,7 @@ ordered_json frame_of(const SourceView& view, const std::filesystem::path& folde
   ordered_json frame;
   frame["file_path"] = listed_name(view, folder, {"."});
   if (!view.mask.empty()) frame["mask_path"] = relative_path(view.mask, folder);
+  if (view.mask_made) frame["mask_made"] = true;
   frame["w"] = k.width;
   frame["h"] = k.height;
   frame["fl_x"] = k.fx;

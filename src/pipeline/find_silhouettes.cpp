@@ -15,9 +15,8 @@ FoundSilhouettes find_silhouettes(const SilhouetteJob& job, std::vector<Prepared
   Outlines outlines = trace_outlines(out.views);
   leave_out_wrong_views(job, out.views, outlines, findings, progress);
   const Room room = bear_disagreement(job, out.views, outlines, restored, findings, progress);
-  out.full_evidence = room.full_evidence;
   give_room(room, out.views, findings);
-  explain_foreground(job, room.full_evidence, out.views, findings, progress);
+  out.full_evidence = explain_foreground(job, room.full_evidence, out.views, findings, progress);
   return out;
 }
 

@@ -22,7 +22,8 @@
 namespace photohull::pipeline::silhouettes {
 namespace {
 
-constexpr double kUnexplained = 0.02;  // of the foreground: more is told
+constexpr double kUnexplained = 0.02;   // of the foreground: more is told
+constexpr double kDoubtedEvidence = 1;  // pixels (docs/design/decisions/0030)
 
 void warn_of_room(const std::vector<OutlineRoom>& room, Progress& progress) {
   const auto worst = std::max_element(
@@ -96,18 +97,26 @@ void give_room(const Room& room, std::vector<PreparedView>& views, SilhouetteFin
     findings.thin.line_pixels += std::int64_t(view.silhouette.lines.size());
 }
 
-void explain_foreground(const SilhouetteJob& job, double full_evidence,
-                        std::vector<PreparedView>& views, SilhouetteFindings& findings,
-                        Progress& progress) {
-  if (job.options.views_may_miss || !any_mask(views)) return;
+double explain_foreground(const SilhouetteJob& job, double full_evidence,
+                          std::vector<PreparedView>& views, SilhouetteFindings& findings,
+                          Progress& progress) {
+  if (job.options.views_may_miss || !any_mask(views)) return full_evidence;
   const std::vector<Camera> cameras = projtex::cameras_of(views);
   const carving::MissingParts found = carving::find_missing_parts(
       job.box, cameras, silhouettes_of(views), tuned(job.options).missing, &progress);
+  ThinFindings& counts = findings.thin;
+  count_explained(found.views, views, counts);
+  const bool here = job.photographs.mask_confidence < 1;
+  const bool made = here || std::ranges::any_of(views, [](const PreparedView& view) {
+                      return view.source.mask_made;
+                    });
+  const carving::Mending& mending = made ? carving::kMendGaps : carving::kMendThinParts;
+  if (made) full_evidence = std::max(full_evidence, kDoubtedEvidence);
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
     if (views[i].mask.empty()) return;
     ViewSilhouette& s = views[i].silhouette;
     Mask mask = s.widened.empty() ? views[i].mask : s.widened;
-    if (!carving::mend_silhouette(found.parts, cameras[i], s.distance, mask)) return;
+    if (!carving::mend_silhouette(found.parts, cameras[i], s.distance, mending, mask)) return;
     s.distance = silhouette_distance(mask);
     s.widened = std::move(mask);
   });
@@ -117,16 +126,15 @@ void explain_foreground(const SilhouetteJob& job, double full_evidence,
       if (!view.mask.empty() && s.likelihood)
         weigh_by_certainty(s.widened.empty() ? view.mask : s.widened, s.distance);
     }
-  ThinFindings& counts = findings.thin;
-  count_explained(found.views, views, counts);
   // Masks that were made show likelihoods, too, and other views are free to tell otherwise.
-  if (job.photographs.mask_confidence < 1) return;
+  if (here) return full_evidence;
   const auto left = double(counts.unexplained - counts.placed);
   if (left > kUnexplained * double(counts.looked_at))
     progress.warn(concat("the masks show parts (",
                          std::round(1000 * left / double(counts.looked_at)) / 10,
                          " % of their foreground, most in ", counts.worst_view,
                          ") that too many other masks leave out: these are not in the model"));
+  return full_evidence;
 }
 
 }  // namespace photohull::pipeline::silhouettes

@@ -69,6 +69,7 @@ Scene scene_of(const PoseJob& job, const PoseResult& result, const std::vector<f
                            masks.empty() ? fs::path() : masks[i],
                            {camera.intrinsics, photo.cam_from_world},
                            camera.distortion});
+    scene.views.back().mask_made = !scene.views.back().mask.empty();
   }
   return scene;
 }

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "carving/fit_grid.h"
 #include "carving/rods.h"
 #include "carving/thin_parts.h"
@@ -68,7 +70,8 @@ struct Scene {
   bool mend(const std::vector<MissingPart>& parts) {
     bool any = false;
     for (std::size_t i = 0; i < masks.size(); ++i) {
-      if (!mend_silhouette(parts, cameras[i], masks[i].distance, masks[i].widened)) continue;
+      if (!mend_silhouette(parts, cameras[i], masks[i].distance, kMendThinParts, masks[i].widened))
+        continue;
       masks[i].distance = silhouette_distance(masks[i].widened);
       any = true;
     }
@@ -285,6 +288,28 @@ TEST(FindMissingParts, NothingWithoutSilhouettesOrForeground) {
   EXPECT_TRUE(scene.find().parts.empty());
 }
 
+TEST(MendSilhouette, GapsAreFilledOnlyWhereThePartLacks) {
+  const Camera camera = test::look_at({0, 0, -kDistance}, {}, kFocal, kWidth, kWidth);
+  test::Drawing drawing(kWidth, kWidth);
+  drawing.add_disc({127.5, 127.5}, 20);
+  const Mask before = drawing.mask();
+  const SilhouetteDistance distance = silhouette_distance(before);
+  const auto part = [&](double off) {  // pixels outside the disc
+    const dvec3 ray = camera.ray({127.5 + 20 + off, 127.5});
+    return std::vector<MissingPart>{{camera.center() + ray * (kDistance / ray.z), 2 * kPixel}};
+  };
+  Mask mask = before;
+  EXPECT_FALSE(mend_silhouette(part(0.2), camera, distance, kMendGaps, mask));
+  EXPECT_EQ(mask.coverage, before.coverage);
+  EXPECT_TRUE(mend_silhouette(part(0.2), camera, distance, kMendThinParts, mask));
+  mask = before;
+  EXPECT_TRUE(mend_silhouette(part(5), camera, distance, kMendGaps, mask));
+  int added = 0;
+  for (std::size_t i = 0; i < mask.coverage.size(); ++i)
+    added += mask.coverage[i] - before.coverage[i];
+  EXPECT_NEAR(added / 255.0, std::numbers::pi * 2 * 2, 0.6);  // its own size, without room
+}
+
 TEST(MendSilhouette, DrawsPartsThatAreNotWellWithin) {
   const Camera camera = test::look_at({0, 0, -kDistance}, {}, kFocal, kWidth, kWidth);
   test::Drawing drawing(kWidth, kWidth);
@@ -292,18 +317,18 @@ TEST(MendSilhouette, DrawsPartsThatAreNotWellWithin) {
   const Mask before = drawing.mask();
   const SilhouetteDistance distance = silhouette_distance(before);
   Mask mask = before;
-  EXPECT_FALSE(mend_silhouette({}, camera, distance, mask));
+  EXPECT_FALSE(mend_silhouette({}, camera, distance, kMendThinParts, mask));
   const auto world = [&](double x, double y) {
     return camera.center() + camera.ray({x, y}) * (kDistance / camera.ray({x, y}).z);
   };
   const std::vector<MissingPart> within{{world(130, 120), 2 * kPixel}};
-  EXPECT_FALSE(mend_silhouette(within, camera, distance, mask));
+  EXPECT_FALSE(mend_silhouette(within, camera, distance, kMendThinParts, mask));
   const std::vector<MissingPart> nowhere{{dvec3(0, 0, -2 * kDistance), kPixel},
                                          {world(300, 128), kPixel}};
-  EXPECT_FALSE(mend_silhouette(nowhere, camera, distance, mask));
+  EXPECT_FALSE(mend_silhouette(nowhere, camera, distance, kMendThinParts, mask));
   EXPECT_EQ(mask.coverage, before.coverage);
   const std::vector<MissingPart> beside{{world(200, 60), 2 * kPixel}};
-  EXPECT_TRUE(mend_silhouette(beside, camera, distance, mask));
+  EXPECT_TRUE(mend_silhouette(beside, camera, distance, kMendThinParts, mask));
   for (int y = 0; y < kWidth; ++y)
     for (int x = 0; x < kWidth; ++x) {
       const auto i = std::size_t(y * kWidth + x);

@@ -200,7 +200,13 @@ TEST_F(ReadTransforms, StatedMasksAreUsed) {
   frame(0)["mask_path"] = "cut/a.png";
   Scene scene = load();
   EXPECT_EQ(scene.views[0].mask, folder_ / "cut/a.png");
+  EXPECT_FALSE(scene.views[0].mask_made);
   EXPECT_TRUE(scene.views[1].mask.empty());
+  frame(0)["mask_made"] = true;
+  EXPECT_TRUE(load().views[0].mask_made);
+  frame(0)["mask_made"] = 1;
+  EXPECT_THAT(error(), HasSubstr("mask_made must be true or false"));
+  frame(0).erase("mask_made");
   frame(0)["mask_path"] = "cut/b.png";
   EXPECT_THAT(error(), AllOf(HasSubstr("frame 0: mask_path"), HasSubstr("cut/b.png")));
   LoadSceneOptions options;

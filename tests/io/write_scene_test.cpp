@@ -64,8 +64,11 @@ TEST_F(WriteScene, SparsePointsSurviveInColmap) {
 
 TEST_F(WriteScene, MasksSurviveInTransforms) {
   scene_.views[1].mask = put_image("elsewhere/m.png");
+  scene_.views[1].mask_made = true;
   const Scene back = round_trip(write_transforms, "t");
   EXPECT_TRUE(back.views[0].mask.empty());
+  EXPECT_FALSE(back.views[0].mask_made);
+  EXPECT_TRUE(back.views[1].mask_made);
   EXPECT_TRUE(fs::equivalent(back.views[1].mask, scene_.views[1].mask));
 }
 
