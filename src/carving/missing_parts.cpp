@@ -28,8 +28,6 @@ constexpr double kLineStep = 0.35, kLatticeStep = 0.7;
 constexpr double kInside = 1.5;  // pixels within an outline from where on foreground is searched
 constexpr int kLatticePlaces = 400;       // a view, about
 constexpr std::size_t kMostLines = 6000;  // a view
-constexpr std::size_t kRimPlaces = 100;   // a view, at most about
-constexpr double kRimWidth = 0.7;         // pixels
 constexpr int kNeighbourhood = 2;         // pixels around unexplained foreground that count as such
 constexpr int kNotFar = 3;                // pixels around these
 constexpr double kCoarse = 4;             // pixels of a ray that are given up as one
@@ -88,22 +86,6 @@ class Searcher {
                        std::max(kNeighbour, 3.0 * lattice), std::min(0.75 * lattice, inside)});
       }
     return out;
-  }
-
-  /// Of the outline's pixels, within it.
-  std::vector<Seed> rim(std::size_t view) const {
-    const SilhouetteDistance& d = *silhouettes_[view].distance;
-    std::vector<Seed> out;
-    for (int y = 0; y < d.height; ++y)
-      for (int x = 0; x < d.width; ++x) {
-        const double inside = -double(d.pixels[std::size_t(y) * std::size_t(d.width) + x]);
-        if (inside < 0 || inside > kRimWidth || is_doubtful(view, dvec2(x, y))) continue;
-        out.push_back({dvec2(x, y), kLatticeStep, kFinest, kNeighbour, 0});
-      }
-    const std::size_t stride = out.size() / kRimPlaces + 1;
-    std::vector<Seed> some;
-    for (std::size_t i = 0; i < out.size(); i += stride) some.push_back(out[i]);
-    return some;
   }
 
   /// Looks for a point of the ray, in the box or around it, that every view which sees it bears.
@@ -378,24 +360,6 @@ MissingParts find_missing_parts(const Box& box, std::span<const Camera> cameras,
     }
   }
   return result;
-}
-
-double contradicted_share(const Box& box, std::span<const Camera> cameras,
-                          std::span<const Silhouette> silhouettes, Progress* progress) {
-  PHOTOHULL_CHECK_OP(cameras.size(), ==, silhouettes.size());
-  const Searcher searcher(box, cameras, silhouettes, {});
-  std::size_t looked_at = 0, contradicted = 0;
-  for (std::size_t v = 0; v < cameras.size(); ++v) {
-    if (progress) progress->check_cancelled();
-    if (!silhouettes[v].distance) continue;
-    std::vector<Seed> rim = searcher.rim(v);
-    tbb::parallel_for(std::size_t(0), rim.size(),
-                      [&](std::size_t i) { searcher.explain(v, rim[i], nullptr); });
-    looked_at += rim.size();
-    contradicted += std::size_t(
-        std::count_if(rim.begin(), rim.end(), [](const Seed& seed) { return !seed.explained; }));
-  }
-  return double(contradicted) / double(std::max<std::size_t>(looked_at, 1));
 }
 
 bool mend_silhouette(std::span<const MissingPart> parts, const Camera& camera,

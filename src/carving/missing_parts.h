@@ -61,13 +61,6 @@ MissingParts find_missing_parts(const Box& box, std::span<const Camera> cameras,
                                 std::span<const Silhouette> silhouettes,
                                 const MissingOptions& options, Progress* progress = nullptr);
 
-/// The share of the outlines' pixels whose rays have no point that all silhouettes bear to about a
-/// third of a pixel: near 0 where masks and cameras are right, for a ray there touches the object.
-/// What foreground within the outlines lacks, or how far outlines are off in the median, tells
-/// little of masks that are wrong by a pixel or two in places. Views and errors as above.
-double contradicted_share(const Box& box, std::span<const Camera> cameras,
-                          std::span<const Silhouette> silhouettes, Progress* progress = nullptr);
-
 /// How parts are drawn into a silhouette, pixels.
 struct Mending {
   double from = 0;  ///< signed distance from the outline, from where on a part lacks in the view

@@ -75,9 +75,6 @@ struct SilhouetteFindings {
   std::vector<std::string> masks_left_out;  ///< of views whose cameras are right
   std::vector<OutlineRoom> outline_room;    ///< of views whose outlines are off
   ThinFindings thin;
-  /// Share of the outlines that other masks leave out (carving/missing_parts.h); NaN where masks
-  /// were made, or are known to be off.
-  double contradicted = NAN;
   double contradiction = 0;  ///< share of the silhouettes' rays that other silhouettes leave empty
   assess::CommonError common_error;  ///< of the outlines of the views that are left
 };

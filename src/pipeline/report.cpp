@@ -43,8 +43,6 @@ void add_masks(const Report& r, ordered_json& j) {
            {"offset", r.silhouettes.mask_offset}};
   if (std::isfinite(r.cameras.mask_disagreement))
     masks["disagreement"] = r.cameras.mask_disagreement;
-  if (std::isfinite(r.silhouettes.contradicted))
-    masks["contradicted"] = r.silhouettes.contradicted;
   masks["full_evidence"] = r.full_evidence;
   masks["views"] = ordered_json::array();
   for (const MaskFinding& m : r.photographs.masks)

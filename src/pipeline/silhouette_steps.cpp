@@ -22,9 +22,8 @@
 namespace photohull::pipeline::silhouettes {
 namespace {
 
-constexpr double kUnexplained = 0.02;    // of the foreground: more is told
-constexpr double kDoubtedEvidence = 1;   // pixels (docs/design/decisions/0030)
-constexpr double kContradicted = 0.012;  // of the outlines: more, and masks are wrong in places
+constexpr double kUnexplained = 0.02;   // of the foreground: more is told
+constexpr double kDoubtedEvidence = 1;  // pixels (docs/design/decisions/0030)
 
 void warn_of_room(const std::vector<OutlineRoom>& room, Progress& progress) {
   const auto worst = std::max_element(
@@ -107,16 +106,12 @@ double explain_foreground(const SilhouetteJob& job, double full_evidence,
       job.box, cameras, silhouettes_of(views), tuned(job.options).missing, &progress);
   ThinFindings& counts = findings.thin;
   count_explained(found.views, views, counts);
-  const bool made = job.photographs.mask_confidence < 1;
-  bool doubted =
-      made || std::ranges::any_of(views, [](const PreparedView& v) { return v.source.mask_made; });
-  if (!doubted && full_evidence == 0) {  // else cameras may be wrong, and masks right
-    findings.contradicted =
-        carving::contradicted_share(job.box, cameras, silhouettes_of(views), &progress);
-    doubted = findings.contradicted > kContradicted;
-  }
-  const carving::Mending& mending = doubted ? carving::kMendGaps : carving::kMendThinParts;
-  if (doubted) full_evidence = std::max(full_evidence, kDoubtedEvidence);
+  const bool here = job.photographs.mask_confidence < 1;
+  const bool made = here || std::ranges::any_of(views, [](const PreparedView& view) {
+                      return view.source.mask_made;
+                    });
+  const carving::Mending& mending = made ? carving::kMendGaps : carving::kMendThinParts;
+  if (made) full_evidence = std::max(full_evidence, kDoubtedEvidence);
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
     if (views[i].mask.empty()) return;
     ViewSilhouette& s = views[i].silhouette;
@@ -132,7 +127,7 @@ double explain_foreground(const SilhouetteJob& job, double full_evidence,
         weigh_by_certainty(s.widened.empty() ? view.mask : s.widened, s.distance);
     }
   // Masks that were made show likelihoods, too, and other views are free to tell otherwise.
-  if (made) return full_evidence;
+  if (here) return full_evidence;
   const auto left = double(counts.unexplained - counts.placed);
   if (left > kUnexplained * double(counts.looked_at))
     progress.warn(concat("the masks show parts (",

@@ -288,16 +288,6 @@ TEST(FindMissingParts, NothingWithoutSilhouettesOrForeground) {
   EXPECT_TRUE(scene.find().parts.empty());
 }
 
-TEST(ContradictedShare, TellsMasksThatAreWrongInPlacesFromRightOnes) {
-  Scene scene(12);
-  EXPECT_LT(contradicted_share(kBox, scene.cameras, scene.silhouettes()), 0.01);
-  scene.put_off(4);
-  EXPECT_GT(contradicted_share(kBox, scene.cameras, scene.silhouettes()), 0.1);
-  scene.masks.clear();
-  scene.cameras.clear();
-  EXPECT_EQ(contradicted_share(kBox, scene.cameras, scene.silhouettes()), 0);
-}
-
 TEST(MendSilhouette, GapsAreFilledOnlyWhereThePartLacks) {
   const Camera camera = test::look_at({0, 0, -kDistance}, {}, kFocal, kWidth, kWidth);
   test::Drawing drawing(kWidth, kWidth);
