@@ -52,7 +52,6 @@ def jobs() -> list[Job]:
             ("bunny", "none", "space-carving", 128), ("fandisk", "none", "space-carving", 256),
             ("templeRing", "auto", "hull", 256), ("dinoRing", "auto", "refine", 256),
             ("fountain", "none", "refine", None)]
-    out += [("armadillo", "auto", "refine", 1024), ("bunny", "auto", "refine", 700), ("glazed", "none", "refine", 700)]
     return out
 
 
