@@ -286,7 +286,7 @@ class Carver {
       return judge_result(job(), {mesh, around, cameras_, silhouettes_, extracted.stem_vertices},
                           evidence.has_value());
     });
-    malloc_trim(0);
+    malloc_trim(0);  // the rays' tree was large
     run_.report.verdict = std::move(judgement.findings);
     if (!evidence) return;
     evidence->missing = std::move(judgement.missing);

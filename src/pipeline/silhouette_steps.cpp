@@ -46,6 +46,12 @@ void count_explained(std::span<const carving::ForegroundCounts> found,
   }
 }
 
+/// Were masks made, by this job or by the program that wrote the scene?
+bool were_made(const SilhouetteJob& job, const std::vector<PreparedView>& views) {
+  return job.photographs.mask_confidence < 1 ||
+         std::ranges::any_of(views, [](const PreparedView& v) { return v.source.mask_made; });
+}
+
 }  // namespace
 
 void measure_distances(std::vector<PreparedView>& views) {
@@ -106,10 +112,7 @@ double explain_foreground(const SilhouetteJob& job, double full_evidence,
       job.box, cameras, silhouettes_of(views), tuned(job.options).missing, &progress);
   ThinFindings& counts = findings.thin;
   count_explained(found.views, views, counts);
-  const bool here = job.photographs.mask_confidence < 1;
-  const bool made = here || std::ranges::any_of(views, [](const PreparedView& view) {
-                      return view.source.mask_made;
-                    });
+  const bool made = were_made(job, views);
   const carving::Mending& mending = made ? carving::kMendGaps : carving::kMendThinParts;
   if (made) full_evidence = std::max(full_evidence, kDoubtedEvidence);
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
@@ -126,8 +129,8 @@ double explain_foreground(const SilhouetteJob& job, double full_evidence,
       if (!view.mask.empty() && s.likelihood)
         weigh_by_certainty(s.widened.empty() ? view.mask : s.widened, s.distance);
     }
-  // Masks that were made show likelihoods, too, and other views are free to tell otherwise.
-  if (here) return full_evidence;
+  // Masks that this job made show likelihoods, too, and other views are free to tell otherwise.
+  if (job.photographs.mask_confidence < 1) return full_evidence;
   const auto left = double(counts.unexplained - counts.placed);
   if (left > kUnexplained * double(counts.looked_at))
     progress.warn(concat("the masks show parts (",

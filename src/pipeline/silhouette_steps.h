@@ -45,8 +45,8 @@ Room bear_disagreement(const SilhouetteJob& job, const std::vector<PreparedView>
 void give_room(const Room& room, std::vector<PreparedView>& views, SilhouetteFindings& findings);
 
 /// Puts what masks show and not all views bear into the silhouettes that leave it out. Returns what
-/// one view's evidence is worth now that this is known: masks that were made, or that contradict
-/// each other, are wrong in places, and none of them is believed alone.
+/// one view's evidence is worth now that this is known: masks that were made are wrong in places,
+/// and none of them is believed alone.
 double explain_foreground(const SilhouetteJob& job, double full_evidence,
                           std::vector<PreparedView>& views, SilhouetteFindings& findings,
                           Progress& progress);

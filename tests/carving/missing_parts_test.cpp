@@ -288,15 +288,29 @@ TEST(FindMissingParts, NothingWithoutSilhouettesOrForeground) {
   EXPECT_TRUE(scene.find().parts.empty());
 }
 
-TEST(MendSilhouette, GapsAreFilledOnlyWhereThePartLacks) {
+/// A disc that a camera sees.
+class MendSilhouette : public testing::Test {
+ protected:
+  MendSilhouette() {
+    test::Drawing drawing(kWidth, kWidth);
+    drawing.add_disc({127.5, 127.5}, 20);
+    before = drawing.mask();
+    distance = silhouette_distance(before);
+  }
+  /// A place at the distance of what the camera looks at.
+  dvec3 world(double x, double y) const {
+    const dvec3 ray = camera.ray({x, y});
+    return camera.center() + ray * (kDistance / ray.z);
+  }
+
   const Camera camera = test::look_at({0, 0, -kDistance}, {}, kFocal, kWidth, kWidth);
-  test::Drawing drawing(kWidth, kWidth);
-  drawing.add_disc({127.5, 127.5}, 20);
-  const Mask before = drawing.mask();
-  const SilhouetteDistance distance = silhouette_distance(before);
+  Mask before;
+  SilhouetteDistance distance;
+};
+
+TEST_F(MendSilhouette, GapsAreFilledOnlyWhereThePartLacks) {
   const auto part = [&](double off) {  // pixels outside the disc
-    const dvec3 ray = camera.ray({127.5 + 20 + off, 127.5});
-    return std::vector<MissingPart>{{camera.center() + ray * (kDistance / ray.z), 2 * kPixel}};
+    return std::vector<MissingPart>{{world(127.5 + 20 + off, 127.5), 2 * kPixel}};
   };
   Mask mask = before;
   EXPECT_FALSE(mend_silhouette(part(0.2), camera, distance, kMendGaps, mask));
@@ -310,17 +324,9 @@ TEST(MendSilhouette, GapsAreFilledOnlyWhereThePartLacks) {
   EXPECT_NEAR(added / 255.0, std::numbers::pi * 2 * 2, 0.6);  // its own size, without room
 }
 
-TEST(MendSilhouette, DrawsPartsThatAreNotWellWithin) {
-  const Camera camera = test::look_at({0, 0, -kDistance}, {}, kFocal, kWidth, kWidth);
-  test::Drawing drawing(kWidth, kWidth);
-  drawing.add_disc({127.5, 127.5}, 20);
-  const Mask before = drawing.mask();
-  const SilhouetteDistance distance = silhouette_distance(before);
+TEST_F(MendSilhouette, DrawsPartsThatAreNotWellWithin) {
   Mask mask = before;
   EXPECT_FALSE(mend_silhouette({}, camera, distance, kMendThinParts, mask));
-  const auto world = [&](double x, double y) {
-    return camera.center() + camera.ray({x, y}) * (kDistance / camera.ray({x, y}).z);
-  };
   const std::vector<MissingPart> within{{world(130, 120), 2 * kPixel}};
   EXPECT_FALSE(mend_silhouette(within, camera, distance, kMendThinParts, mask));
   const std::vector<MissingPart> nowhere{{dvec3(0, 0, -2 * kDistance), kPixel},

@@ -101,6 +101,8 @@ TEST_F(PoseCommand, PhotographsOnASheetBecomeAScene) {
     EXPECT_LT(glm::length(scene.views[i].camera.center() - exact), 1e-3 * glm::length(exact));
     EXPECT_NEAR(scene.views[i].camera.intrinsics.fx / truth.views[i].camera.intrinsics.fx, 1, 2e-3);
     ASSERT_FALSE(scene.views[i].mask.empty());
+    EXPECT_TRUE(scene.views[i].mask_made);
+    EXPECT_FALSE(truth.views[i].mask_made);
     // Where eight photographs do not agree on a shadow at the object's foot, it is part of the
     // mask; the object is whole.
     const Mask mask = io::read_mask(scene.views[i].mask),
@@ -111,6 +113,7 @@ TEST_F(PoseCommand, PhotographsOnASheetBecomeAScene) {
   const Finished made = run_photohull({"reconstruct", path("scene"), "--out", path("model"),
                                        "--method", "hull", "--resolution", "48"});
   EXPECT_TRUE(made.code == 0 || made.code == 3) << made.err;
+  EXPECT_GE(read("model/report.json")["masks"]["full_evidence"], 1);  // no mask is believed alone
   // Nothing of the paper: no vertex lies below the box.
   const TriMesh mesh = read_mesh(path("model/mesh.ply"));
   ASSERT_FALSE(mesh.positions.empty());
