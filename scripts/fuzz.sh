@@ -33,7 +33,7 @@ done
 [[ $seconds =~ ^[1-9][0-9]*$ ]] || die "--seconds $seconds: expected a whole number above 0."
 
 cd "$root"
-install_missing clang
+install_missing clang lld
 build=build/asan
 mkdir -p $build
 if ! cmake --preset asan >$build/configure.log 2>&1; then

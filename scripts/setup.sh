@@ -65,7 +65,7 @@ case $preset in
 esac
 if [ $install = yes ]; then
   install_missing "${packages[@]}"
-  if [ "$preset" = asan ]; then install_missing clang; fi
+  if [ "$preset" = asan ]; then install_missing clang lld; fi
 fi
 
 # OpenVDB's templates take a compiler more than a gigabyte: fewer jobs than cores where memory is short.

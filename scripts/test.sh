@@ -28,6 +28,9 @@ done
 cd "$root"
 build=build/release
 scratch=$(mktemp -d)
+# Mesa keeps compiled kernels below the user's home, which may not be writable; each run would compile them anew.
+export MESA_SHADER_CACHE_DIR=$root/$build/shader_cache
+mkdir -p "$MESA_SHADER_CACHE_DIR"
 trap 'rm -rf "$scratch"' EXIT
 passed=0
 failed=()
@@ -166,7 +169,7 @@ else
   scripts/setup.sh
 fi
 install_missing ffmpeg colmap # films, and cameras without a sheet: 14 MB
-[ $with_all = no ] || install_missing clang clang-format clang-tidy shellcheck dpkg-dev file lintian patchelf xz-utils man-db groff python3 chromium python3-pil opencv-doc parallel openmpi-bin slurm-wlm munge
+[ $with_all = no ] || install_missing clang lld clang-format clang-tidy shellcheck dpkg-dev file lintian patchelf xz-utils man-db groff python3 chromium python3-pil opencv-doc parallel openmpi-bin slurm-wlm munge
 [ $with_all = no ] || command -v npm >/dev/null || install_missing npm
 started=$SECONDS
 
