@@ -10,6 +10,7 @@
 #include "commands.h"
 #include "core/error.h"
 #include "io/image_file.h"
+#include "io/load_scene.h"
 #include "option_flags.h"
 #include "pipeline/mask_policy.h"
 #include "scene_arguments.h"
@@ -53,7 +54,7 @@ std::vector<fs::path> mask_files(const fs::path& folder, std::span<const Prepare
   std::vector<fs::path> files;
   for (const PreparedView& view : views) {
     const bool alone = count[stem_of(view)] == 1;
-    const fs::path name = alone ? fs::path(stem_of(view)) : fs::path(view.name).relative_path();
+    const fs::path name = alone ? fs::path(stem_of(view)) : io::name_within(view.name);
     files.push_back(folder / (name.string() + ".png"));
   }
   return files;

@@ -145,8 +145,15 @@ void attach_automatically(const LoadSceneOptions& options, const fs::path& scene
 
 }  // namespace
 
+fs::path name_within(const std::string& listed) {
+  fs::path name;
+  for (const fs::path& part : fs::path(listed).lexically_normal().relative_path())
+    if (part != "..") name /= part;
+  return name;
+}
+
 fs::path find_mask(const fs::path& folder, const fs::path& image, const std::string& listed) {
-  for (const fs::path& name : {fs::path(listed).relative_path(), image.filename()}) {
+  for (const fs::path& name : {name_within(listed), image.filename()}) {
     fs::path whole = folder / name;
     whole += ".png";
     if (is_file(whole)) return whole;

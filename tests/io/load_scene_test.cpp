@@ -182,6 +182,14 @@ TEST_F(LoadScene, AMaskDirectoryMayLackSome) {
   EXPECT_THAT(complete.warnings, IsEmpty());
 }
 
+TEST(NameWithin, StaysInTheFolder) {
+  EXPECT_EQ(name_within("left/a.png"), "left/a.png");
+  EXPECT_EQ(name_within("./left/../a.png"), "a.png");
+  EXPECT_EQ(name_within("../../photos/a.png"), "photos/a.png");
+  EXPECT_EQ(name_within("left/../../a.png"), "a.png");
+  EXPECT_EQ(name_within("/photos/a.png"), "photos/a.png");
+}
+
 TEST_F(LoadScene, AMaskDirectoryMustHoldOne) {
   LoadSceneOptions options;
   options.masks = MaskSource::kDirectory;
