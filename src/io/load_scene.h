@@ -76,8 +76,8 @@ struct LoadSceneOptions {
   void validate() const;
 };
 
-/// A photograph's listed name as a path within some folder, such as one of masks: without a root, and
-/// without the `..` that it begins with.
+/// A photograph's listed name as a path within some folder, such as one of masks: without a root,
+/// and without the `..` that it begins with.
 std::filesystem::path name_within(const std::string& listed);
 
 /// Which views are used. The box is described in pipeline/complete_box.h.
