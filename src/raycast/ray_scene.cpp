@@ -59,7 +59,8 @@ struct RayScene::Device {
           "the ray caster (Embree) cannot be started: most likely too little memory or too few "
           "threads are available or allowed (ulimit -a); free some or raise the limits");
     scene = rtcNewScene(device);
-    // Not compact, too: coherent packets then never end on processors with AVX-512 (Embree 3.13.5).
+    // Coherent packets never end in scenes that are compact as well as robust, where the processor
+    // has AVX-512 (Embree 3.13.5).
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
   }
   ~Device() {
