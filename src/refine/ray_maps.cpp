@@ -91,14 +91,15 @@ class RayMapper {
         options_(options),
         clear_(clear_space(hull)),
         cameras_(projtex::to_grid(photographs.cameras, hull.grid)),
-        partners_(choose_partners(cameras_, {glm::dvec3(0), glm::dvec3(hull.grid.voxels())},
-                                  options.nearest_partner, options.tiles)),
+        partners_(choose_partners(cameras_, grid_box(), options.nearest_partner, options.tiles)),
         search_(context, photographs.images, cameras_, photographs.noise_sigma, options) {}
 
   /// View by view, so that memory is that of one view's rays.
   std::vector<RayMap> run() {
+    const std::vector<bool> votes = choose_voters(cameras_, grid_box(), options_.voters_apart);
     std::vector<RayMap> maps;
-    for (std::size_t v = 0; v < cameras_.size(); ++v) maps.push_back(map_of(v));
+    for (std::size_t v = 0; v < cameras_.size(); ++v)
+      maps.push_back(votes[v] ? map_of(v) : RayMap());
     return maps;
   }
 

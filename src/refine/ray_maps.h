@@ -10,7 +10,8 @@
 
 namespace photohull::refine {
 
-/// Rays of one view on a lattice of pixels, each with what it found.
+/// Rays of one view on a lattice of pixels, each with what it found. Of a view that does not vote
+/// there are none.
 struct RayMap {
   double stride = 1;  ///< pixels between rays
   int width = 0, height = 0;
@@ -20,7 +21,7 @@ struct RayMap {
   std::vector<glm::vec3> through;  ///< where rays passed that found what lies behind it, voxels
 };
 
-/// For every view, the depths at which its rays through the hull agree best with views near it.
+/// For every view that votes (choose_voters), the depths at which its rays through the hull agree best with views near it.
 std::vector<RayMap> match_rays(gpu::Context& context, const SparseVolume& hull,
                                const projtex::Photographs& photographs, const VoteOptions& options);
 

@@ -10,6 +10,7 @@ namespace {
 VoteOptions vote_options(const RefineJob& job, bool last) {
   VoteOptions options = job.options.vote;
   if (!job.is_bounded()) {
+    options.voters_apart = 0;  // views may look at different parts of the scene
     options.tiles = job.options.open.tiles;
     options.bare_reach = last ? job.options.open.last_reach : job.options.open.reach;
   }
