@@ -15,6 +15,8 @@ struct SheetLook {
   std::vector<float> light;
   int mixed = 2;  ///< pixels beside those that show the page which may show a part of it
   std::vector<std::uint8_t> possible;  ///< 255 where the object may appear: its box does
+  /// 255 where all photographs' masks together have room for the object; empty: not known.
+  std::vector<std::uint8_t> hull;
   /// Square roots of the light that bare paper sends to the pixel, exposed as in no photograph in
   /// particular (SheetLight::paper); empty: not known.
   std::vector<glm::vec3> paper;

@@ -22,6 +22,8 @@ struct MaskEvidence {
   int weak = 0;      ///< near strong pixels, the object reaches down to here
   int strong = 0;    ///< from here on a pixel is the object's beyond doubt
   double doubt = 0;  ///< [0, 1]: share of the object's pixels between weak and strong
+  /// CV_32F: the difference of light roots that is 1 of distance; empty where colours are compared.
+  cv::Mat unit;
   /// CV_8U, 255 where the background is seen beyond doubt: gaps are not closed over it. Empty:
   /// nowhere.
   cv::Mat bare;

@@ -171,6 +171,7 @@ MaskEvidence compare_with_expected(const cv::Mat& taken, const cv::Mat& plate,
       sure += distance >= kStrong;
     }
   out.doubt = object > 0 ? 1 - sure / object : 0;
+  out.unit = sigma / kLevels;
   return out;
 }
 

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/median.h"
 #include "masks/behind_sheet.h"
+#include "masks/continued_object.h"
 #include "masks/mask_evidence.h"
 
 namespace photohull {
@@ -84,6 +85,7 @@ class Comparison {
       : taken_(light_roots(image)),
         light_(look.height, look.width, CV_32F, const_cast<float*>(look.light.data())),
         possible_(look.height, look.width, CV_8U, const_cast<std::uint8_t*>(look.possible.data())),
+        hull_(look.hull),
         page_(light_ >= 0),
         expected_(taken_.clone()),
         mixed_(look.mixed),
@@ -105,6 +107,11 @@ class Comparison {
     if (!paper_.empty()) evidence.bare = bare(evidence, unknown);
     evidence.distance.setTo(0, ~possible_);
     evidence.doubt = doubt_within(evidence);
+    if (!hull_.empty()) {
+      const cv::Mat continued = continued_object(taken_, evidence, possible_ & hull());
+      evidence.distance.setTo(255, continued);
+      if (!evidence.bare.empty()) evidence.bare.setTo(0, continued);
+    }
     if (behind_) unknown |= disbelieved(*behind_, {page_, possible_, unknown}, evidence);
     evidence.distance.setTo(255, unknown);
     out.undecided = double(cv::countNonZero(unknown)) / std::max(1, cv::countNonZero(possible_));
@@ -163,6 +170,7 @@ class Comparison {
     return (around < evidence.weak / 2) & ((page_ & agreed) | (~page_ & ~unknown));
   }
 
+  cv::Mat hull() const { return {taken_.size(), CV_8U, const_cast<std::uint8_t*>(hull_.data())}; }
   std::size_t index(const cv::Point& at) const {
     return std::size_t(at.y) * std::size_t(taken_.cols) + std::size_t(at.x);
   }
@@ -293,6 +301,7 @@ class Comparison {
 
   cv::Mat taken_, light_, possible_, page_, expected_;
   int mixed_;
+  const std::vector<std::uint8_t>& hull_;
   const std::vector<glm::vec3>& paper_;
   const std::vector<std::uint8_t>& agreed_;
   bool steady_;

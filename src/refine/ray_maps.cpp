@@ -96,7 +96,9 @@ class RayMapper {
 
   /// View by view, so that memory is that of one view's rays.
   std::vector<RayMap> run() {
-    const std::vector<bool> votes = choose_voters(cameras_, grid_box(), options_.voters_apart);
+    // Who votes again looks for what few views see, and none can be spared.
+    const double apart = surface_ ? 0 : options_.voters_apart;
+    const std::vector<bool> votes = choose_voters(cameras_, grid_box(), apart);
     std::vector<RayMap> maps;
     for (std::size_t v = 0; v < cameras_.size(); ++v)
       maps.push_back(votes[v] ? map_of(v) : RayMap());

@@ -108,7 +108,8 @@ std::array<glm::dvec3, 7> middles_of(const Box& box) {
 /// Which of the places a camera has on its image, a bit each.
 unsigned seen_of(const projtex::GridCamera& camera, std::span<const glm::dvec3> places) {
   unsigned bits = 0;
-  for (std::size_t i = 0; i < places.size(); ++i) bits |= unsigned(on_image(camera, places[i])) << i;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    bits |= unsigned(on_image(camera, places[i])) << i;
   return bits;
 }
 

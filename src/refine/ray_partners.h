@@ -33,8 +33,8 @@ std::vector<ViewPartners> choose_partners(std::span<const projtex::GridCamera> c
                                           const Box& box, double nearest, int tiles);
 
 /// Whether each view votes: from the middle of the box (voxels), every view that does not stands
-/// less than `apart` degrees from one that does, which has as much of the box on its image, about as
-/// sharply. All vote where `apart` is 0.
+/// less than `apart` degrees from one that does, which has as much of the box on its image, about
+/// as sharply. All vote where `apart` is 0.
 std::vector<bool> choose_voters(std::span<const projtex::GridCamera> cameras, const Box& box,
                                 double apart);
 

@@ -41,8 +41,8 @@ inline void describe(Described& to, VoteOptions& o) {
   to.number("least_score", &o.least_score, from_to(-1, 1), "",
             "score of the best sample on a ray below which the ray says nothing");
   to.number("voters_apart", &o.voters_apart, from_to(0, 90), "degrees",
-            "angle from a view that votes within which others do not, where there are masks: their "
-            "rays would find the same; 0: all vote");
+            "angle from a view that votes within which others do not, at the first level and where "
+            "there are masks: their rays would find the same; 0: all vote");
   to.number("distinct_by", &o.distinct_by, above(0), "",
             "lead over the second best sample that gives a ray full weight");
   to.number("band", &o.band, above(0, SparseVolume::kBand), "voxels",

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "masks/photographed_mask.h"
@@ -49,19 +51,37 @@ SheetLook look_of_page() {
   return look;
 }
 
-ColourImage photograph_of_plant() {
+/// What is_there(x, y) says is there, of that light, before the page.
+template <typename IsThere>
+ColourImage photograph_of(const IsThere& is_there, const glm::vec3& object) {
   std::mt19937 random(5);
   std::normal_distribution<float> noise(0, 0.004f);
   return paint_srgb(kPlantWidth, kPlantHeight, [&](double x, double y) {
     int inside = 0;  // of four places in the pixel
     for (const double u : {-0.25, 0.25})
-      for (const double v : {-0.25, 0.25}) inside += is_plant(x + u + 0.3, y + v + 0.3);
+      for (const double v : {-0.25, 0.25}) inside += is_there(x + u + 0.3, y + v + 0.3);
     const glm::vec3 page(float(0.81 * (0.05 + 0.95 * print_at(x + 0.2, y - 0.2))));
-    const glm::vec3 plant(0.25f, 0.36f, 0.20f);
-    glm::vec3 root = glm::sqrt(glm::mix(page, plant, float(inside) / 4));
+    glm::vec3 root = glm::sqrt(glm::mix(page, object, float(inside) / 4));
     for (int c = 0; c < 3; ++c) root[c] = std::max(0.0f, root[c] + noise(random));
     return root * root;
   });
+}
+
+ColourImage photograph_of_plant() { return photograph_of(is_plant, {0.25f, 0.36f, 0.20f}); }
+
+/// Room for the object in a square of 12 pixels to every side of it.
+template <typename IsThere>
+std::vector<std::uint8_t> room_for(const IsThere& is_there) {
+  constexpr int kRoom = 12;
+  std::vector<std::uint8_t> hull(std::size_t(kPlantWidth) * kPlantHeight, 0);
+  for (int y = kRoom; y < kPlantHeight - kRoom; ++y)
+    for (int x = kRoom; x < kPlantWidth - kRoom; ++x) {
+      if (!is_there(x, y)) continue;
+      for (int v = -kRoom; v <= kRoom; ++v)
+        std::fill_n(hull.begin() + (y + v) * kPlantWidth + x - kRoom, 2 * kRoom + 1,
+                    std::uint8_t(255));
+    }
+  return hull;
 }
 
 class SheetMaskOfPlant : public testing::Test {
@@ -91,6 +111,40 @@ TEST_F(SheetMaskOfPlant, PrintCutsNothing) { EXPECT_EQ(inside(340, 460, 250, 350
 
 TEST_F(SheetMaskOfPlant, NothingIsElsewhere) {
   EXPECT_EQ(inside(0, 280, 0, kPlantHeight) + inside(740, kPlantWidth, 0, kPlantHeight), 0);
+}
+
+/// A ball that hides the printed square, and ten pixels of paper around it.
+bool is_ball(double x, double y) { return std::hypot(x - 400, y - 300) < 50; }
+
+TEST(SheetMaskOfBall, WhatLooksLikePaperIsItsOwnWhereAllMasksHaveIt) {
+  const ColourImage image = photograph_of(is_ball, glm::vec3(0.81f));
+  SheetLook look = look_of_page();
+  const auto covered = [&](const SheetLook& l) {
+    const Mask mask = mask_from_sheet(image, l, false).mask;
+    std::array<int, 2> count{};  // of the ball, and beside it
+    for (int y = 0; y < kPlantHeight; ++y)
+      for (int x = 0; x < kPlantWidth; ++x)
+        count[is_ball(x, y) ? 0 : 1] += mask.coverage[std::size_t(y * kPlantWidth + x)] >= 128;
+    return count;
+  };
+  const int ball = int(std::numbers::pi * 50 * 50);
+  EXPECT_LT(covered(look)[0], 0.85 * ball);  // before the print alone
+  look.hull = room_for(is_ball);
+  EXPECT_GT(covered(look)[0], 0.99 * ball);
+  // What looks like the ball beside it is as much its own, as far as there is room.
+  EXPECT_LT(covered(look)[1], std::ranges::count(look.hull, 255) - ball + 100);
+}
+
+TEST(SheetMaskOfBall, RoomAloneChangesNothingOfWhatDiffersFromPaper) {
+  SheetLook look = look_of_page();
+  const ColourImage image = photograph_of_plant();
+  const Mask before = mask_from_sheet(image, look, false).mask;
+  look.hull = room_for(is_plant);
+  const Mask after = mask_from_sheet(image, look, false).mask;
+  int changed = 0;
+  for (std::size_t i = 0; i < before.coverage.size(); ++i)
+    changed += (before.coverage[i] >= 128) != (after.coverage[i] >= 128);
+  EXPECT_LE(changed, 10);
 }
 
 TEST(KeepPartsIn, WhatIsNowhereInTheShadowGoes) {
