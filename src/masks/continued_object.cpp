@@ -26,8 +26,7 @@ cv::Vec3f object_at(const cv::Mat& taken, const cv::Mat& distance, const cv::Poi
 
 cv::Mat continued_object(const cv::Mat& taken, const MaskEvidence& evidence, const cv::Mat& hull) {
   const cv::Mat object = evidence.distance >= evidence.strong, asked = hull & ~object;
-  cv::Mat out(taken.size(), CV_8U, cv::Scalar(0));
-  if (cv::countNonZero(object) == 0 || cv::countNonZero(asked) == 0) return out;
+  if (cv::countNonZero(object) == 0) return cv::Mat::zeros(taken.size(), CV_8U);
   cv::Mat smooth, lengths, labels;
   cv::blur(taken, smooth, {3, 3});
   cv::distanceTransform(~object, lengths, labels, cv::DIST_L2, cv::DIST_MASK_5,

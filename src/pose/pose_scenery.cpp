@@ -157,16 +157,18 @@ void keep_to(const Mask& shadow, int width, int height, std::vector<std::uint8_t
       if (!value_at(shadow, x, y, width, height)) values[i] = 0;
 }
 
+void note_hull(const Mask& shadow, SheetLook& look) {
+  if (shadow.empty()) return;
+  look.hull.assign(look.possible.size(), 255);
+  keep_to(shadow, look.width, look.height, look.hull);
+}
+
 void SheetScenery::narrow(std::size_t photo, SheetLook& look) const {
   if (shadows.empty() || shadows[photo].empty()) return;
+  note_hull(shadows[photo], look);
   const bool beside_page = sees_bare_page(look);
-  look.hull.resize(look.possible.size());
-  std::size_t i = 0;
-  for (int y = 0; y < look.height; ++y)
-    for (int x = 0; x < look.width; ++x, ++i) {
-      look.hull[i] = value_at(shadows[photo], x, y, look.width, look.height);
-      if (!(beside_page && look.light[i] >= 0) && look.hull[i] == 0) look.possible[i] = 0;
-    }
+  for (std::size_t i = 0; i < look.possible.size(); ++i)
+    if (!(beside_page && look.light[i] >= 0) && look.hull[i] == 0) look.possible[i] = 0;
 }
 
 SheetScenery explore_sheet(const std::vector<std::filesystem::path>& images,

@@ -15,6 +15,9 @@ namespace photohull::pose {
 /// Leaves out of `values`, of a picture of that size, what a shadow leaves out, where there is one.
 void keep_to(const Mask& shadow, int width, int height, std::vector<std::uint8_t>& values);
 
+/// Says what of a picture of the sheet is in a shadow, if there is one (SheetLook::hull).
+void note_hull(const Mask& shadow, SheetLook& look);
+
 struct SheetScenery {
   SheetLight light;  ///< on the sheet; empty where photographs do not tell it
   /// Of each photograph: where it can show the object (shadows_of_hull); scaled copies of the

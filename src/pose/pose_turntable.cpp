@@ -153,6 +153,10 @@ const StillBackground& TurntableFinding::behind(std::size_t photo) const {
   return station < 0 ? none : stations[std::size_t(station)];
 }
 
+void TurntableFinding::note_hull(std::size_t photo, SheetLook& look) const {
+  if (!shadows.empty()) pose::note_hull(shadows[photo], look);
+}
+
 void TurntableFinding::keep_to_shadow(std::size_t photo, Mask& mask) const {
   if (!shadows.empty()) keep_to(shadows[photo], mask.width, mask.height, mask.coverage);
 }

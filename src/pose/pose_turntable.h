@@ -29,6 +29,8 @@ struct TurntableFinding {
   int station_of(std::size_t photo) const;
   /// The still background of the photograph's station; empty where there is none.
   const StillBackground& behind(std::size_t photo) const;
+  /// Says what of the photograph's look its shadow has (SheetLook::hull).
+  void note_hull(std::size_t photo, SheetLook& look) const;
   /// Takes everything out of the photograph's mask that its shadow leaves out.
   void keep_to_shadow(std::size_t photo, Mask& mask) const;
 };
