@@ -104,7 +104,7 @@ class Comparison {
         compare_with_expected(taken_, expected_, certain, kShadowEdge,
                               behind_ ? behind_->deviation : cv::Mat(), shaded());
     bridge_edges_of_print(evidence);
-    if (!paper_.empty()) evidence.bare = bare(evidence, unknown);
+    if (!paper_.empty() || behind_) evidence.bare = bare(evidence, unknown);
     evidence.distance.setTo(0, ~possible_);
     evidence.doubt = doubt_within(evidence);
     if (!hull_.empty()) {
@@ -114,6 +114,7 @@ class Comparison {
     }
     if (behind_) unknown |= disbelieved(*behind_, {page_, possible_, unknown}, evidence);
     evidence.distance.setTo(255, unknown);
+    if (!evidence.bare.empty()) evidence.bare.setTo(0, unknown);
     out.undecided = double(cv::countNonZero(unknown)) / std::max(1, cv::countNonZero(possible_));
     out.mask = mask_from_evidence(evidence);
     if (std::none_of(out.mask.coverage.begin(), out.mask.coverage.end(),
@@ -166,8 +167,12 @@ class Comparison {
   cv::Mat bare(const MaskEvidence& evidence, const cv::Mat& unknown) const {
     cv::Mat around;  // what is strong beside a pixel says no more of it than that it is not far
     cv::blur(cv::min(evidence.distance, evidence.strong), around, {3, 3});
-    const cv::Mat agreed(taken_.size(), CV_8U, const_cast<std::uint8_t*>(agreed_.data()));
-    return (around < evidence.weak / 2) & ((page_ & agreed) | (~page_ & ~unknown));
+    const cv::Mat agreed =
+        agreed_.empty() ? page_
+                        : cv::Mat(taken_.size(), CV_8U, const_cast<std::uint8_t*>(agreed_.data()));
+    cv::Mat beside = ~page_ & ~unknown;
+    if (behind_) beside &= behind_->level == StillBackground::kSure;
+    return (around < evidence.weak / 2) & ((page_ & agreed) | beside);
   }
 
   cv::Mat hull() const { return {taken_.size(), CV_8U, const_cast<std::uint8_t*>(hull_.data())}; }
