@@ -12,6 +12,7 @@
 #include "masks/behind_sheet.h"
 #include "masks/continued_object.h"
 #include "masks/mask_evidence.h"
+#include "masks/nearest_pixel.h"
 
 namespace photohull {
 namespace {
@@ -270,19 +271,13 @@ class Comparison {
     cv::Scalar mean, deviation;
     cv::meanStdDev(taken_, mean, deviation, source);
     if (std::max({deviation[0], deviation[1], deviation[2]}) > kPlain) return false;
-    cv::Mat smooth, distances, labels;
+    cv::Mat smooth;
     cv::blur(taken_, smooth, {5, 5});
-    cv::distanceTransform(~source, distances, labels, cv::DIST_L2, cv::DIST_MASK_5,
-                          cv::DIST_LABEL_PIXEL);
-    std::vector<cv::Point> at(std::size_t(cv::countNonZero(source)) + 1);
-    for (int y = 0; y < source.rows; ++y)
-      for (int x = 0; x < source.cols; ++x)
-        if (source.at<std::uint8_t>(y, x)) at[std::size_t(labels.at<int>(y, x))] = {x, y};
+    const NearestPixel nearest(source);
     for (int y = 0; y < source.rows; ++y)
       for (int x = 0; x < source.cols; ++x)
         if (asked.at<std::uint8_t>(y, x))
-          expected_.at<cv::Vec3f>(y, x) =
-              smooth.at<cv::Vec3f>(at[std::size_t(labels.at<int>(y, x))]);
+          expected_.at<cv::Vec3f>(y, x) = smooth.at<cv::Vec3f>(nearest.of({x, y}));
     return true;
   }
 

@@ -23,11 +23,10 @@ VoteOptions vote_options(const RefineJob& job, bool last) {
 SparseVolume first_guess(const RefineJob& job, const SparseVolume& hull) {
   const RefineOptions& options = job.options;
   if (!options.voting) return bounded(hull, hull);
+  const VoteOptions vote = vote_options(job, false);
   if (!job.is_bounded() && options.label.iterations > 0)
-    return bounded(
-        label_by_votes(job.context, hull, job.photographs, vote_options(job, false), options.label),
-        hull);
-  return bounded(vote_free_space(job.context, hull, job.photographs, options.vote), hull);
+    return bounded(label_by_votes(job.context, hull, job.photographs, vote, options.label), hull);
+  return bounded(vote_free_space(job.context, hull, job.photographs, vote), hull);
 }
 
 void revise_by_votes(const RefineJob& job, const SparseVolume& hull, bool last,
