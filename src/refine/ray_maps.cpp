@@ -91,17 +91,14 @@ class RayMapper {
         options_(options),
         clear_(clear_space(hull)),
         cameras_(projtex::to_grid(photographs.cameras, hull.grid)),
-        partners_(choose_partners(cameras_, grid_box(), options.nearest_partner, options.tiles)),
+        partners_(choose_partners(cameras_, {glm::dvec3(0), glm::dvec3(hull.grid.voxels())},
+                                  options.nearest_partner, options.tiles)),
         search_(context, photographs.images, cameras_, photographs.noise_sigma, options) {}
 
   /// View by view, so that memory is that of one view's rays.
   std::vector<RayMap> run() {
-    // Who votes again looks for what few views see, and none can be spared.
-    const double apart = surface_ ? 0 : options_.voters_apart;
-    const std::vector<bool> votes = choose_voters(cameras_, grid_box(), apart);
     std::vector<RayMap> maps;
-    for (std::size_t v = 0; v < cameras_.size(); ++v)
-      maps.push_back(votes[v] ? map_of(v) : RayMap());
+    for (std::size_t v = 0; v < cameras_.size(); ++v) maps.push_back(map_of(v));
     return maps;
   }
 

@@ -10,8 +10,7 @@
 
 namespace photohull::refine {
 
-/// Rays of one view on a lattice of pixels, each with what it found. Of a view that does not vote
-/// there are none.
+/// Rays of one view on a lattice of pixels, each with what it found.
 struct RayMap {
   double stride = 1;  ///< pixels between rays
   int width = 0, height = 0;
@@ -21,14 +20,13 @@ struct RayMap {
   std::vector<glm::vec3> through;  ///< where rays passed that found what lies behind it, voxels
 };
 
-/// For every view that votes (choose_voters), the depths at which its rays through the hull agree
-/// best with views near it.
+/// For every view, the depths at which its rays through the hull agree best with views near it.
 std::vector<RayMap> match_rays(gpu::Context& context, const SparseVolume& hull,
                                const projtex::Photographs& photographs, const VoteOptions& options);
 
-/// The same of all views, where a `surface` on the same grid is known: depths of the surface where
-/// it explains what the photographs show, and of what is found elsewhere along the ray where it
-/// does not. Rays that do not meet the surface say nothing.
+/// The same where a `surface` on the same grid is known: depths of the surface where it explains
+/// what the photographs show, and of what is found elsewhere along the ray where it does not. Rays
+/// that do not meet the surface say nothing.
 std::vector<RayMap> match_rays_again(gpu::Context& context, const SparseVolume& hull,
                                      const SparseVolume& surface,
                                      const projtex::Photographs& photographs,

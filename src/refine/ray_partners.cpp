@@ -1,7 +1,6 @@
 #include "refine/ray_partners.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 
@@ -13,8 +12,6 @@ namespace {
 // Degrees between a view and those it is matched with, and what deviations cost.
 constexpr double kFarthestPartner = 60, kBestPartner = 15;
 constexpr double kDuplicate = 8, kDuplicateCost = 30;
-
-constexpr double kAsSharp = 1.5;  // widths of two views' pixels on the scene that count as alike
 
 double degrees_between(const glm::dvec3& a, const glm::dvec3& b) {
   return glm::degrees(std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0)));
@@ -94,52 +91,7 @@ std::vector<glm::dvec3> directions_from(const glm::dvec3& place,
   return out;
 }
 
-/// The middle of a box and of its faces.
-std::array<glm::dvec3, 7> middles_of(const Box& box) {
-  std::array<glm::dvec3, 7> out;
-  out.fill(box.center());
-  for (int axis = 0; axis < 3; ++axis) {
-    out[std::size_t(1 + axis)][axis] = box.min[axis];
-    out[std::size_t(4 + axis)][axis] = box.max[axis];
-  }
-  return out;
-}
-
-/// Which of the places a camera has on its image, a bit each.
-unsigned seen_of(const projtex::GridCamera& camera, std::span<const glm::dvec3> places) {
-  unsigned bits = 0;
-  for (std::size_t i = 0; i < places.size(); ++i)
-    bits |= unsigned(on_image(camera, places[i])) << i;
-  return bits;
-}
-
 }  // namespace
-
-std::vector<bool> choose_voters(std::span<const projtex::GridCamera> cameras, const Box& box,
-                                double apart) {
-  if (!(apart > 0)) return std::vector<bool>(cameras.size(), true);
-  const auto places = middles_of(box);
-  std::vector<glm::dvec3> directions;
-  std::vector<unsigned> seen;
-  std::vector<double> pixel;  // its width at the middle, voxels
-  for (const projtex::GridCamera& camera : cameras) {
-    const glm::dvec3 ray = camera.centre - box.center();
-    directions.push_back(glm::normalize(ray));
-    seen.push_back(seen_of(camera, places));
-    pixel.push_back(glm::length(ray) / camera.focal);
-  }
-  std::vector<bool> votes(cameras.size());
-  std::vector<double> nearest(cameras.size(), 180);  // degrees to a voter that replaces the view
-  for (std::size_t next = 0; next < cameras.size() && nearest[next] >= apart;) {
-    votes[next] = true;
-    for (std::size_t i = 0; i < cameras.size(); ++i)
-      if ((seen[i] & ~seen[next]) == 0 && pixel[next] <= kAsSharp * pixel[i])
-        nearest[i] = std::min(nearest[i], degrees_between(directions[i], directions[next]));
-    nearest[next] = 0;  // also where a camera stands in the middle and has no direction
-    next = std::size_t(std::max_element(nearest.begin(), nearest.end()) - nearest.begin());
-  }
-  return votes;
-}
 
 std::vector<ViewPartners> choose_partners(std::span<const projtex::GridCamera> cameras,
                                           const Box& box, double nearest, int tiles) {

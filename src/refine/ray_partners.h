@@ -1,4 +1,4 @@
-// Private to module refine: the views whose rays vote, and those that they are matched with.
+// Private to module refine: the views that a view's rays are matched with.
 #pragma once
 
 #include <span>
@@ -31,11 +31,5 @@ struct ViewPartners {
 /// there.
 std::vector<ViewPartners> choose_partners(std::span<const projtex::GridCamera> cameras,
                                           const Box& box, double nearest, int tiles);
-
-/// Whether each view votes: from the middle of the box (voxels), every view that does not stands
-/// less than `apart` degrees from one that does, which has as much of the box on its image, about
-/// as sharply. All vote where `apart` is 0.
-std::vector<bool> choose_voters(std::span<const projtex::GridCamera> cameras, const Box& box,
-                                double apart);
 
 }  // namespace photohull::refine

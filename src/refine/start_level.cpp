@@ -10,7 +10,6 @@ namespace {
 VoteOptions vote_options(const RefineJob& job, bool last) {
   VoteOptions options = job.options.vote;
   if (!job.is_bounded()) {
-    options.voters_apart = 0;  // views may look at different parts of the scene
     options.tiles = job.options.open.tiles;
     options.bare_reach = last ? job.options.open.last_reach : job.options.open.reach;
   }
@@ -23,10 +22,11 @@ VoteOptions vote_options(const RefineJob& job, bool last) {
 SparseVolume first_guess(const RefineJob& job, const SparseVolume& hull) {
   const RefineOptions& options = job.options;
   if (!options.voting) return bounded(hull, hull);
-  const VoteOptions vote = vote_options(job, false);
   if (!job.is_bounded() && options.label.iterations > 0)
-    return bounded(label_by_votes(job.context, hull, job.photographs, vote, options.label), hull);
-  return bounded(vote_free_space(job.context, hull, job.photographs, vote), hull);
+    return bounded(
+        label_by_votes(job.context, hull, job.photographs, vote_options(job, false), options.label),
+        hull);
+  return bounded(vote_free_space(job.context, hull, job.photographs, options.vote), hull);
 }
 
 void revise_by_votes(const RefineJob& job, const SparseVolume& hull, bool last,

@@ -214,7 +214,6 @@ class Voter {
     std::array<double, kAtOnce> depth, column, row;
     for (std::size_t v = 0; v < cameras_.size(); ++v) {
       const RayMap& map = maps_[v];
-      if (map.depth.empty()) continue;
       const auto& m = cameras_[v].projection;
       for (std::size_t i = 0; i < asked.count; ++i) {
         const double x = asked.x[i], y = asked.y[i], z = asked.z[i];

@@ -17,7 +17,6 @@ struct VoteOptions {
   /// The least angle, in degrees, between a view and those that its rays are matched with. It is no
   /// option: the surroundings of a box set it by themselves.
   double nearest_partner = 4;
-  double voters_apart = 15;
   double distinct_by = 0.25, band = 1.5;
   double least_weight = 1.5, again_weight = 2, freeing_weight = 3;
   int rounds = 2, last_rounds = 1, tiles = 1, bare_reach = 0;
@@ -40,9 +39,6 @@ inline void describe(Described& to, VoteOptions& o) {
             "share of the pairs of views that a score is the mean of");
   to.number("least_score", &o.least_score, from_to(-1, 1), "",
             "score of the best sample on a ray below which the ray says nothing");
-  to.number("voters_apart", &o.voters_apart, from_to(0, 90), "degrees",
-            "angle from a view that votes within which others do not, at the first level and where "
-            "there are masks: their rays would find the same; 0: all vote");
   to.number("distinct_by", &o.distinct_by, above(0), "",
             "lead over the second best sample that gives a ray full weight");
   to.number("band", &o.band, above(0, SparseVolume::kBand), "voxels",

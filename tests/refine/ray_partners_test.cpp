@@ -2,10 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
-
 namespace photohull::refine {
 namespace {
 
@@ -93,63 +89,6 @@ TEST(RayPartners, TilesCoverTheLattice) {
   EXPECT_EQ(p.tile(0, 6, 10, 7), 6);
   EXPECT_EQ(p.tile(9, 6, 10, 7), 8);
   EXPECT_EQ(p.tile(0, 0, 1, 1), 0);
-}
-
-const Box kObject{{0, 0, 0}, {20, 20, 20}};
-
-/// Around kObject, `angle` degrees along a level ring, looking at its middle.
-projtex::GridCamera camera_around(double angle, double distance, double focal) {
-  projtex::GridCamera c;
-  const double a = glm::radians(angle);
-  const glm::dvec3 ahead(-std::cos(a), -std::sin(a), 0), down(0, 0, -1);
-  const glm::dvec3 right = glm::cross(down, ahead);
-  c.centre = kObject.center() - distance * ahead;
-  c.focal = focal;
-  c.width = kWidth, c.height = kHeight;
-  const glm::dmat3 k(focal, 0, 0, 0, focal, 0, 0.5 * (kWidth - 1), 0.5 * (kHeight - 1), 1);
-  const glm::dmat3 m = k * glm::transpose(glm::dmat3(right, down, ahead));
-  c.projection = glm::dmat4x3(m[0], m[1], m[2], -(m * c.centre));
-  return c;
-}
-
-TEST(Voters, StandApartAndReachAllViews) {
-  std::vector<projtex::GridCamera> cameras;
-  for (int i = 0; i < 72; ++i) cameras.push_back(camera_around(5 * i, 100, kFocal));
-  const std::vector<bool> votes = choose_voters(cameras, kObject, 15);
-  EXPECT_LE(std::count(votes.begin(), votes.end(), true), 24);
-  for (int i = 0; i < 72; ++i) {
-    int least = 180;  // degrees to the nearest voter, another than the view itself
-    for (int j = 0; j < 72; ++j) {
-      const int apart = 5 * std::min(std::abs(i - j), 72 - std::abs(i - j));
-      if (votes[std::size_t(j)] && j != i) least = std::min(least, apart);
-    }
-    EXPECT_EQ(votes[std::size_t(i)], least >= 15) << i;
-  }
-}
-
-TEST(Voters, AreAllViewsWhereNoAngleIsAsked) {
-  const std::vector<projtex::GridCamera> alike(5, camera_around(0, 100, kFocal));
-  EXPECT_EQ(choose_voters(alike, kObject, 0), std::vector<bool>(5, true));
-  EXPECT_EQ(choose_voters(alike, kObject, 15), (std::vector<bool>{true, false, false, false, false}));
-  EXPECT_TRUE(choose_voters({}, kObject, 15).empty());
-}
-
-TEST(Voters, CloseUpsAndOverviewsDoNotReplaceEachOther) {
-  const auto overview = camera_around(0, 100, kFocal);
-  const auto close_up = camera_around(2, 100, 10 * kFocal);  // four voxels of the box
-  const auto from_afar = camera_around(4, 300, kFocal);
-  const std::vector<bool> all(3, true);
-  EXPECT_EQ(choose_voters(std::vector{close_up, overview, from_afar}, kObject, 15),
-            (std::vector<bool>{true, true, false}));
-  EXPECT_EQ(choose_voters(std::vector{from_afar, close_up, overview}, kObject, 15), all);
-}
-
-TEST(Voters, ACameraInTheMiddleHasNoDirectionAndVotes) {
-  auto inside = camera_around(0, 100, kFocal);
-  inside.centre = kObject.center();
-  const std::vector<bool> votes =
-      choose_voters(std::vector{inside, camera_around(0, 100, kFocal)}, kObject, 15);
-  EXPECT_TRUE(votes[0]);
 }
 
 }  // namespace

@@ -118,7 +118,6 @@ TEST_F(VoteAgain, RaysAreNoCloserThanPixelsTellApart) {
   hull.grid = test::kGrid;
   VoteOptions options;
   options.ray_spacing = 0.01;                  // voxels, which are about a pixel wide here
-  options.voters_apart = 0;                    // all views vote
   gpu::Context& context = test::gl_context();  // before the images need it
   const projtex::ImageSet images(views_);
   const std::vector<Camera> cameras = projtex::cameras_of(views_);
