@@ -1,6 +1,9 @@
 #include "refine/unproven.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <numeric>
 
@@ -19,26 +22,32 @@ constexpr int kPositions = 4;        // along the normal
 class Hollows {
  public:
   Hollows(const SparseVolume& hull, const SparseVolume& volume)
-      : volume_(volume), label_(volume.distance.size(), kNone) {
-    for (std::size_t slot = 0; slot < volume.bricks.size(); ++slot)
+      : volume_(volume), part_(volume.distance.size(), kNone) {
+    tbb::parallel_for(std::size_t(0), volume.bricks.size(), [&](std::size_t slot) {
       for (int i = 0; i < kBrickVoxels; ++i) {
         const std::size_t index = slot * kBrickVoxels + std::size_t(i);
-        if (volume.distance[index] <= 0) continue;
-        if (hull.at(voxel_of(slot, i)) >= -kLeastDepth) continue;
-        label_[index] = std::uint32_t(parent_.size());
-        parent_.push_back(std::uint32_t(parent_.size()));
+        if (volume.distance[index] > 0 && hull.at(voxel_of(slot, i)) < -kLeastDepth)
+          part_[index] = 0;
+      }
+    });
+    for (std::uint32_t& part : part_)
+      if (part != kNone) {
+        part = std::uint32_t(parent_.size());
+        parent_.push_back(part);
       }
     for (std::size_t slot = 0; slot < volume.bricks.size(); ++slot)
       for (int i = 0; i < kBrickVoxels; ++i) {
-        const std::uint32_t own = label_[slot * kBrickVoxels + std::size_t(i)];
+        const std::uint32_t own = part_[slot * kBrickVoxels + std::size_t(i)];
         if (own == kNone) continue;
         for (int axis = 0; axis < 3; ++axis) {
           ivec3 step(0);
           step[axis] = 1;
-          if (const std::uint32_t other = at(voxel_of(slot, i) + step); other != kNone)
+          if (const std::uint32_t other = part(voxel_of(slot, i) + step); other != kNone)
             unite(own, other);
         }
       }
+    for (std::uint32_t& part : part_)
+      if (part != kNone) part = root(part);
   }
 
   std::size_t size() const { return parent_.size(); }
@@ -46,23 +55,17 @@ class Hollows {
     return volume_.bricks[slot] * kBrickEdge + ivec3(i >> 6, (i >> 3) & 7, i & 7);
   }
   /// Which part the voxel belongs to, by a number below size(); kNone: none.
-  std::uint32_t part(const ivec3& voxel) {
-    const std::uint32_t label = at(voxel);
-    return label == kNone ? kNone : root(label);
-  }
-  std::uint32_t part(std::size_t index) {
-    return label_[index] == kNone ? kNone : root(label_[index]);
-  }
-
- private:
-  std::uint32_t at(const ivec3& voxel) const {
+  std::uint32_t part(const ivec3& voxel) const {
     if (glm::any(glm::lessThan(voxel, ivec3(0))) ||
         glm::any(glm::greaterThanEqual(voxel, volume_.grid.voxels())))
       return kNone;
     const std::uint32_t slot = volume_.table[volume_.grid.brick_index(voxel / kBrickEdge)];
     if (slot >= volume_.bricks.size()) return kNone;
-    return label_[std::size_t(slot) * kBrickVoxels + std::size_t(voxel_offset(voxel % kBrickEdge))];
+    return part_[std::size_t(slot) * kBrickVoxels + std::size_t(voxel_offset(voxel % kBrickEdge))];
   }
+  std::uint32_t part(std::size_t index) const { return part_[index]; }
+
+ private:
   std::uint32_t root(std::uint32_t node) {
     while (parent_[node] != node) node = parent_[node] = parent_[parent_[node]];
     return node;
@@ -73,8 +76,8 @@ class Hollows {
   }
 
   const SparseVolume& volume_;
-  std::vector<std::uint32_t> label_;
-  std::vector<std::uint32_t> parent_;
+  std::vector<std::uint32_t> part_;    // of each voxel of the volume's bricks
+  std::vector<std::uint32_t> parent_;  // of each number
 };
 
 }  // namespace
@@ -83,7 +86,7 @@ std::size_t fill_unproven(const SparseVolume& hull, std::span<const glm::vec3> p
                           std::span<const glm::vec3> normals, std::span<const float> weights,
                           const UnprovenOptions& options, SparseVolume& volume) {
   if (options.least_weight == 0) return 0;
-  Hollows hollows(hull, volume);
+  const Hollows hollows(hull, volume);
   if (hollows.size() == 0) return 0;
   struct Sum {
     double weight = 0, count = 0, unseen = 0;
@@ -98,26 +101,29 @@ std::size_t fill_unproven(const SparseVolume& hull, std::span<const glm::vec3> p
       (weights[i] < 0 ? sums[part].unseen : sums[part].count) += 1;
       break;
     }
-  std::vector<std::pair<std::size_t, float>> changes;
-  std::size_t filled = 0;
-  for (std::size_t slot = 0; slot < volume.bricks.size(); ++slot)
+  const auto is_unproven = [&](std::uint32_t part) {
+    return part != kNone && sums[part].unseen <= sums[part].count &&
+           sums[part].weight < options.least_weight * sums[part].count;
+  };
+  std::atomic<std::size_t> filled = 0;
+  tbb::parallel_for(std::size_t(0), volume.bricks.size(), [&](std::size_t slot) {
+    std::size_t filled_here = 0;
     for (int i = 0; i < kBrickVoxels; ++i) {
-      const std::size_t index = slot * kBrickVoxels + std::size_t(i);
-      const auto is_unproven = [&](std::uint32_t part) {
-        return part != kNone && sums[part].unseen <= sums[part].count &&
-               sums[part].weight < options.least_weight * sums[part].count;
-      };
+      float& value = volume.distance[slot * kBrickVoxels + std::size_t(i)];
+      if (!(value > 0)) continue;
       const ivec3 voxel = hollows.voxel_of(slot, i);
-      const bool own = is_unproven(hollows.part(index));
+      const bool own = is_unproven(hollows.part(slot * kBrickVoxels + std::size_t(i)));
       bool beside = own;
-      for (int n = 0; n < 27 && !beside && volume.distance[index] > 0; ++n)
+      for (int n = 0; n < 27 && !beside; ++n)
         beside = is_unproven(hollows.part(voxel + ivec3(n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1)));
+      if (!beside) continue;
       const float bound = hull.at(voxel);
-      if (!beside || !(bound < volume.distance[index])) continue;
-      changes.emplace_back(index, bound);
-      filled += own;
+      if (!(bound < value)) continue;
+      value = bound;
+      filled_here += own;
     }
-  for (const auto& [index, value] : changes) volume.distance[index] = value;
+    filled += filled_here;
+  });
   return filled;
 }
 
