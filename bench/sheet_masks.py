@@ -6,7 +6,7 @@
 Renders objects on the sheet, seen from 12, 32 and 55 degrees above it, lets `photohull pose` find cameras and masks, and
 compares these with the exact masks: intersection over union, and what is missed and what is too much, as shares of the exact
 mask; in the mean of each height, and the worst view. `--case sun`: one hard light; `clutter`: before a background of many
-colours. `--views` prints every view. `--scan` lets `scan` and `reconstruct` (which is given the exact cameras and masks) make
+colours; `turntable`: a camera and such a background that stand still, 24 degrees above a sheet that turns. `--views` prints every view. `--scan` lets `scan` and `reconstruct` (which is given the exact cameras and masks) make
 models, and prints the F-scores of both at 0.25 % of the diagonal."""
 import argparse
 import json
@@ -34,6 +34,10 @@ CASES = {
     "plain": {},
     "sun": {"light": {"ambient": 0.3, "directional": [{"direction": [0.5, -0.4, 0.8], "colour": [0.7, 0.68, 0.62]}]}},
     "clutter": {"background": {"type": "clutter", "size": 0.5}},
+    # As datasets/synthetic/on_turntable.json.
+    "turntable": {"background": {"type": "clutter", "size": 0.5}, "sheet": {"board": str(BOARD), "fill": 0.6},
+                  "cameras": {"turntable": True, "rings": [{"count": 18, "elevation": 24}], "distance": 3.4, "fill": 0.45},
+                  "degradations": {"photon_noise": 0.01, "read_noise": 0.003, "blur": 0.4}},
 }
 COLUMNS = ["scene", "degrees", "IoU, mean", "missed, mean", "too much, mean", "IoU, worst", "missed, worst", "too much, worst"]
 
@@ -73,10 +77,8 @@ def judged(photohull: Photohull, scene: Path, posed: Path) -> list[dict]:
 
 def rows_of(name: str, views: list[dict], each: bool) -> list[list[object]]:
     rows = []
-    for height in ELEVATIONS:
+    for height in sorted({v["height"] for v in views}):
         of = [v for v in views if v["height"] == height]
-        if not of:
-            continue
         mean = {key: fmean(v[key] for v in of) for key in ("iou", "missed", "too_much")}
         rows.append([name, height, f"{mean['iou']:.4f}", f"{100 * mean['missed']:.2f} %", f"{100 * mean['too_much']:.2f} %",
                      f"{min(v['iou'] for v in of):.4f}", f"{100 * max(v['missed'] for v in of):.2f} %",

@@ -60,7 +60,8 @@ check_aloud() {
   if "$@"; then passed=$((passed + 1)); else failed+=("$name"); fi
 }
 
-run_tests() { ctest --preset "$1" --parallel "$jobs" --no-tests=error "${@:2}"; }
+# One more at a time than there are cores, for tests wait now and then.
+run_tests() { ctest --preset "$1" --parallel "$((jobs + 1))" --no-tests=error "${@:2}"; }
 
 # C++ files under the folders given that exist. shaders/ is left out: the GLSL compiler reads it too.
 cpp_files() {

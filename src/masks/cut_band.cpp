@@ -18,6 +18,7 @@ constexpr int kIterations = 2;
 constexpr double kContext = 3;       // bands of surroundings that the colours are learnt from
 constexpr double kMostPixels = 4e6;  // beyond, the cut takes minutes
 constexpr int kFewestCertain = 100;
+constexpr double kLearnt = 20000;  // pixels that colours are learnt from
 
 /// 8-bit sRGB.
 cv::Mat coded(const ColourImage& image, const cv::Rect& box) {
@@ -167,8 +168,7 @@ bool tell_both_sides(const cv::Mat& labels) {
 /// Decides the probable labels. The colours of both sides are learnt from some of the pixels, or
 /// from all where these hold too few of a side.
 cv::Mat cut(const cv::Mat& colours, const cv::Mat& labels) {
-  constexpr double kPixels = 20000;
-  const double scale = std::min(1.0, std::sqrt(kPixels / double(colours.total())));
+  const double scale = std::min(1.0, std::sqrt(kLearnt / double(colours.total())));
   cv::Mat few, few_labels, behind, front;
   cv::resize(colours, few, {}, scale, scale, cv::INTER_NEAREST);
   cv::resize(labels, few_labels, few.size(), 0, 0, cv::INTER_NEAREST);
@@ -206,6 +206,39 @@ Mask cut_band(const MaskEvidence& evidence, const ColourImage& image, const Mask
   soften_contour(distance, inside);
   Mask out{mask.width, mask.height, std::vector<std::uint8_t>(mask.coverage.size(), 0)};
   inside.copyTo(cv::Mat(mask.height, mask.width, CV_8U, out.coverage.data())(box));
+  return out;
+}
+
+cv::Mat background_by_colours(const MaskEvidence& evidence, const ColourImage& image,
+                              const cv::Mat& unknown, const cv::Mat& background) {
+  cv::Mat out(unknown.size(), CV_8U, cv::Scalar(0));
+  cv::Rect box = cv::boundingRect(unknown);
+  const int margin = std::max(box.width, box.height) / 2;
+  box = (box + cv::Size(2 * margin, 2 * margin) - cv::Point(margin, margin)) &
+        cv::Rect({}, unknown.size());
+  if (box.empty() || box.area() > kMostPixels) return out;
+  const cv::Mat colours = coded(image, box);
+  cv::Mat labels(box.size(), CV_8U, cv::Scalar(cv::GC_BGD)), learnt = background(box) / 255;
+  labels.setTo(cv::GC_FGD, evidence.distance(box) >= evidence.strong);
+  labels.setTo(cv::GC_PR_BGD, unknown(box));
+  learnt |= (labels == cv::GC_FGD) / 255;
+  // Those alone, side by side: what is neither, such as the page, must not be learnt.
+  const int step = 1 + int(double(cv::countNonZero(learnt)) / kLearnt);
+  std::vector<cv::Vec3b> few;
+  std::vector<std::uint8_t> few_labels;
+  int count = 0;
+  for (int y = 0; y < box.height; ++y)
+    for (int x = 0; x < box.width; ++x)
+      if (learnt.at<std::uint8_t>(y, x) && count++ % step == 0) {
+        few.push_back(colours.at<cv::Vec3b>(y, x));
+        few_labels.push_back(labels.at<std::uint8_t>(y, x));
+      }
+  cv::Mat sides(few_labels), behind, front;
+  if (few.empty() || !tell_both_sides(sides)) return out;
+  cv::setRNGSeed(1);
+  cv::grabCut(cv::Mat(few), sides, {}, behind, front, kIterations, cv::GC_INIT_WITH_MASK);
+  labels = BandGraph(colours, labels).cut(Mixture(behind), Mixture(front));
+  out(box).setTo(255, labels == cv::GC_PR_BGD);
   return out;
 }
 

@@ -61,6 +61,13 @@ MaskEvidence compare_with_expected(const cv::Mat& taken, const cv::Mat& expected
 /// where it has nothing certain on either side.
 Mask cut_band(const MaskEvidence& evidence, const ColourImage& image, const Mask& mask);
 
+/// Where GrabCut [Rother04] puts background (CV_8U, 255) of what is `unknown` (255), by the colours
+/// of strong evidence and those of `background` (255: surely it), which is not all that is not the
+/// object. Nowhere, where a side has too few pixels to learn from, or more than four million were
+/// to be cut.
+cv::Mat background_by_colours(const MaskEvidence& evidence, const ColourImage& image,
+                              const cv::Mat& unknown, const cv::Mat& background);
+
 /// How sure a mask is, [0, 1]: the share of its contour with clear object on one side and clear
 /// background on the other, times how much of it is not in doubt, times its overlap (intersection
 /// over union) with `other`, a mask found in another way, where there is one.

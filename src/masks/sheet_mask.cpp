@@ -20,7 +20,6 @@ namespace {
 constexpr float kPaper = 0.97f, kInk = 0.03f;  // from where on, up to where a pixel is one of both
 constexpr std::size_t kFewest = 200;           // pixels to measure paper by
 constexpr double kPlain = 0.05;  // deviation of a background that tells, roots of linear light
-constexpr double kMostConfidence = 0.99;  // masks that were given have 1
 constexpr int kTerms = 6;
 constexpr int kShadowEdge = 4;  // pixels: half of the window that looks for texture, and the edge
 
@@ -86,17 +85,17 @@ class Comparison {
       : taken_(light_roots(image)),
         light_(look.height, look.width, CV_32F, const_cast<float*>(look.light.data())),
         possible_(look.height, look.width, CV_8U, const_cast<std::uint8_t*>(look.possible.data())),
-        hull_(look.hull),
         page_(light_ >= 0),
         expected_(taken_.clone()),
         mixed_(look.mixed),
+        hull_(look.hull),
         paper_(look.paper),
         agreed_(look.agreed),
         steady_(look.steady) {
     if (!still.empty()) behind_.emplace(still, taken_);
   }
 
-  SheetMask run(const ColourImage& image, bool cut) {
+  SheetMask run(const ColourImage& image) {
     SheetMask out;
     if (!expect_page()) return out;
     cv::Mat unknown = expect_surroundings();
@@ -105,6 +104,7 @@ class Comparison {
         compare_with_expected(taken_, expected_, certain, kShadowEdge,
                               behind_ ? behind_->deviation : cv::Mat(), shaded());
     bridge_edges_of_print(evidence);
+    if (behind_) unknown |= disbelieved(*behind_, {page_, possible_, unknown}, evidence);
     if (!paper_.empty() || behind_) evidence.bare = bare(evidence, unknown);
     evidence.distance.setTo(0, ~possible_);
     evidence.doubt = doubt_within(evidence);
@@ -113,7 +113,9 @@ class Comparison {
       evidence.distance.setTo(255, continued);
       if (!evidence.bare.empty()) evidence.bare.setTo(0, continued);
     }
-    if (behind_) unknown |= disbelieved(*behind_, {page_, possible_, unknown}, evidence);
+    if (behind_)
+      unknown &= ~background_by_colours(evidence, image, unknown,
+                                        ~page_ & ~unknown & (evidence.distance < evidence.weak));
     evidence.distance.setTo(255, unknown);
     if (!evidence.bare.empty()) evidence.bare.setTo(0, unknown);
     out.undecided = double(cv::countNonZero(unknown)) / std::max(1, cv::countNonZero(possible_));
@@ -121,9 +123,6 @@ class Comparison {
     if (std::none_of(out.mask.coverage.begin(), out.mask.coverage.end(),
                      [](std::uint8_t c) { return c >= 128; }))
       return {};
-    Mask moved = cut_band(evidence, image, out.mask);
-    out.confidence = std::min(kMostConfidence, mask_confidence(evidence, out.mask, &moved));
-    if (cut) out.mask = std::move(moved);
     return out;
   }
 
@@ -172,7 +171,7 @@ class Comparison {
         agreed_.empty() ? page_
                         : cv::Mat(taken_.size(), CV_8U, const_cast<std::uint8_t*>(agreed_.data()));
     cv::Mat beside = ~page_ & ~unknown;
-    if (behind_) beside &= behind_->level == StillBackground::kSure;
+    if (behind_) beside &= behind_->level != StillBackground::kUnknown;
     return (around < evidence.weak / 2) & ((page_ & agreed) | beside);
   }
 
@@ -281,14 +280,15 @@ class Comparison {
     return true;
   }
 
-  /// A pixel that mixes page and background: what it would be of the mixture nearest to it.
+  /// A pixel that mixes page and background: what it would be of the mixture nearest to it. What
+  /// is mixed is bare paper, for no print reaches the page's edge.
   void settle_rim(const cv::Point& at) {
     cv::Vec3f paper;
     int count = 0;
     for (int v = -mixed_; v <= mixed_; ++v)
       for (int u = -mixed_; u <= mixed_; ++u) {
         const cv::Point near = at + cv::Point(u, v);
-        if (!near.inside(cv::Rect({}, page_.size())) || !page_.at<std::uint8_t>(near)) continue;
+        if (!near.inside(cv::Rect({}, page_.size())) || light_.at<float>(near) < kPaper) continue;
         paper += expected_.at<cv::Vec3f>(near), ++count;
       }
     if (count == 0) return;
@@ -310,12 +310,12 @@ class Comparison {
 
 }  // namespace
 
-SheetMask mask_from_sheet(const ColourImage& image, const SheetLook& look, bool cut,
+SheetMask mask_from_sheet(const ColourImage& image, const SheetLook& look,
                           const StillBackground& still) {
   PHOTOHULL_CHECK_OP(image.width, ==, look.width);
   PHOTOHULL_CHECK_OP(image.height, ==, look.height);
   if (!still.empty()) PHOTOHULL_CHECK(still.width == image.width && still.height == image.height);
-  return Comparison(image, look, still).run(image, cut);
+  return Comparison(image, look, still).run(image);
 }
 
 void keep_shares(Mask& mask) {

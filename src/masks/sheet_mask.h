@@ -9,7 +9,6 @@ namespace photohull {
 
 struct SheetMask {
   Mask mask;
-  double confidence = 0;  ///< as mask_confidence has it, 0.99 at most
   /// Share of the pixels where the object may be that show something else than the page, before a
   /// background of many colours: there the mask has the object, for nothing says that it is not.
   double undecided = 0;
@@ -19,11 +18,11 @@ struct SheetMask {
 /// object cannot be, and continued smoothly to where it may; what differs is the object's, but
 /// for shadows, as compare_with_plate says. Beside the page the background is what is seen around
 /// the place. `look` has the image's size. Everything is background where the object cannot be.
-/// `cut`: GrabCut places contours. `still`: of the same camera, or empty: beside the page the
-/// background is what it has there, where it has something; the object is wherever it has nothing.
-/// What is doubtful in it does not count where the object reaches the page's edge and ends there,
-/// nor where it is a hole in the object.
-SheetMask mask_from_sheet(const ColourImage& image, const SheetLook& look, bool cut,
+/// `still`: of the same camera, or empty: beside the page the background is what it has there,
+/// where it has something; where it has nothing, colours tell (background_by_colours), and the
+/// object is wherever they do not. What is doubtful in it does not count where the object reaches
+/// the page's edge and ends there, nor where it is a hole in the object.
+SheetMask mask_from_sheet(const ColourImage& image, const SheetLook& look,
                           const StillBackground& still = {});
 
 /// For files, which say what share of a pixel is the object's: evidence of less than a half that is

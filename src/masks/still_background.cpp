@@ -27,7 +27,8 @@ constexpr double kAgreeing = 0.5;  // of the window: an outline beside its middl
 constexpr std::ptrdiff_t kOther =
     3;  // photographs alike, from which on they may be the background's
 constexpr float kMaxCode = 65535;
-constexpr std::uint8_t kPage = 1, kBox = 2;
+constexpr std::uint8_t kPage = 1, kBox = 2, kObject = 4;
+constexpr std::uint8_t kSurely = 192;  // coverage
 
 /// A photograph made smaller.
 struct Sample {
@@ -67,6 +68,18 @@ cv::Mat covered_by(const SheetLook& look) {
           (page.at<std::uint8_t>(y, x) ? kPage : 0) |
           (look.possible[std::size_t(y) * std::size_t(look.width) + std::size_t(x)] ? kBox : 0));
   return out;
+}
+
+/// Where the mask has the object.
+void cover_object(const Mask& mask, cv::Mat& covered) {
+  if (mask.empty()) return;
+  for (int y = 0; y < covered.rows; ++y)
+    for (int x = 0; x < covered.cols; ++x) {
+      const auto u = std::size_t(x) * std::size_t(mask.width) / std::size_t(covered.cols);
+      const auto v = std::size_t(y) * std::size_t(mask.height) / std::size_t(covered.rows);
+      if (mask.coverage[v * std::size_t(mask.width) + u] >= kSurely)
+        covered.at<std::uint8_t>(y, x) |= kObject;
+    }
 }
 
 /// Usual ratio of two photographs, where neither shows page or box.
@@ -122,6 +135,7 @@ class StillSearch {
       if (!whole()) cv::resize(light, light, size_, 0, 0, cv::INTER_AREA);
       light.convertTo(sample.light, CV_16UC3, double(kMaxCode));
       sample.covered = covered_by(photos_.look(k, size_.width, size_.height));
+      cover_object(photos_.mask(k), sample.covered);
       if (k > 0) sample.gain = gain_between(samples_.front(), sample);
       cv::multiply(sample.light,
                    cv::Scalar(1 / sample.gain[0], 1 / sample.gain[1], 1 / sample.gain[2]),
@@ -201,7 +215,8 @@ class StillSearch {
   }
 
   static bool told(const Sample& sample, int y, int x, bool free) {
-    return (sample.covered.at<std::uint8_t>(y, x) & (free ? kPage | kBox : kPage)) == 0;
+    return (sample.covered.at<std::uint8_t>(y, x) &
+            (free ? kPage | kBox | kObject : kPage | kObject)) == 0;
   }
 
   void find_medians() {

@@ -19,6 +19,8 @@ struct StillPhotographs {
   std::function<ColourImage(std::size_t)> image;
   /// What the photograph would show of the sheet alone, in a picture of that many pixels.
   std::function<SheetLook(std::size_t, int width, int height)> look;
+  /// The photograph's mask, of any size; empty: not known.
+  std::function<Mask(std::size_t)> mask = [](std::size_t) { return Mask(); };
   double held = 60e6;  ///< pixels of all photographs together that memory holds at once
   std::function<void(double)> progress = [](double) {};  ///< share that is done
 };
@@ -52,13 +54,13 @@ struct StillBackground {
 /// Do the photographs show the same behind sheet and box? Edges there are compared between pairs of
 /// photographs, each with the one half the series later. With `model`, where they do: the median of
 /// each pixel over the photographs in which it shows no page, by which the others are told, and
-/// their mean [Piccardi04]. Photographs in which the object's box does not cover the pixel go
-/// first; where there are fewer than four, the largest group of four or more tells that show the
-/// same around the pixel, if no other group is half as large or has three. The medians are made
-/// of smaller pictures where the photographs have more than `held` pixels together, so that memory
-/// does not grow with their number: 7 bytes for each pixel held, and 40 for each of one photograph.
-/// Exposures may differ. Needs at least two photographs; throws what reading them
-/// does.
+/// their mean [Piccardi04]. What a mask has for the object does not count. Photographs in which the
+/// object's box does not cover the pixel go first; where there are fewer than four, the largest
+/// group of four or more tells that show the same around the pixel, if no other group is half as
+/// large or has three. The medians are made of smaller pictures where the photographs have more
+/// than `held` pixels together, so that memory does not grow with their number: 7 bytes for each
+/// pixel held, and 40 for each of one photograph. Exposures may differ. Needs at least two
+/// photographs; throws what reading them does.
 StillBackground find_still_background(const StillPhotographs& photographs, bool model);
 
 }  // namespace photohull

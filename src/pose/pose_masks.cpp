@@ -48,7 +48,7 @@ std::vector<fs::path> write_sheet_masks(const fs::path& folder, const std::vecto
         look_at_sheet(result, i, sheet, picture, blur_of_edges(edge_widths[i]), scenery.light);
     scenery.narrow(i, look);
     turntable.note_hull(i, look);
-    SheetMask found = mask_from_sheet(io::read_image(images[i]), look, false, turntable.behind(i));
+    SheetMask found = mask_from_sheet(io::read_image(images[i]), look, turntable.behind(i));
     undecided += found.undecided > kMuch;
     if (found.mask.empty()) {
       ++missing;

@@ -128,7 +128,7 @@ class Exploration {
       SheetLook look = look_at_sheet(scaled(i, image.width, image.height), i, sheet_, picture_,
                                      blur_of_edges(scale * edge_widths_[i]), out_.light);
       out_.narrow(i, look);
-      masks[i] = mask_from_sheet(image, look, false).mask;
+      masks[i] = mask_from_sheet(image, look).mask;
       for (std::uint8_t& c : masks[i].coverage) c = c >= kMaybe ? 255 : 0;
       if (masks[i].empty()) masks[i] = anywhere(image.width, image.height);
     }

@@ -44,7 +44,8 @@ class TurntableSearch {
     find_backgrounds(scale);
     if (!job_.make_masks || !out_.found()) return std::move(out_);
     for (int round = 0; round < kRounds; ++round) {
-      out_.shadows = shadows_of_hull(result_, small_masks(scale));
+      masks_ = small_masks(scale);
+      out_.shadows = shadows_of_hull(result_, masks_);
       find_backgrounds(scale);
     }
     if (scale < 1) find_backgrounds(1);
@@ -75,6 +76,7 @@ class TurntableSearch {
         keep_to(out_.shadows[station.photos[i]], width, height, look.possible);
         return look;
       };
+      if (!masks_.empty()) photos.mask = [&](std::size_t i) { return masks_[station.photos[i]]; };
       photos.progress = [&](double share) {
         const double part = (double(found.size()) + share) / double(out_.motion.stations.size());
         progress_.update((done_ + part) / steps_);
@@ -93,7 +95,7 @@ class TurntableSearch {
       const ColourImage image = io::read_image(job_.images[i], scale);
       const SheetLook look =
           look_at(i, image.width, image.height, blur_of_edges(scale * edge_widths_[i]));
-      masks[i] = mask_from_sheet(image, look, false, out_.behind(i)).mask;
+      masks[i] = mask_from_sheet(image, look, out_.behind(i)).mask;
     }
     return masks;
   }
@@ -106,6 +108,7 @@ class TurntableSearch {
   Progress& progress_;
   SheetPicture picture_;
   TurntableFinding out_;
+  std::vector<Mask> masks_;  ///< of the last round
   double done_ = 0, steps_ = 1;
 };
 

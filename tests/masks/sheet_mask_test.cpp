@@ -88,7 +88,7 @@ class SheetMaskOfPlant : public testing::Test {
  protected:
   /// Pixels of the rectangle, [x0, x1) by [y0, y1), that the mask has as the object's.
   static int inside(int x0, int x1, int y0, int y1) {
-    static const Mask mask = mask_from_sheet(photograph_of_plant(), look_of_page(), false).mask;
+    static const Mask mask = mask_from_sheet(photograph_of_plant(), look_of_page()).mask;
     int count = 0;
     for (int y = y0; y < y1; ++y)
       for (int x = x0; x < x1; ++x) count += mask.coverage[std::size_t(y * kPlantWidth + x)] >= 128;
@@ -120,7 +120,7 @@ TEST(SheetMaskOfBall, WhatLooksLikePaperIsItsOwnWhereAllMasksHaveIt) {
   const ColourImage image = photograph_of(is_ball, glm::vec3(0.81f));
   SheetLook look = look_of_page();
   const auto covered = [&](const SheetLook& l) {
-    const Mask mask = mask_from_sheet(image, l, false).mask;
+    const Mask mask = mask_from_sheet(image, l).mask;
     std::array<int, 2> count{};  // of the ball, and beside it
     for (int y = 0; y < kPlantHeight; ++y)
       for (int x = 0; x < kPlantWidth; ++x)
@@ -138,9 +138,9 @@ TEST(SheetMaskOfBall, WhatLooksLikePaperIsItsOwnWhereAllMasksHaveIt) {
 TEST(SheetMaskOfBall, RoomAloneChangesNothingOfWhatDiffersFromPaper) {
   SheetLook look = look_of_page();
   const ColourImage image = photograph_of_plant();
-  const Mask before = mask_from_sheet(image, look, false).mask;
+  const Mask before = mask_from_sheet(image, look).mask;
   look.hull = room_for(is_plant);
-  const Mask after = mask_from_sheet(image, look, false).mask;
+  const Mask after = mask_from_sheet(image, look).mask;
   int changed = 0;
   for (std::size_t i = 0; i < before.coverage.size(); ++i)
     changed += (before.coverage[i] >= 128) != (after.coverage[i] >= 128);

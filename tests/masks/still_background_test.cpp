@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <random>
 
 #include "masks/sheet_mask.h"
@@ -67,14 +68,18 @@ SheetLook look(int width, int height) {
   return out;
 }
 
-StillBackground background_of(const Scene& scene, double held = 60e6, int count = kPhotos) {
+StillPhotographs photographs_of(const Scene& scene, double held = 60e6, int count = kPhotos) {
   StillPhotographs photos;
   photos.count = std::size_t(count);
   photos.width = kWidth, photos.height = kHeight;
-  photos.image = [&](std::size_t k) { return photograph(scene, int(k)); };
+  photos.image = [&scene](std::size_t k) { return photograph(scene, int(k)); };
   photos.look = [](std::size_t, int width, int height) { return look(width, height); };
   photos.held = held;
-  return find_still_background(photos, true);
+  return photos;
+}
+
+StillBackground background_of(const Scene& scene, double held = 60e6, int count = kPhotos) {
+  return find_still_background(photographs_of(scene, held, count), true);
 }
 
 /// A block that sways about the middle.
@@ -143,7 +148,7 @@ TEST(StillBackgroundTest, SmallerSamplesGiveTheSameLight) {
   EXPECT_EQ(found.width, kWidth);
   EXPECT_LT(light_error(found), 2 * kNoise);
   EXPECT_GT(share_of_level(found, StillBackground::kSure), 0.6);
-  const SheetMask mask = mask_from_sheet(photograph(scene, 3), look(kWidth, kHeight), false, found);
+  const SheetMask mask = mask_from_sheet(photograph(scene, 3), look(kWidth, kHeight), found);
   EXPECT_GT(overlap(mask.mask, scene, 3), 0.85);
 }
 
@@ -167,8 +172,8 @@ TEST(StillBackgroundTest, MasksAreTighterThanTheSheetAloneMakesThem) {
   const StillBackground found = background_of(scene);
   for (const int k : {0, 3, 8}) {
     const ColourImage image = photograph(scene, k);
-    const SheetMask alone = mask_from_sheet(image, look(kWidth, kHeight), false),
-                    both = mask_from_sheet(image, look(kWidth, kHeight), false, found);
+    const SheetMask alone = mask_from_sheet(image, look(kWidth, kHeight)),
+                    both = mask_from_sheet(image, look(kWidth, kHeight), found);
     EXPECT_LT(overlap(alone.mask, scene, k), 0.5);
     EXPECT_GT(overlap(both.mask, scene, k), 0.93);
     EXPECT_LT(both.undecided, alone.undecided);
@@ -184,7 +189,7 @@ TEST(StillBackgroundTest, AnObjectThatLooksAlikeFromAllSidesIsKept) {
   const StillBackground found = background_of(scene);
   ASSERT_EQ(found.stillness, Stillness::kStill);
   EXPECT_EQ(found.level[at(120, 80)], StillBackground::kDoubtful);
-  const SheetMask mask = mask_from_sheet(photograph(scene, 2), look(kWidth, kHeight), false, found);
+  const SheetMask mask = mask_from_sheet(photograph(scene, 2), look(kWidth, kHeight), found);
   for (int y = 54; y < 136; ++y) EXPECT_GE(mask.mask.coverage[at(120, y)], 128) << y;
 }
 
@@ -199,8 +204,7 @@ TEST(StillBackgroundTest, GapsOverBarePaperStayOpen) {
   scene.colour = [](int, double, double) { return glm::vec3(0.1f, 0.25f, 0.1f); };
   const StillBackground found = background_of(scene);
   for (const int k : {0, 3, 8}) {
-    const SheetMask mask =
-        mask_from_sheet(photograph(scene, k), look(kWidth, kHeight), false, found);
+    const SheetMask mask = mask_from_sheet(photograph(scene, k), look(kWidth, kHeight), found);
     const double middle = 120 + 30 * std::cos(2 * std::numbers::pi * k / kPhotos);
     int closed = 0, posts = 0, kept = 0;
     for (int y = kPageTop + 5; y < 144; ++y)
@@ -229,7 +233,7 @@ TEST(StillBackgroundTest, IsFoundWhereAThirdOfThePhotographsShowIt) {
   EXPECT_EQ(found.level[at(120, 80)], StillBackground::kSure);
   EXPECT_LT(share_of_level(found, StillBackground::kUnknown), 0.03);
   EXPECT_LT(light_error(found), kNoise);
-  const SheetMask mask = mask_from_sheet(photograph(scene, 0), look(kWidth, kHeight), false, found);
+  const SheetMask mask = mask_from_sheet(photograph(scene, 0), look(kWidth, kHeight), found);
   EXPECT_LT(mask.undecided, 0.05);
 }
 
@@ -238,8 +242,74 @@ TEST(StillBackgroundTest, APlainObjectThatMostPhotographsShowIsNotTakenForIt) {
   scene.colour = [](int, double, double) { return glm::vec3(0.6f, 0.2f, 0.1f); };
   const StillBackground found = background_of(scene);
   EXPECT_EQ(found.level[at(120, 80)], StillBackground::kUnknown);
-  const SheetMask mask = mask_from_sheet(photograph(scene, 1), look(kWidth, kHeight), false, found);
+  const SheetMask mask = mask_from_sheet(photograph(scene, 1), look(kWidth, kHeight), found);
   for (int y = 54; y < 136; ++y) EXPECT_GE(mask.mask.coverage[at(120, y)], 128) << y;
+}
+
+/// Photographs 0, 3, 6 and 9 alone show what is behind; masks say where the object stands.
+TEST(StillBackgroundTest, WhatMasksHaveForTheObjectDoesNotCount) {
+  Scene scene{mostly_there};
+  scene.colour = [](int, double, double) { return glm::vec3(0.6f, 0.2f, 0.1f); };
+  StillPhotographs photos = photographs_of(scene);
+  photos.mask = [&](std::size_t k) {
+    Mask mask{kWidth / 2, kHeight / 2, {}};
+    for (int y = 0; y < kHeight; y += 2)
+      for (int x = 0; x < kWidth; x += 2)
+        mask.coverage.push_back(mostly_there(int(k), x, y) ? 255 : 0);
+    return mask;
+  };
+  const StillBackground found = find_still_background(photos, true);
+  EXPECT_NE(found.level[at(120, 80)], StillBackground::kUnknown);
+  EXPECT_LT(light_error(found), kNoise);
+}
+
+/// What is behind, exactly, also behind the page, but for where nothing is known of it.
+StillBackground known_but(const std::function<bool(double, double)>& unknown) {
+  StillBackground out;
+  out.stillness = Stillness::kStill;
+  out.width = kWidth, out.height = kHeight;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const bool known = !unknown(x, y);
+      const glm::vec3 root = known ? glm::sqrt(shelf(x, y)) : glm::vec3(0);
+      for (int c = 0; c < 3; ++c) out.light.push_back(std::uint16_t(std::lround(65535 * root[c])));
+      out.deviation.push_back(std::uint8_t(1000 * kNoise));
+      out.level.push_back(known ? StillBackground::kSure : StillBackground::kUnknown);
+    }
+  return out;
+}
+
+TEST(StillBackgroundTest, WhereNothingIsKnownColoursTell) {
+  // Red before a shelf that has none of it, half over the page.
+  Scene scene{[](int, double x, double y) { return std::abs(x - 105) < 15 && y > 60 && y < 140; }};
+  scene.colour = [](int, double, double) { return glm::vec3(0.7f, 0.02f, 0.02f); };
+  const auto block = [](double x, double y) { return x > 95 && x < 150 && y > 50 && y < 110; };
+  const SheetMask mask =
+      mask_from_sheet(photograph(scene, 0), look(kWidth, kHeight), known_but(block));
+  EXPECT_GT(overlap(mask.mask, scene, 0), 0.95);
+}
+
+TEST(StillBackgroundTest, PrintNearThePagesEdgeLeavesItsRimBare) {
+  const auto printed = [](double y) { return y >= kPageTop + 6 && y < kPageTop + 14; };
+  SheetLook sheet = look(kWidth, kHeight);
+  sheet.mixed = 6;
+  for (int y = kPageTop; y < kPageTop + 14; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      sheet.light[at(x, y)] = y < kPageTop + 3 ? -1.0f : printed(y) ? 0.0f : 1.0f;
+  Scene scene{[](int, double x, double y) { return std::abs(x - 120) < 8 && y > 50 && y < 140; }};
+  scene.behind = [](int, double x, double y) { return shelf(x, y); };
+  const auto colour = scene.colour;
+  Scene with_print = scene;  // the print is drawn as what stands before the page
+  with_print.object = [&](int k, double x, double y) {
+    return scene.object(k, x, y) || (y >= kPageTop && y < kPageTop + 14);
+  };
+  with_print.colour = [&](int k, double x, double y) {
+    if (scene.object(k, x, y)) return colour(k, x, y);
+    return glm::vec3(printed(y) ? 0.03f : 0.8f);
+  };
+  const SheetMask mask = mask_from_sheet(photograph(with_print, 0), sheet,
+                                         known_but([](double, double) { return false; }));
+  EXPECT_GT(overlap(mask.mask, scene, 0), 0.9);
 }
 
 /// A frame around a patch of itself that looks the same in all photographs.
@@ -255,7 +325,7 @@ TEST(StillBackgroundTest, BackgroundThatTheObjectEnclosesIsNotBelieved) {
   const StillBackground found = background_of(scene);
   ASSERT_EQ(found.stillness, Stillness::kStill);
   ASSERT_EQ(found.level[at(120, 80)], StillBackground::kDoubtful);
-  const SheetMask mask = mask_from_sheet(photograph(scene, 2), look(kWidth, kHeight), false, found);
+  const SheetMask mask = mask_from_sheet(photograph(scene, 2), look(kWidth, kHeight), found);
   for (int y = 66; y < 102; ++y)
     for (int x = 98; x < 143; x += 4) EXPECT_GE(mask.mask.coverage[at(x, y)], 128) << x << " " << y;
 }
