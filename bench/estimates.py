@@ -43,15 +43,8 @@ def jobs() -> list[Job]:
         out += [(scene, masks, "refine", 256) for masks in ("none", "auto")]
     out += [("bunny", "auto", "space-carving", 256), ("fandisk", "none", "space-carving", 128),
             ("templeSparseRing", "none", "space-carving", 128), ("templeSparseRing", "auto", "hull", 256),
-            ("trellis", "auto", "hull", 400)]
-    for scene in ("bunny", "tabletop", "fandisk", "templeRing"):
-        out += [(scene, masks, "refine", 128) for masks in ("none", "auto")]
-    out += [("armadillo", "auto", "refine", 400), ("tabletop", "none", "refine", 400), ("bunny", "none", "refine", 400),
-            ("trellis", "auto", "refine", 400), ("glazed", "none", "refine", 400)]
-    out += [("fandisk", "auto", "space-carving", 256), ("trellis", "auto", "space-carving", 128),
-            ("bunny", "none", "space-carving", 128), ("fandisk", "none", "space-carving", 256),
-            ("templeRing", "auto", "hull", 256), ("dinoRing", "auto", "refine", 256),
-            ("fountain", "none", "refine", None)]
+            ("trellis", "auto", "hull", 400), ("armadillo", "auto", "refine", 400), ("trellis", "auto", "refine", 400),
+            ("armadillo", "auto", "refine", 1024), ("fountain", "none", "refine", None)]
     return out
 
 
@@ -92,9 +85,10 @@ def surface(r: dict) -> float:
 
 def memory_terms(r: dict) -> dict[str, float]:
     """Constant of estimate.cpp: what it is multiplied by."""
-    terms = {"kBaseBytes": 1, "kPixelBytes": r["read_pixels"]}
-    if r["masks"] != "none" or r["method"] == "hull":
-        terms["kFaceBytes"] = surface(r)
+    masked = r["masks"] != "none"
+    terms = {"kBaseBytes": 1, "kMaskedPixelBytes" if masked else "kPixelBytes": r["read_pixels"]}
+    if masked:
+        terms["kHullAreaBytes * kUsualHull"] = surface(r)
     elif r["method"] == "refine":
         terms["kUnmaskedFaceBytes"] = surface(r)
     else:

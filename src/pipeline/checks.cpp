@@ -138,8 +138,12 @@ void check_cameras_outside(const Box& box, const std::string& source,
 
 void check_memory(std::int64_t bytes, std::int64_t limit) {
   if (bytes <= limit) return;
-  throw Error(concat("this job would take about ", memory_text(bytes), " of memory, but may take ",
-                     memory_text(limit), " (", option_word("max_memory"), "); lower ",
+  const bool apart = memory_text(bytes) != memory_text(limit);
+  const auto text = [&](std::int64_t size) {
+    return apart ? memory_text(size) : concat(size >> 20, " MiB");
+  };
+  throw Error(concat("this job would take about ", text(bytes), " of memory, but may take ",
+                     text(limit), " (", option_word("max_memory"), "); lower ",
                      option_word("resolution"), " or ", option_word("image_scale"),
                      ", or use fewer ", option_word("views")));
 }

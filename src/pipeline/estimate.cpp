@@ -9,8 +9,11 @@ namespace {
 
 // Fitted on the runs of docs/guide/limits.md by `python3 -m bench estimates --fit`; what faces cost
 // stands in the methods' entries. Bytes:
-constexpr double kBaseBytes = 305e6;  // libraries, the driver's compiler, batches of rays
-constexpr double kPixelBytes = 8;     // colour and coverage; around the box outlines and mip chain
+constexpr double kBaseBytes = 305e6;      // libraries, the driver's compiler, batches of rays
+constexpr double kPixelBytes = 8;         // without silhouettes: colour, twice, and its mip chain
+constexpr double kMaskedPixelBytes = 14;  // with: coverage and distances as well
+constexpr double kHullAreaBytes = 600;    // bricks, mesh and files of a voxel's square
+constexpr double kUsualHull = 0.25;       // area of the hull, of that of the box
 // While a texture is made:
 constexpr double kTexturePixelBytes = 4, kMapPixelBytes = 5, kTextureFaceBytes = 300;
 constexpr double kTexelsOfPixel = 1.6;  // for each pixel on the box's faces, gaps included
@@ -19,7 +22,7 @@ constexpr double kChartTexelBytes = 148, kPageTexelBytes = 14;
 // CPU seconds:
 constexpr double kBaseSeconds = 3.2;
 constexpr double kPixelSeconds = 1e-8;      // of the files: decoding
-constexpr double kMadePixelSeconds = 2e-6;  // masks from the background, cameras checked by them
+constexpr double kMadePixelSeconds = 8e-7;  // masks from the background, cameras checked by them
 
 double pixels(const std::vector<Intrinsics>& pictures) {
   double sum = 0;
@@ -44,18 +47,20 @@ Cost estimate_cost(const CostQuestion& q) {
   std::vector<Intrinsics> read;
   for (const Camera& camera : q.cameras) read.push_back(camera.intrinsics);
   const double read_pixels = pixels(read);
-  double bytes = kBaseBytes + kPixelBytes * read_pixels;
+  const bool open = q.masks == Silhouettes::kNone;
+  double bytes = kBaseBytes + (open ? kPixelBytes : kMaskedPixelBytes) * read_pixels;
   Cost cost;
   cost.cpu_seconds = kBaseSeconds + kPixelSeconds * pixels(q.files);
   if (q.masks == Silhouettes::kMade) cost.cpu_seconds += kMadePixelSeconds * read_pixels;
   const MethodCost& method = method_of(q.method).cost;
-  const bool open = q.masks == Silhouettes::kNone;
   if (open) cost.cpu_seconds += method.unmasked_pixel_seconds * read_pixels;
   if (q.grid) {
     const glm::dvec3 n(q.grid->voxels());
     const double faces = 2 * (n.x * n.y + n.y * n.z + n.z * n.x);
-    bytes += (open ? method.unmasked_face_bytes : kFaceBytes) * faces;
-    if (q.texture_bytes > 0) bytes = std::max(bytes, bytes_with_texture(q, read_pixels, faces));
+    const double area = q.hull_area.value_or(kUsualHull * faces);
+    bytes += open ? method.unmasked_face_bytes * faces : kHullAreaBytes * area;
+    if (q.texture_bytes > 0)
+      bytes = std::max(bytes, bytes_with_texture(q, read_pixels, open ? faces : area / kUsualHull));
     cost.cpu_seconds += (open ? method.unmasked_face_seconds : method.face_seconds) * faces;
   }
   cost.bytes = std::int64_t(bytes);

@@ -22,9 +22,9 @@ struct CostQuestion {
   Silhouettes masks = Silhouettes::kGiven;
   std::int64_t texture_bytes = 0;  ///< that making a texture may take (texture_stage.h); 0: no such
   double pixel = 0;  ///< of the photographs as read, world units at the box's centre; for a texture
+  /// Area of the hull, squares of voxels, where masks were seen; nothing: not known yet.
+  std::optional<double> hull_area;
 };
-
-inline constexpr double kFaceBytes = 377;  ///< a face of the box, in voxels: bricks, mesh and files
 
 struct Cost {
   std::int64_t bytes = 0;  ///< peak of the process
@@ -33,7 +33,7 @@ struct Cost {
 
 /// Estimates fitted on runs over methods, resolutions, numbers and sizes of photographs, with and
 /// without masks (docs/guide/limits.md has the table). How much surface a box holds is not known
-/// before: that of the runs is taken, as a share of the box's faces.
+/// before masks are seen: a usual share of the box's faces is taken.
 Cost estimate_cost(const CostQuestion& question);
 
 }  // namespace photohull::pipeline

@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "carving/fit_grid.h"
 #include "carving/object_box.h"
 #include "core/error.h"
 #include "core/option_word.h"
+#include "pipeline/check_room.h"
 #include "pipeline/checks.h"
 #include "pipeline/methods/method.h"
 #include "pipeline/plan.h"
-#include "pipeline/read_scene.h"
 #include "pipeline/subject.h"
-#include "pipeline/texture_stage.h"
 #include "projtex/gpu_views.h"
 #include "views/crop.h"
 
@@ -56,16 +54,7 @@ GridSpec place_lattice(const ReconstructOptions& options, const SourcedBox& box,
     check_cameras_outside(box.box, box.source, sources_of(views));
   const std::vector<Camera> cameras = projtex::cameras_of(views);
   const GridSpec grid = lattice_of(options, box.box, cameras, masks);
-  CostQuestion question{{},
-                        cameras,
-                        grid,
-                        options.effective_method(),
-                        masks ? Silhouettes::kGiven : Silhouettes::kNone};
-  if (makes_texture(options)) {
-    question.texture_bytes = texture_bytes(memory_limit(options));
-    question.pixel = carving::pixel_footprint(box.box, cameras);
-  }
-  check_memory(estimate_cost(question).bytes, memory_limit(options));
+  if (!masks) check_room(options, box.box, grid, cameras);
   return grid;
 }
 

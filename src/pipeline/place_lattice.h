@@ -30,7 +30,7 @@ SourcedBox tighten_box(const ReconstructOptions& options, const SourcedBox& give
                        const std::vector<PreparedView>& views, Progress& progress);
 
 /// The lattice that the options ask for. Throws Error where cameras stand in a box that silhouettes
-/// bound, and where the voxels do not fit into memory.
+/// bound, and where without these the voxels do not fit into memory.
 GridSpec place_lattice(const ReconstructOptions& options, const SourcedBox& box,
                        const std::vector<PreparedView>& views);
 

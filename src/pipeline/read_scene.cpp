@@ -43,10 +43,8 @@ ReadScene read_scene(const Photographs& photographs, const ReconstructOptions& o
 
 Reading choose_reading(const Photographs& photographs, const Scene& scene, const Box& box,
                        const ReconstructOptions& options, Progress& progress) {
-  // With masks, the voxels that pixels give are not known for sure before these have been seen: the
-  // box may become smaller.
-  const bool known =
-      options.resolution || options.voxel_size || photographs.load.masks == io::MaskSource::kNone;
+  // With masks neither the box nor how much surface it holds is known before these have been seen.
+  const bool known = photographs.load.masks == io::MaskSource::kNone;
   const std::int64_t limit = memory_limit(options);
   Plan plan =
       plan_reading({options, photographs.load.masks, photographs.reader}, scene, box, known, limit);

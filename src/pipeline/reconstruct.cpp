@@ -15,6 +15,7 @@
 #include "photo/opencv_threads.h"
 #include "pipeline/agree_cameras.h"
 #include "pipeline/camera_cache.h"
+#include "pipeline/check_room.h"
 #include "pipeline/device_work.h"
 #include "pipeline/find_silhouettes.h"
 #include "pipeline/finish_mesh.h"
@@ -129,12 +130,6 @@ TriMesh joined(TriMesh mesh, const TriMesh& other) {
   return mesh;
 }
 
-/// The other photographs' pixels have done their work; memory peaks in the stages to come.
-void keep_only_photograph(int kept, std::vector<PreparedView>& views) {
-  for (int i = 0; i < int(views.size()); ++i)
-    if (i != kept) std::vector<std::uint8_t>().swap(views[std::size_t(i)].image.bytes);
-}
-
 /// From silhouettes to the surface, its colours, and what is to be thought of it.
 class Carver {
  public:
@@ -163,6 +158,7 @@ class Carver {
     const bool open = leaves_open(run_.options, bounded_);
     if (open && !bounded_) surface = open_unseen(job(), surface.mesh, std::move(surface.seen));
     const Around around = surround(surface.mesh, open);
+    images_->give_back(subject_.views);
     images_.reset();
     run_.context->release_deleted();
     hand_over_volume(out);
@@ -183,6 +179,7 @@ class Carver {
   }
 
   SparseVolume carve_surface() {
+    check_room(run_.options, subject_, hull_);
     SparseVolume hull = run_.clock.run("hull", Weights::kHull, [&] { return carve_hull(); });
     alike_ = any_mask(subject_.views);
     if (alike_)
@@ -192,6 +189,8 @@ class Carver {
     if (method_.from_hull) hull_.release_textures();
     run_.context->release_deleted();
     run_.clock.run("images", Weights::kImages, [&] { upload(); });
+    if (alike_ && !method_.sweeps)
+      images_->lend(subject_.views);  // no stage looks at them meanwhile
     Surface surface;
     const auto work = [&] {
       if (!method_.from_hull) {
@@ -300,6 +299,7 @@ class Carver {
     found.uniform_triangles = std::int64_t(whole.triangles.size());
     out.mesh = std::move(whole);
     const bool textured = makes_texture(run_.options);
+    if (!textured) drop_distances(subject_.views);
     const bool page = run_.options.report_page == ReportPage::kOn;
     const TriMesh uniform = textured ? out.mesh : TriMesh();
     if (page && !textured)

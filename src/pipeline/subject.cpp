@@ -52,4 +52,13 @@ std::vector<PreparedView> without_masks(std::vector<PreparedView> views) {
   return views;
 }
 
+void drop_distances(std::vector<PreparedView>& views) {
+  for (PreparedView& view : views) std::vector<float>().swap(view.silhouette.distance.pixels);
+}
+
+void keep_only_photograph(int kept, std::vector<PreparedView>& views) {
+  for (int i = 0; i < int(views.size()); ++i)
+    if (i != kept) std::vector<std::uint8_t>().swap(views[std::size_t(i)].image.bytes);
+}
+
 }  // namespace photohull::pipeline

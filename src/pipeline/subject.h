@@ -47,4 +47,10 @@ bool masks_are_needed(const ReconstructOptions& options, std::span<const Prepare
 /// To free memory; what was made of the masks stays.
 std::vector<PreparedView> without_masks(std::vector<PreparedView> views);
 
+/// To free memory: hulls cannot be carved any more.
+void drop_distances(std::vector<PreparedView>& views);
+
+/// To free memory: frees the pixels of the other photographs.
+void keep_only_photograph(int kept, std::vector<PreparedView>& views);
+
 }  // namespace photohull::pipeline

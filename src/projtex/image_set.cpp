@@ -48,6 +48,7 @@ ImageSet::ImageSet(std::span<const PreparedView> views) {
   const bool half = std::any_of(views.begin(), views.end(), [](const PreparedView& v) {
     return v.image.encoding == Encoding::kLinearHalf;
   });
+  encoding_ = half ? Encoding::kLinearHalf : Encoding::kSrgb8;
   texture_ =
       gpu::TextureArray(half ? gpu::TextureFormat::kRgba16f : gpu::TextureFormat::kSrgb8Alpha8,
                         size.x, size.y, int(views.size()), 0);
@@ -71,6 +72,23 @@ ImageSet::ImageSet(std::span<const PreparedView> views) {
   texture_.generate_mipmaps();
   for (const PreparedView& view : views)
     sharpness_.push_back(std::min(view.sharpness / kUnblurred, 1.0));
+}
+
+void ImageSet::lend(std::span<PreparedView> views) const {
+  for (PreparedView& view : views)
+    if (!view.image.has_alpha && view.image.encoding == encoding_)
+      std::vector<std::uint8_t>().swap(view.image.bytes);
+}
+
+void ImageSet::give_back(std::span<PreparedView> views) const {
+  PHOTOHULL_CHECK_OP(int(views.size()), ==, layers());
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    ColourImage& image = views[i].image;
+    if (!image.bytes.empty()) continue;
+    image.bytes.resize(std::size_t(image.width) * std::size_t(image.height) *
+                       image.bytes_per_pixel());
+    texture_.read_layer(int(i), image.width, image.height, image.bytes.size(), image.bytes.data());
+  }
 }
 
 }  // namespace photohull::projtex

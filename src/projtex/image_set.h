@@ -18,6 +18,12 @@ class ImageSet {
   /// Throws Error when the device cannot hold the images.
   explicit ImageSet(std::span<const PreparedView> views);
 
+  /// Frees the pixels of views that the device has as they are, as long as they are not needed on
+  /// the host; but those with alpha, which says what a photograph shows.
+  void lend(std::span<PreparedView> views) const;
+  /// The same views' pixels again, byte by byte.
+  void give_back(std::span<PreparedView> views) const;
+
   const gpu::TextureArray& texture() const { return texture_; }
   int layers() const { return texture_.layers(); }
   /// Of every view, PreparedView::sharpness relative to 0.9, at most 1: below, it has less fine
@@ -27,6 +33,7 @@ class ImageSet {
 
  private:
   gpu::TextureArray texture_;
+  ColourImage::Encoding encoding_ = ColourImage::Encoding::kSrgb8;  // of the texture
   std::vector<double> sharpness_;
 };
 

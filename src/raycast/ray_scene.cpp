@@ -73,12 +73,12 @@ struct RayScene::Device {
     void* positions =
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                 sizeof(glm::vec3), mesh.positions.size());
-    void* triangles = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                              3 * sizeof(std::uint32_t), mesh.triangles.size());
-    if (positions && triangles) {
+    // Vertices need room behind the last one, which the mesh has not.
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                               mesh.triangles.data(), 0, 3 * sizeof(std::uint32_t),
+                               mesh.triangles.size());
+    if (positions) {
       std::memcpy(positions, mesh.positions.data(), mesh.positions.size() * sizeof(glm::vec3));
-      std::memcpy(triangles, mesh.triangles.data(),
-                  mesh.triangles.size() * 3 * sizeof(std::uint32_t));
       rtcCommitGeometry(geometry);
       rtcAttachGeometry(scene, geometry);
       builder.commit(scene);

@@ -32,10 +32,11 @@ struct Hit {
   explicit operator bool() const { return triangle != kNone; }
 };
 
-/// A mesh ready for rays; keeps no reference to it. Both sides of a triangle are hit, and no ray
-/// slips through the edge between two (Embree's robust mode). Coordinates are single precision
-/// relative to the mesh's origin, so t is good to about 1e-6 of the distances involved. Answers
-/// are the same in every run and from every number of threads; const calls may run in parallel.
+/// A mesh ready for rays, whose triangles must stay in place as long as it lives. Both sides of a
+/// triangle are hit, and no ray slips through the edge between two (Embree's robust mode).
+/// Coordinates are single precision relative to the mesh's origin, so t is good to about 1e-6 of
+/// the distances involved. Answers are the same in every run and from every number of threads;
+/// const calls may run in parallel.
 class RayScene {
  public:
   /// Throws Error when the mesh has no triangle, a coordinate that is not finite, or does not fit

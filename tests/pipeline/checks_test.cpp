@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "core/error.h"
 #include "core/option_word.h"
 #include "support/ray_cast.h"
 
@@ -23,6 +24,22 @@ std::vector<SourceView> around(double distance) {
         test::look_at({distance * std::cos(0.8 * i), distance * std::sin(0.8 * i), 0.3}, {0, 0, 0},
                       300, 200, 200);
   return views;
+}
+
+/// What is said of a job of so many MiB that may take 1 GiB; empty: it may be done.
+std::string refusal(std::int64_t mebibytes) {
+  try {
+    check_memory(mebibytes << 20, std::int64_t(1) << 30);
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return {};
+}
+
+TEST(CheckMemory, NamesBothSizesSuchThatTheyDiffer) {
+  EXPECT_EQ(refusal(1024), "");
+  EXPECT_THAT(refusal(3072), HasSubstr("about 3 GiB of memory, but may take 1 GiB"));
+  EXPECT_THAT(refusal(1034), HasSubstr("about 1034 MiB of memory, but may take 1024 MiB"));
 }
 
 TEST(HopelessSetup, CamerasAroundTheBoxAreFine) {

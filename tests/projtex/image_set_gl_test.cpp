@@ -104,6 +104,30 @@ TEST_F(ImageSetTest, HalfFloatsAboveOneSurvive) {
   EXPECT_EQ(download(ImageSet(views).texture(), 0, true)[0], glm::dvec4(3.5, 0.25, 100, 1));
 }
 
+/// Which views have pixels while the set has them, and whether all are the same in the end.
+std::vector<bool> lent(std::vector<PreparedView> views) {
+  const std::vector<PreparedView> before = views;
+  const ImageSet set(views);
+  set.lend(views);
+  std::vector<bool> has;
+  for (const PreparedView& view : views) has.push_back(!view.image.bytes.empty());
+  set.give_back(views);
+  for (std::size_t i = 0; i < views.size(); ++i)
+    EXPECT_EQ(views[i].image.bytes, before[i].image.bytes) << i;
+  return has;
+}
+
+TEST_F(ImageSetTest, PixelsThatWereLentComeBack) {
+  std::vector<PreparedView> views{view_of(test::random_image(rng_, 16, 8)),
+                                  view_of(test::random_image(rng_, 5, 7)),
+                                  view_of(test::random_image(rng_, 7, 3))};
+  for (PreparedView& view : views) view.image.has_alpha = false;
+  views[2].image.has_alpha = true;
+  EXPECT_EQ(lent(views), (std::vector{false, false, true}));
+  views[1].image = test::to_half(views[1].image);
+  EXPECT_EQ(lent(views), (std::vector{true, false, true}));
+}
+
 TEST_F(ImageSetTest, ImagesMustMatchTheirCameras) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   std::vector<PreparedView> views{view_of(test::random_image(rng_, 4, 4))};

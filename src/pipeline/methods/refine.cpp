@@ -101,10 +101,14 @@ Surface carve(const SurfaceJob& job, SparseVolume) {
   Surface out;
   const std::vector<Camera> cameras = projtex::cameras_of(job.subject.views);
   const std::vector<carving::Silhouette> silhouettes = silhouettes_of(job.subject.views);
+  // No hull is finer, and none is carved later as a rule: its textures go.
+  const auto hull_at = [&](const GridSpec& grid) {
+    SparseVolume hull = job.hull.carve(grid);
+    if (grid.voxel_size == job.subject.grid.voxel_size) job.hull.release_textures();
+    return hull;
+  };
   out.volume = refine::refine_surface(
-      job.context,
-      {job.subject.grid, [&](const GridSpec& grid) { return job.hull.carve(grid); }, silhouettes,
-       *job.images, cameras},
+      job.context, {job.subject.grid, hull_at, silhouettes, *job.images, cameras},
       parameters_of(job).refine, job.progress, &counts, checkpoint ? &*checkpoint : nullptr);
   out.findings = findings_of(counts);
   check_found(job, out.volume, counts);
