@@ -60,8 +60,7 @@ check_aloud() {
   if "$@"; then passed=$((passed + 1)); else failed+=("$name"); fi
 }
 
-# One more at a time than there are cores, for tests wait now and then.
-run_tests() { ctest --preset "$1" --parallel "$((jobs + 1))" --no-tests=error "${@:2}"; }
+run_tests() { ctest --preset "$1" --parallel "$jobs" --no-tests=error "${@:2}"; }
 
 # C++ files under the folders given that exist. shaders/ is left out: the GLSL compiler reads it too.
 cpp_files() {
