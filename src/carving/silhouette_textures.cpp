@@ -3,9 +3,11 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cstdint>
 
 #include "carving/mask_pyramid.h"
 #include "core/error.h"
+#include "core/half_float.h"
 #include "projtex/gpu_views.h"
 
 namespace photohull::carving {
@@ -17,17 +19,19 @@ constexpr std::size_t kPixelsTogether = std::size_t(32) << 20;
 /// A view as it is uploaded.
 struct ReadyView {
   MaskPyramid pyramid;
-  std::vector<float> distances;
+  std::vector<std::uint16_t> distances;  ///< half floats
 };
 
-/// Repeats the border beyond the image: samples half a pixel outside must not meet foreign values.
-std::vector<float> padded(const SilhouetteDistance* d, const glm::ivec2& size) {
-  std::vector<float> out(std::size_t(size.x) * size.y, -SilhouetteDistance::kNoContour);
+/// As half floats. Repeats the border beyond the image: samples half a pixel outside must not meet
+/// foreign values.
+std::vector<std::uint16_t> padded(const SilhouetteDistance* d, const glm::ivec2& size) {
+  std::vector<std::uint16_t> out(std::size_t(size.x) * size.y,
+                                 half_float(-SilhouetteDistance::kNoContour));
   for (int y = 0; d && y < size.y; ++y) {
     const float* row = &d->pixels[std::size_t(std::min(y, d->height - 1)) * d->width];
-    float* target = &out[std::size_t(y) * size.x];
-    std::copy(row, row + d->width, target);
-    std::fill(target + d->width, target + size.x, row[d->width - 1]);
+    std::uint16_t* target = &out[std::size_t(y) * size.x];
+    std::transform(row, row + d->width, target, half_float);
+    std::fill(target + d->width, target + size.x, target[d->width - 1]);
   }
   return out;
 }

@@ -32,7 +32,7 @@ FormatInfo info_of(TextureFormat format) {
     case TextureFormat::kR8:
       return {GL_R8, GL_RED, GL_UNSIGNED_BYTE, 1};
     case TextureFormat::kR16f:
-      return {GL_R16F, GL_RED, GL_FLOAT, 2};
+      return {GL_R16F, GL_RED, GL_HALF_FLOAT, 2};
     case TextureFormat::kR32f:
       return {GL_R32F, GL_RED, GL_FLOAT, 4};
     case TextureFormat::kRg32f:

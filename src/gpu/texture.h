@@ -35,7 +35,8 @@ class TextureArray {
   }
 
   /// Writes a rectangle at the layer's origin; `pixels` are tightly packed in the natural client
-  /// type of the format (bytes for 8-bit formats, half or float for the others).
+  /// type of the format (bytes for 8-bit formats, halves for 16-bit ones, else floats or integers):
+  /// drivers that make halves of floats do not all round to the nearest.
   void upload(int layer, int width, int height, const void* pixels, int level = 0);
   void read(int level, std::size_t bytes, void* pixels) const;
   /// A rectangle at the origin of a layer's level 0, in the natural client type of the format.

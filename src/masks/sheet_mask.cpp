@@ -281,14 +281,20 @@ class Comparison {
   }
 
   /// A pixel that mixes page and background: what it would be of the mixture nearest to it. What
-  /// is mixed is bare paper, for no print reaches the page's edge.
+  /// is mixed is the brightest part of the page nearby, for no print reaches its edge.
   void settle_rim(const cv::Point& at) {
+    constexpr float kAsBright = 0.05f;  // of the paper's light
+    const cv::Rect window = cv::Rect(at.x - mixed_, at.y - mixed_, 2 * mixed_ + 1, 2 * mixed_ + 1) &
+                            cv::Rect({}, page_.size());
+    double brightest = 0;
+    cv::minMaxLoc(light_(window), nullptr, &brightest);
     cv::Vec3f paper;
     int count = 0;
-    for (int v = -mixed_; v <= mixed_; ++v)
-      for (int u = -mixed_; u <= mixed_; ++u) {
-        const cv::Point near = at + cv::Point(u, v);
-        if (!near.inside(cv::Rect({}, page_.size())) || light_.at<float>(near) < kPaper) continue;
+    for (int y = window.y; y < window.br().y; ++y)
+      for (int x = window.x; x < window.br().x; ++x) {
+        const cv::Point near(x, y);
+        if (!page_.at<std::uint8_t>(near) || light_.at<float>(near) < float(brightest) - kAsBright)
+          continue;
         paper += expected_.at<cv::Vec3f>(near), ++count;
       }
     if (count == 0) return;

@@ -11,9 +11,9 @@ namespace {
 // stands in the methods' entries. Bytes:
 constexpr double kBaseBytes = 305e6;      // libraries, the driver's compiler, batches of rays
 constexpr double kPixelBytes = 8;         // without silhouettes: colour, twice, and its mip chain
-constexpr double kMaskedPixelBytes = 14;  // with: coverage and distances as well
-constexpr double kHullAreaBytes = 600;    // bricks, mesh and files of a voxel's square
-constexpr double kUsualHull = 0.25;       // area of the hull, of that of the box
+constexpr double kMaskedPixelBytes = 13;  // with: coverage and distances as well
+constexpr double kHullAreaBytes = 520;    // bricks, mesh and files of a voxel's square
+constexpr double kUsualHull = 0.28;       // area of the hull, of that of the box
 // While a texture is made:
 constexpr double kTexturePixelBytes = 4, kMapPixelBytes = 5, kTextureFaceBytes = 300;
 constexpr double kTexelsOfPixel = 1.6;  // for each pixel on the box's faces, gaps included

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "carving/mask_pyramid.h"
+#include "core/half_float.h"
 #include "projtex/gpu_views.h"
 #include "support/filtering.h"
 
@@ -61,11 +62,11 @@ void HullKernels::upload(int view, const test::Outline& outline) {
                     pyramid.levels[level].data(), level);
   // Smaller images repeat their border, since look-ups reach half a pixel beyond its centres.
   const SilhouetteDistance& d = outline.distance;
-  std::vector<float> padded;
+  std::vector<std::uint16_t> padded;
   for (int y = 0; y < distance_maps_.height(); ++y)
     for (int x = 0; x < distance_maps_.width(); ++x)
-      padded.push_back(
-          d.pixels[std::size_t(std::min(y, d.height - 1)) * d.width + std::min(x, d.width - 1)]);
+      padded.push_back(half_float(
+          d.pixels[std::size_t(std::min(y, d.height - 1)) * d.width + std::min(x, d.width - 1)]));
   distance_maps_.upload(view, distance_maps_.width(), distance_maps_.height(), padded.data());
 }
 
