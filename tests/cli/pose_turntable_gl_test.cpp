@@ -40,8 +40,11 @@ class PoseTurntable : public testing::Test {
     const Finished made = run_photohull({"synthesize", path("spec.json"), "--out", path("table")});
     ASSERT_EQ(made.code, 0) << made.err;
   }
-  Finished pose(const std::string& photos = "table/images") const {
-    return run_photohull({"pose", path(photos), "--board", kBoard, "--out", path("posed")});
+  Finished pose(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words{"pose",  path("table/images"), "--board", kBoard,
+                                   "--out", path("posed")};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_photohull(words);
   }
 
   ScratchFolder folder_;
@@ -111,7 +114,7 @@ TEST_F(PoseTurntable, HasAxisAnglesAndTighterMasks) {
 
 TEST_F(PoseTurntable, AWalkWithTheSameCamerasIsNone) {
   photograph({{"cameras", {{"turntable", false}}}});
-  const Finished posed = pose();
+  const Finished posed = pose({"--no-masks"});
   ASSERT_EQ(posed.code, 0) << posed.err;
   EXPECT_THAT(posed.out, HasSubstr("no turntable"));
   const json table = report()["turntable"];
@@ -124,7 +127,7 @@ TEST_F(PoseTurntable, AWalkWithTheSameCamerasIsNone) {
 
 TEST_F(PoseTurntable, NothingIsToldBeforeAPlainWall) {
   photograph({{"background", {{"type", "colour"}, {"colour", {0.2, 0.2, 0.2}}}}});
-  const Finished posed = pose();
+  const Finished posed = pose({"--no-masks"});
   ASSERT_EQ(posed.code, 0) << posed.err;
   const json table = report()["turntable"];
   EXPECT_FALSE(table["found"]);
