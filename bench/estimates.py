@@ -19,6 +19,7 @@ from bench.runner import RESULTS, Photohull, add_datasets, add_program, keep_jso
 # Constants that these runs hardly tell, at least: decoding, by the large photographs of docs/guide/limits.md;
 # a hull's bricks; sweeps of all of a box at 256 voxels, by runs of an earlier version.
 KNOWN = {"kPixelSeconds": 1e-8, "kHullFaceSeconds": 2e-6, "kUnmaskedSweepFaceBytes": 1200}
+PROBE_VOXELS = 128  # as src/pipeline/check_room.cpp has it
 FAIR = 1.5  # the factor that estimates are to be within
 COLUMNS = ["scene, views", "masks", "method", "resolution", "MiB: said / taken", "ratio", "CPU s: said / taken", "ratio"]
 
@@ -64,7 +65,7 @@ def ask(photohull: Photohull, job: Job, datasets: Path) -> dict:
     given = any(v["mask"] for v in info["views"])
     return {"said_bytes": info["memory_bytes"], "said_cpu": info["cpu_seconds"], "views": len(info["views"]),
             "file_pixels": pixels, "read_pixels": pixels * info["image_scale"] ** 2, "voxels": n,
-            "masks": "none" if job[1] == "none" else "given" if given else "made"}
+            "masks": "none" if job[1] == "none" else "given" if given else "made", "voxel_size": info["voxel_size"]}
 
 
 def measure(photohull: Photohull, job: Job, datasets: Path) -> dict:
@@ -75,6 +76,16 @@ def measure(photohull: Photohull, job: Job, datasets: Path) -> dict:
     return {"bytes": report["peak_memory_bytes"], "cpu": report["cpu_seconds"], "bricks": report["grid"]["bricks_stored"],
             "vertices": report["mesh"]["vertices"], "surfels": [level["surfels"] for level in report.get("refine", [])],
             "grid": report["grid"]["voxels"], "stages": stages}
+
+
+def hull_area(photohull: Photohull, job: Job, datasets: Path, voxel: float) -> float:
+    """Of the hull that tells how much surface there is, in squares of the job's voxels."""
+    name, masks, _, _ = job
+    scene, *_ = words(job, datasets)
+    with work_folder(None) as folder:
+        photohull.reconstruct(scene, folder / "hull", "--device", "software", "--masks", masks, "--method", "hull", "--resolution",
+                              PROBE_VOXELS)
+        return photohull.json("measure", folder / "hull")["area"]["value"] / voxel**2
 
 
 def surface(r: dict) -> float:
@@ -88,7 +99,7 @@ def memory_terms(r: dict) -> dict[str, float]:
     masked = r["masks"] != "none"
     terms = {"kBaseBytes": 1, "kMaskedPixelBytes" if masked else "kPixelBytes": r["read_pixels"]}
     if masked:
-        terms["kHullAreaBytes * kUsualHull"] = surface(r)
+        terms["kHullAreaBytes"] = r["hull_area"]
     elif r["method"] == "refine":
         terms["kUnmaskedFaceBytes"] = surface(r)
     else:
@@ -164,6 +175,8 @@ def complete(options: argparse.Namespace, kept: dict[Job, dict]) -> None:
             row |= ask(photohull, job, options.datasets)
         if "bytes" not in row:
             row |= measure(photohull, job, options.datasets)
+        if row["masks"] != "none" and "hull_area" not in row:
+            row["hull_area"] = hull_area(photohull, job, options.datasets, row["voxel_size"])
         kept[job] = row
         keep_json(options.results, list(kept.values()))
 
@@ -182,5 +195,7 @@ def run(options: argparse.Namespace) -> None:
             for name, value in constants.items():
                 print(f"{name:28} {value:.3g}")
             print(f"within a factor of {factor:.2f}")
+        shares = [r["hull_area"] / surface(r) for r in rows if "hull_area" in r]
+        print(f"{'kUsualHull':28} {math.sqrt(min(shares) * max(shares)):.3g}, from {min(shares):.2f} to {max(shares):.2f}")
     tables.show(COLUMNS, map(cells, rows))
     spread(rows)

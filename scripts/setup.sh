@@ -23,8 +23,8 @@ packages=(
   libopenvdb-dev libopenvdb-tools libtbb-dev libboost-iostreams-dev
   # Meshes in other formats; distances to meshes; fewer triangles; nearest neighbours; convex hulls.
   libassimp-dev libembree-dev libmeshoptimizer-dev libnanoflann-dev libqhull-dev
-  # Images; OpenImageIO's CMake files ask for its tools.
-  libopenimageio-dev openimageio-tools libopencv-dev libjpeg-dev
+  # Images; OpenImageIO's CMake files ask for its tools. Imath has half floats.
+  libimath-dev libopenimageio-dev openimageio-tools libopencv-dev libjpeg-dev
   libglm-dev libcli11-dev nlohmann-json3-dev
   # Scenes of other programs; camera refinement.
   libpugixml-dev zlib1g-dev libceres-dev libeigen3-dev

@@ -1,5 +1,6 @@
 #include "carving/silhouette_textures.h"
 
+#include <Imath/half.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -7,7 +8,6 @@
 
 #include "carving/mask_pyramid.h"
 #include "core/error.h"
-#include "core/half_float.h"
 #include "projtex/gpu_views.h"
 
 namespace photohull::carving {
@@ -22,15 +22,15 @@ struct ReadyView {
   std::vector<std::uint16_t> distances;  ///< half floats
 };
 
-/// As half floats. Repeats the border beyond the image: samples half a pixel outside must not meet
-/// foreign values.
+/// As half floats, the nearest: drivers do not all round to these. Repeats the border beyond the
+/// image: samples half a pixel outside must not meet foreign values.
 std::vector<std::uint16_t> padded(const SilhouetteDistance* d, const glm::ivec2& size) {
   std::vector<std::uint16_t> out(std::size_t(size.x) * size.y,
-                                 half_float(-SilhouetteDistance::kNoContour));
+                                 half(-SilhouetteDistance::kNoContour).bits());
   for (int y = 0; d && y < size.y; ++y) {
     const float* row = &d->pixels[std::size_t(std::min(y, d->height - 1)) * d->width];
     std::uint16_t* target = &out[std::size_t(y) * size.x];
-    std::transform(row, row + d->width, target, half_float);
+    std::transform(row, row + d->width, target, [](float v) { return half(v).bits(); });
     std::fill(target + d->width, target + size.x, target[d->width - 1]);
   }
   return out;

@@ -1,10 +1,11 @@
 #include "carving/hull_kernels.h"
 
+#include <Imath/half.h>
+
 #include <algorithm>
 #include <numeric>
 
 #include "carving/mask_pyramid.h"
-#include "core/half_float.h"
 #include "projtex/gpu_views.h"
 #include "support/filtering.h"
 
@@ -65,8 +66,10 @@ void HullKernels::upload(int view, const test::Outline& outline) {
   std::vector<std::uint16_t> padded;
   for (int y = 0; y < distance_maps_.height(); ++y)
     for (int x = 0; x < distance_maps_.width(); ++x)
-      padded.push_back(half_float(
-          d.pixels[std::size_t(std::min(y, d.height - 1)) * d.width + std::min(x, d.width - 1)]));
+      padded.push_back(
+          half(
+              d.pixels[std::size_t(std::min(y, d.height - 1)) * d.width + std::min(x, d.width - 1)])
+              .bits());
   distance_maps_.upload(view, distance_maps_.width(), distance_maps_.height(), padded.data());
 }
 
