@@ -6,12 +6,13 @@ Peak memory and CPU time, over scenes, methods, resolutions and masks (`jobs`). 
 and the ratios taken / said that are worst. Runs that --results does not hold yet are made, one after the other, and kept
 there as they end (all: about 25 minutes on two idle cores; --fresh makes all of them anew). --again only asks `info`
 anew, and --fit, which needs numpy and scipy, prints the constants of src/pipeline/estimate.cpp that suit the kept runs
-best."""
+best: those of memory have the least mean square of relative errors, those of time the least largest factor."""
 import argparse
 import json
 import math
 from collections.abc import Callable
 from pathlib import Path
+from statistics import median
 
 from bench import tables
 from bench.runner import RESULTS, Photohull, add_datasets, add_program, keep_json, work_folder
@@ -122,6 +123,17 @@ def time_terms(r: dict) -> dict[str, float]:
     return terms
 
 
+def usual_fit(rows: list[dict], terms_of: Callable[[dict], dict[str, float]], used: str) -> tuple[dict[str, float], float]:
+    """Constants whose relative errors have the least mean square, those of KNOWN as they are, and the largest factor then."""
+    import numpy as np
+    names = sorted({name for r in rows for name in terms_of(r)} - KNOWN.keys())
+    known = np.array([sum(KNOWN[name] * value for name, value in terms_of(r).items() if name in KNOWN) / r[used] for r in rows])
+    a = np.array([[terms_of(r).get(name, 0) / r[used] for name in names] for r in rows])
+    best = np.linalg.lstsq(a, 1 - known, rcond=None)[0]
+    said = a @ best + known
+    return dict(zip(names, best)), max(said.max(), 1 / said.min())
+
+
 def fit(rows: list[dict], terms_of: Callable[[dict], dict[str, float]], used: str) -> tuple[dict[str, float], float]:
     """Constants, none below its bound in KNOWN, whose largest factor between said and used is least, and this factor."""
     import numpy as np
@@ -190,12 +202,12 @@ def run(options: argparse.Namespace) -> None:
         complete(options, kept)
     rows = [kept[job] for job in jobs() if job in kept]
     if options.fit:
-        for terms, used in ((memory_terms, "bytes"), (time_terms, "cpu")):
-            constants, factor = fit(rows, terms, used)
+        for suited, terms, used in ((usual_fit, memory_terms, "bytes"), (fit, time_terms, "cpu")):
+            constants, factor = suited(rows, terms, used)
             for name, value in constants.items():
                 print(f"{name:28} {value:.3g}")
             print(f"within a factor of {factor:.2f}")
         shares = [r["hull_area"] / surface(r) for r in rows if "hull_area" in r]
-        print(f"{'kUsualHull':28} {math.sqrt(min(shares) * max(shares)):.3g}, from {min(shares):.2f} to {max(shares):.2f}")
+        print(f"{'kUsualHull':28} {median(shares):.3g}, from {min(shares):.2f} to {max(shares):.2f}")
     tables.show(COLUMNS, map(cells, rows))
     spread(rows)

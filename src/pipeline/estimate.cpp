@@ -9,20 +9,20 @@ namespace {
 
 // Fitted on the runs of docs/guide/limits.md by `python3 -m bench estimates --fit`; what faces cost
 // stands in the methods' entries. Bytes:
-constexpr double kBaseBytes = 305e6;      // libraries, the driver's compiler, batches of rays
-constexpr double kPixelBytes = 8;         // without silhouettes: colour, twice, and its mip chain
-constexpr double kMaskedPixelBytes = 13;  // with: coverage and distances as well
-constexpr double kHullAreaBytes = 520;    // bricks, mesh and files of a voxel's square
-constexpr double kUsualHull = 0.28;       // area of the hull, of that of the box
+constexpr double kBaseBytes = 285e6;        // libraries, the driver's compiler, batches of rays
+constexpr double kPixelBytes = 6.7;         // without silhouettes: colour, twice, and its mip chain
+constexpr double kMaskedPixelBytes = 14.8;  // with: coverage and distances as well
+constexpr double kHullAreaBytes = 525;      // bricks, mesh and files of a voxel's square
+constexpr double kUsualHull = 0.29;         // area of the hull, of that of the box
 // While a texture is made:
 constexpr double kTexturePixelBytes = 4, kMapPixelBytes = 5, kTextureFaceBytes = 300;
 constexpr double kTexelsOfPixel = 1.6;  // for each pixel on the box's faces, gaps included
 constexpr double kChartTexelBytes = 148, kPageTexelBytes = 14;
 
 // CPU seconds:
-constexpr double kBaseSeconds = 3.2;
-constexpr double kPixelSeconds = 1e-8;      // of the files: decoding
-constexpr double kMadePixelSeconds = 8e-7;  // masks from the background, cameras checked by them
+constexpr double kBaseSeconds = 1.9;
+constexpr double kPixelSeconds = 1e-8;        // of the files: decoding
+constexpr double kMadePixelSeconds = 4.9e-7;  // masks from the background, cameras checked by them
 
 double pixels(const std::vector<Intrinsics>& pictures) {
   double sum = 0;

@@ -76,7 +76,7 @@ constexpr MethodEntry entry(Method method, const char* name) {
           .from_hull = true,
           .stage = "photo",
           .weight = Weights::kPhoto,
-          .cost = {71e-6, 270e-6, 1200},
+          .cost = {46e-6, 289e-6, 1200},
           .describe = describe_sweep,
           .carve = carve,
           .sharpen = nullptr,
