@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "io/image_file.h"
 #include "pipeline/plan.h"
+#include "pipeline/read_scene.h"
 #include "pipeline/reconstruct.h"
 #include "support/scratch_folder.h"
 
@@ -254,6 +255,28 @@ TEST(MaxMemory, RefusesBeforeDecoding) {
     EXPECT_NE(std::string(e.what()).find("may take 100 MiB (max_memory)"), std::string::npos)
         << e.what();
   }
+}
+
+/// Is a job of 4000 voxels along the box and five small photographs begun where it may take 2 GiB?
+bool is_begun(io::MaskSource masks) {
+  Photographs photographs;
+  photographs.scene = scene_of(std::vector<SourceView>(5, view(640, 480, 900)));
+  photographs.load.masks = masks;
+  ReconstructOptions options;
+  options.resolution = 4000;
+  options.max_memory = std::int64_t(2) << 30;
+  Progress silent;
+  try {
+    choose_reading(photographs, photographs.scene, kBox, options, silent);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+TEST(ChooseReading, WithMasksTheSurfaceIsNotKnownBeforeTheyAreSeen) {
+  EXPECT_TRUE(is_begun(io::MaskSource::kAuto));
+  EXPECT_FALSE(is_begun(io::MaskSource::kNone));
 }
 
 }  // namespace
