@@ -63,8 +63,8 @@ Mask cut_band(const MaskEvidence& evidence, const ColourImage& image, const Mask
 
 /// Where GrabCut [Rother04] puts background (CV_8U, 255) of what is `unknown` (255), by the colours
 /// of strong evidence and those of `background` (255: surely it), which is not all that is not the
-/// object. Nowhere, where a side has too few pixels to learn from, or more than four million were
-/// to be cut.
+/// object; what may as well be the object's is not. Nowhere, where a side has too few pixels to
+/// learn from, or more than four million were to be cut.
 cv::Mat background_by_colours(const MaskEvidence& evidence, const ColourImage& image,
                               const cv::Mat& unknown, const cv::Mat& background);
 

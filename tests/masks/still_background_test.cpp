@@ -289,6 +289,29 @@ TEST(StillBackgroundTest, WhereNothingIsKnownColoursTell) {
   EXPECT_GT(overlap(mask.mask, scene, 0), 0.95);
 }
 
+TEST(StillBackgroundTest, WhereColoursAreBothSidesTheObjectIsKept) {
+  // A grey shelf, and a body whose shading has the same greys, the lighter ones more often.
+  const auto grey = [](double x, double y) { return glm::vec3(shelf(x, y).x); };
+  Scene scene{[](int, double x, double y) { return std::abs(x - 105) < 15 && y > 60 && y < 140; }};
+  scene.behind = [&](int, double x, double y) { return grey(x, y); };
+  scene.colour = [](int, double x, double) {
+    return glm::vec3(float(0.15 + 0.5 * std::sqrt(std::max(0.0, 1 - std::pow((x - 105) / 15, 2)))));
+  };
+  StillBackground found =
+      known_but([](double x, double y) { return x > 95 && x < 150 && y > 50 && y < 110; });
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      if (found.level[at(x, y)] == StillBackground::kSure)
+        for (std::size_t c = 0; c < 3; ++c)
+          found.light[3 * at(x, y) + c] =
+              std::uint16_t(std::lround(65535 * std::sqrt(grey(x, y).x)));
+  const SheetMask mask = mask_from_sheet(photograph(scene, 0), look(kWidth, kHeight), found);
+  int missed = 0, all = 0;
+  for (int y = 61; y < kPageTop - 4; ++y)
+    for (int x = 97; x < 119; ++x) ++all, missed += mask.mask.coverage[at(x, y)] < 128;
+  EXPECT_LT(missed, 0.01 * all);
+}
+
 TEST(StillBackgroundTest, PrintNearThePagesEdgeLeavesItsRimBare) {
   const auto printed = [](double y) { return y >= kPageTop + 6 && y < kPageTop + 14; };
   SheetLook sheet = look(kWidth, kHeight);
