@@ -133,6 +133,7 @@ void print_info_json(const pipeline::Inspection& info, const PreparedViews* mask
         info.voxel_size * pipeline::footprint_factor(pipeline::Quality::kNormal, info.silhouettes);
     j["voxel_size"] = info.grid.voxel_size;
     j["image_scale"] = *std::min_element(info.scales.begin(), info.scales.end());
+    j["matched_scale"] = *std::min_element(info.matched.begin(), info.matched.end());
     j["memory_limit_bytes"] = info.memory_limit;
     j["memory_bytes"] = info.memory_bytes;
     j["cpu_seconds"] = info.cpu_seconds;

@@ -71,7 +71,11 @@ void print_scene(const pipeline::Inspection& info) {
                 info.nearest_angle, info.farthest_angle);
     std::printf("pixel          %g world units at the box's centre\n", info.voxel_size);
     std::printf("voxels         %d x %d x %d of %g\n", n.x, n.y, n.z, info.grid.voxel_size);
-    std::printf("image scale    %s\n", pipeline::smallest_scale_text(info.scales).c_str());
+    std::printf("image scale    %s", pipeline::smallest_scale_text(info.scales).c_str());
+    if (info.matched != info.scales)
+      std::printf(", and %s for some at a time, in which the surface is matched",
+                  pipeline::smallest_scale_text(info.matched).c_str());
+    std::printf("\n");
     std::printf("estimate       %lld MiB, %.0f CPU seconds (software rasterizer)\n",
                 static_cast<long long>(info.memory_bytes >> 20), info.cpu_seconds);
   }

@@ -25,6 +25,9 @@ void print_summary(const pipeline::Report& report, const std::string& out) {
   if (report.photographs.smallest_scale < 1)
     std::printf("photographs read at %s of their size\n",
                 pipeline::image_scale_text(report.photographs.smallest_scale).c_str());
+  if (report.photographs.matched_scale > report.photographs.smallest_scale)
+    std::printf("and the surface matched in them at %s of it\n",
+                pipeline::image_scale_text(report.photographs.matched_scale).c_str());
   if (const pipeline::SweepFindings& sweep = report.surface.sweep; sweep.voxels_judged > 0)
     std::printf("judged %lld voxels in %d sweeps, carved %lld\n",
                 static_cast<long long>(sweep.voxels_judged), sweep.sweeps,

@@ -5,6 +5,7 @@
 #include "carving/fit_grid.h"
 #include "pipeline/checks.h"
 #include "pipeline/estimate.h"
+#include "pipeline/larger_photographs.h"
 #include "pipeline/read_scene.h"
 #include "pipeline/texture_stage.h"
 #include "projtex/gpu_views.h"
@@ -52,14 +53,18 @@ void check_room(const ReconstructOptions& options, const Box& box, const GridSpe
                memory_limit(options));
 }
 
-void check_room(const ReconstructOptions& options, const Subject& subject, Hull& hull) {
-  if (!any_mask(subject.views)) return;
+std::int64_t check_room(const ReconstructOptions& options, const Subject& subject, Hull& hull) {
+  if (!any_mask(subject.views)) return subject.held_bytes;
   CostQuestion question = question_of(options, subject.box, subject.grid,
                                       projtex::cameras_of(subject.views), Silhouettes::kGiven);
   const std::int64_t limit = memory_limit(options);
-  if (kPlenty * estimate_cost(question).bytes <= limit) return;
+  const bool holds_some = subject.held_bytes > 0;
+  if (!holds_some && kPlenty * estimate_cost(question).bytes <= limit) return 0;
   question.hull_area = area_of(subject, hull);
-  check_memory(estimate_cost(question).bytes, limit);
+  const std::int64_t bytes = estimate_cost(question).bytes;
+  const std::int64_t fewest = holds_some ? fewest_held_bytes(subject.views) : 0;
+  check_memory(bytes + fewest, limit);
+  return holds_some ? limit - bytes : 0;
 }
 
 }  // namespace photohull::pipeline

@@ -35,7 +35,8 @@ struct ViewFindings {
   int views = 0;                                 ///< that could be decoded
   std::vector<LeftOutView> left_out;             ///< for they cannot be used
   double smallest_scale = 1, largest_scale = 1;  ///< at which photographs were read
-  double noise_sigma = 0;                        ///< square-root-encoded units of full scale
+  double matched_scale = 1;  ///< the smallest at which the surface was matched in them
+  double noise_sigma = 0;    ///< square-root-encoded units of full scale
   std::string mask_source;
   double mask_confidence = 0;
   std::vector<MaskFinding> masks;  ///< of each view

@@ -63,6 +63,7 @@ void look_ahead(const Scene& scene, const ReconstructOptions& options, io::MaskS
   Plan plan = plan_job({options, source}, scene, *scene.box, true, out.memory_limit);
   out.silhouettes = plan.silhouettes;
   out.grid = plan.grid;
+  out.matched = plan.held_bytes > 0 ? std::move(plan.wanted) : plan.scales;
   out.scales = std::move(plan.scales);
   out.memory_bytes = plan.cost.bytes;
   out.cpu_seconds = plan.cost.cpu_seconds;

@@ -26,6 +26,7 @@ struct Inspection {
   bool silhouettes = true;        ///< may there be any? Not with --masks none
   GridSpec grid;                  ///< as the options ask for it
   std::vector<double> scales;     ///< at which photographs would be read; empty: not known
+  std::vector<double> matched;    ///< and matched, larger where only some fit into memory
   std::int64_t memory_bytes = 0;  ///< estimate of the job's peak
   std::int64_t memory_limit = 0;  ///< what it may take; more is refused
   double cpu_seconds = 0;         ///< estimate for the software rasterizer

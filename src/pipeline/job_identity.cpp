@@ -41,6 +41,7 @@ std::string job_identity(const ReconstructOptions& options, const Photographs& p
     add_file(view.source.plate, text);
     add_camera(view.source.camera, text);
     add_distortion(view.source.distortion, text);
+    if (view.matched_scale != view.scale) text << "matched at " << view.matched_scale << '\n';
   }
   const std::string all = text.str();
   return digest_of({reinterpret_cast<const std::uint8_t*>(all.data()), all.size()});

@@ -8,6 +8,7 @@
 #include "core/option_word.h"
 #include "pipeline/check_room.h"
 #include "pipeline/checks.h"
+#include "pipeline/larger_photographs.h"
 #include "pipeline/methods/method.h"
 #include "pipeline/plan.h"
 #include "pipeline/subject.h"
@@ -18,7 +19,6 @@ namespace photohull::pipeline {
 namespace {
 
 constexpr double kOversized = 1.8;  // times the object's box: the box is made smaller
-constexpr int kCropMargin = 24;     // pixels around the box's projection: patches, mip levels
 
 double longest_side(const Box& box) {
   const glm::dvec3 size = box.size();
@@ -52,9 +52,8 @@ GridSpec place_lattice(const ReconstructOptions& options, const SourcedBox& box,
   const bool masks = any_mask(views);
   if (masks || !method_of(options).needs_no_silhouettes)
     check_cameras_outside(box.box, box.source, sources_of(views));
-  const std::vector<Camera> cameras = projtex::cameras_of(views);
-  const GridSpec grid = lattice_of(options, box.box, cameras, masks);
-  if (!masks) check_room(options, box.box, grid, cameras);
+  const GridSpec grid = lattice_of(options, box.box, matched_cameras(views), masks);
+  if (!masks) check_room(options, box.box, grid, projtex::cameras_of(views));
   return grid;
 }
 

@@ -38,6 +38,8 @@ GridSpec place_lattice(const ReconstructOptions& options, const SourcedBox& box,
 bool has_surroundings(const ReconstructOptions& options, bool box_found,
                       const std::vector<PreparedView>& views);
 
+inline constexpr int kCropMargin = 24;  ///< pixels around the box's projection: patches, mip levels
+
 /// Views of the pixels that the box can touch alone.
 std::vector<PreparedView> crop_views(std::vector<PreparedView> views, const Box& box);
 

@@ -8,11 +8,15 @@
 #include "core/image_scale.h"
 #include "core/option_word.h"
 #include "pipeline/image_scale.h"
+#include "pipeline/larger_photographs.h"
+#include "pipeline/methods/method.h"
 #include "pipeline/read_scene.h"
 #include "pipeline/texture_stage.h"
 
 namespace photohull::pipeline {
 namespace {
+
+constexpr double kCoarsestHeld = 4;  // voxels that a pixel may be wide where some are held larger
 
 /// Alpha channels are not known before decoding: they count as masks that must be made.
 Silhouettes silhouettes_of(io::MaskSource masks, const Scene& scene) {
@@ -23,26 +27,57 @@ Silhouettes silhouettes_of(io::MaskSource masks, const Scene& scene) {
   return given ? Silhouettes::kGiven : Silhouettes::kMade;
 }
 
-void count_cost(const Request& request, const Scene& scene, const Box& box, bool with_grid,
-                Plan& plan) {
-  CostQuestion question;
-  for (std::size_t i = 0; i < plan.scales.size(); ++i) {
-    question.files.push_back(scene.views[i].camera.intrinsics);
-    question.cameras.push_back(scene.views[i].camera);
-    Intrinsics& k = question.cameras.back().intrinsics;
-    k = scaled_intrinsics(k, plan.scales[i]);
+std::vector<Camera> cameras_at(std::span<const double> scales, const Scene& scene) {
+  std::vector<Camera> out;
+  for (std::size_t i = 0; i < scales.size(); ++i) {
+    out.push_back(scene.views[i].camera);
+    out.back().intrinsics = scaled_intrinsics(out.back().intrinsics, scales[i]);
   }
+  return out;
+}
+
+/// `matched`: the scales of the photographs whose pixels the voxels follow, where they do.
+void count_cost(const Request& request, const Scene& scene, const Box& box, bool with_grid,
+                std::span<const double> matched, Plan& plan) {
+  CostQuestion question;
+  for (const SourceView& view : scene.views) question.files.push_back(view.camera.intrinsics);
+  question.cameras = cameras_at(plan.scales, scene);
   question.method = request.options.effective_method();
   question.masks = silhouettes_of(request.masks, scene);
   plan.silhouettes = question.masks != Silhouettes::kNone;
   if (with_grid)
-    plan.grid =
-        *(question.grid = lattice_of(request.options, box, question.cameras, plan.silhouettes));
+    plan.grid = *(question.grid = lattice_of(request.options, box, cameras_at(matched, scene),
+                                             plan.silhouettes));
   if (makes_texture(request.options)) {
     question.texture_bytes = texture_bytes(memory_limit(request.options));
     question.pixel = carving::pixel_footprint(box, question.cameras);
   }
   plan.cost = estimate_cost(question);
+}
+
+/// The plan with photographs as much smaller as leaves room for some of the wanted size besides.
+std::optional<Plan> plan_to_hold_some(const Request& request, const Scene& scene, const Box& box,
+                                      bool with_grid, std::int64_t limit, Plan plan) {
+  if (!method_of(request.options).matches_larger) return std::nullopt;
+  const std::vector<Camera> wanted = cameras_at(plan.wanted, scene);
+  double pixels = 0;
+  for (const Camera& camera : wanted)
+    pixels = std::max(pixels, double(camera.intrinsics.width) * camera.intrinsics.height);
+  const double least = kFewestHeld * held_bytes(pixels);
+  const double coarsest =
+      kCoarsestHeld * voxel_size_of(request.options, box, wanted, plan.silhouettes);
+  while (halve_image_scales(box, scene.views, coarsest, plan.scales)) {
+    const std::vector<double> halved = plan.scales;
+    keep_unexpected_sizes(request.reader, scene.views, plan.scales);
+    if (plan.scales != halved) return std::nullopt;
+    count_cost(request, scene, box, with_grid, plan.wanted, plan);
+    if (double(plan.cost.bytes) + least > double(limit)) continue;
+    plan.held_bytes = limit - plan.cost.bytes;
+    plan.cost.bytes += std::int64_t(
+        std::min(double(plan.held_bytes), held_bytes(pixels) * double(scene.views.size())));
+    return plan;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -90,14 +125,16 @@ Plan plan_job(const Request& request, const Scene& scene, const Box& box, bool w
     keep_unexpected_sizes(request.reader, scene.views, plan.wanted);
   }
   plan.scales = plan.wanted;
-  count_cost(request, scene, box, with_grid, plan);
-  while (!options.image_scale && plan.cost.bytes > limit) {
+  count_cost(request, scene, box, with_grid, plan.scales, plan);
+  if (options.image_scale || plan.cost.bytes <= limit) return plan;
+  if (auto some = plan_to_hold_some(request, scene, box, with_grid, limit, plan)) return *some;
+  while (plan.cost.bytes > limit) {
     std::vector<double> smaller = plan.scales;
     if (!halve_image_scales(box, scene.views, voxel, smaller)) break;
     keep_unexpected_sizes(request.reader, scene.views, smaller);
     if (smaller == plan.scales) break;
     plan.scales = std::move(smaller);
-    count_cost(request, scene, box, with_grid, plan);
+    count_cost(request, scene, box, with_grid, plan.scales, plan);
   }
   return plan;
 }
@@ -107,7 +144,7 @@ Plan plan_reading(const Request& request, const Scene& scene, const Box& box, bo
   if (box_known) return plan_job(request, scene, box, true, limit);
   try {
     Plan plan = plan_job(request, scene, box, true, limit);
-    if (plan.cost.bytes > limit) count_cost(request, scene, box, false, plan);
+    if (plan.cost.bytes > limit) count_cost(request, scene, box, false, plan.scales, plan);
     return plan;
   } catch (const UsageError&) {
     throw;

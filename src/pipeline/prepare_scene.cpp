@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <tuple>
 
 #include "core/error.h"
 #include "core/option_word.h"
@@ -54,7 +56,7 @@ Decoded decode(const Photographs& photographs, const Scene& full, std::span<cons
 /// than in all of the box.
 Decoded decode_as_needed(const Photographs& photographs, ReadScene& read,
                          const ReconstructOptions& options, Progress& progress) {
-  std::vector<double>& scales = read.reading.scales;
+  const std::vector<double>& scales = read.reading.scales;
   MaskFinder masks = find_masks;
   if (!options.checkpoint.empty())
     masks = find_masks_once(options.checkpoint, options.fresh, progress);
@@ -65,10 +67,10 @@ Decoded decode_as_needed(const Photographs& photographs, ReadScene& read,
   const std::optional<Box> box = smaller_box(options, *read.scene.box, out.prepared.views);
   if (!box) return out;
   Reading reading = choose_reading(photographs, read.scene, *box, options, progress);
-  if (reading.scales == scales) return out;
+  if (reading.scales == read.reading.scales) return out;
   out = {};
-  scales = std::move(reading.scales);
-  return decode(photographs, read.scene, scales, masks, progress);
+  read.reading = std::move(reading);
+  return decode(photographs, read.scene, read.reading.scales, masks, progress);
 }
 
 /// The background of a photograph taken from within the box is what is looked for.
@@ -115,7 +117,8 @@ PreparedScene prepare_scene(const Photographs& photographs, ReadScene read,
   Decoded decoded = decode_as_needed(photographs, read, options, progress);
   const std::vector<double>& scales = read.reading.scales;
   PreparedViews& prepared = decoded.prepared;
-  PreparedScene out{std::move(decoded.scene), std::move(prepared.views), {}};
+  PreparedScene out{
+      std::move(decoded.scene), std::move(prepared.views), {}, read.reading.held_bytes};
   ViewFindings& found = out.findings;
   found.views = int(out.views.size());
   found.left_out = out.scene.left_out;
@@ -124,12 +127,17 @@ PreparedScene prepare_scene(const Photographs& photographs, ReadScene read,
   found.noise_sigma =
       std::max(options.noise ? *options.noise / 255 * found.largest_scale : median_noise(out.views),
                kRoundingNoise);
+  found.matched_scale = *std::ranges::min_element(read.reading.matched);
   for (const std::string& text : prepared.warnings) progress.warn(text);
+  std::map<std::string, std::pair<double, double>> scales_of;  // read and matched
+  for (std::size_t i = 0; i < scales.size(); ++i)
+    scales_of[read.scene.views[i].name] = {scales[i], read.reading.matched[i]};
   found.mask_source = prepared.mask_source;
   found.mask_confidence = prepared.mask_confidence;
   for (std::size_t i = 0; i < out.views.size(); ++i) {
     PreparedView& view = out.views[i];
     view.source = out.scene.views[i];
+    std::tie(view.scale, view.matched_scale) = scales_of.at(view.name);
     view.silhouette.likelihood = !view.mask.empty() && !was_given(prepared.masks[i]);
     found.masks.push_back({view.name, prepared.masks[i].source, prepared.masks[i].confidence});
   }

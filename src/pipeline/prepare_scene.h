@@ -1,6 +1,7 @@
 // The stage that decodes photographs: views, undistorted, with masks that have been looked at.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "core/prepared_view.h"
@@ -16,6 +17,7 @@ struct PreparedScene {
   Scene scene;                      ///< at the scale that its photographs were read at
   std::vector<PreparedView> views;  ///< one for each of the scene's
   ViewFindings findings;
+  std::int64_t held_bytes = 0;  ///< Plan::held_bytes
 };
 
 /// Reads the photographs as large as the voxels need them. Throws Error, UsageError, Cancelled.

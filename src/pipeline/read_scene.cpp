@@ -50,13 +50,21 @@ Reading choose_reading(const Photographs& photographs, const Scene& scene, const
       plan_reading({options, photographs.load.masks, photographs.reader}, scene, box, known, limit);
   check_memory(plan.cost.bytes, limit);
   const bool short_of_memory = plan.scales != plan.wanted;
-  if (short_of_memory)
+  if (plan.held_bytes > 0)
+    progress.warn(concat("the photographs are held at ", smallest_scale_text(plan.scales),
+                         " of their size, which outlines and colours come from, and the surface "
+                         "is matched in some at a time at ",
+                         smallest_scale_text(plan.wanted),
+                         " of it: all of these would take more than ", memory_text(limit),
+                         " of memory (", option_word("max_memory"), ")"));
+  else if (short_of_memory)
     progress.warn(concat("the photographs are read at ", smallest_scale_text(plan.scales),
                          " of their size: at ", smallest_scale_text(plan.wanted),
                          " the job would take more than ", memory_text(limit), " of memory (",
                          option_word("max_memory"), "; ", option_word("image_scale"),
                          " forces a size)"));
-  return {std::move(plan.scales), short_of_memory};
+  std::vector<double> matched = plan.held_bytes > 0 ? std::move(plan.wanted) : plan.scales;
+  return {std::move(plan.scales), short_of_memory, std::move(matched), plan.held_bytes};
 }
 
 }  // namespace photohull::pipeline

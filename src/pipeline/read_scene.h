@@ -15,6 +15,8 @@ namespace photohull::pipeline {
 struct Reading {
   std::vector<double> scales;    ///< (0, 1]
   bool short_of_memory = false;  ///< were they made smaller by --max-memory?
+  std::vector<double> matched;   ///< scales that the surface is matched at
+  std::int64_t held_bytes = 0;   ///< Plan::held_bytes
 };
 
 struct ReadScene {

@@ -21,6 +21,7 @@
 #include "pipeline/finish_mesh.h"
 #include "pipeline/given_words.h"
 #include "pipeline/judge_result.h"
+#include "pipeline/larger_photographs.h"
 #include "pipeline/look.h"
 #include "pipeline/photometric_stage.h"
 #include "pipeline/place_lattice.h"
@@ -100,18 +101,11 @@ Prepared prepare(Run& run) {
   report.box_source = box.source;
   report.grid = grid;
   return {{box.box, box.source, box_found, seen, grid, std::move(found.views),
-           scene.findings.noise_sigma, scene.findings.mask_confidence, found.full_evidence},
+           scene.findings.noise_sigma, scene.findings.mask_confidence, found.full_evidence,
+           scene.held_bytes},
           masks,
           std::move(agreeing.findings),
           std::move(found.findings)};
-}
-
-void warn_of_surroundings(const ReconstructOptions& options, bool bounded, Progress& progress) {
-  if (!bounded || options.surroundings != Surroundings::kOn) return;
-  progress.warn(concat(option_word("surroundings", "on"),
-                       ": silhouettes bound the object, and what surrounds it is in none of "
-                       "them; it is left out (",
-                       option_word("masks", "none"), " reconstructs without silhouettes)"));
 }
 
 Evidence keep_evidence(const TriMesh& mesh, const std::vector<render::PooledEvidence>& evidence) {
@@ -174,12 +168,12 @@ class Carver {
 
  private:
   SurfaceJob job() {
-    return {run_.options, run_.photographs, subject_, *run_.context,
-            hull_,        images_.get(),    bounded_, run_.progress};
+    return {run_.options,  run_.photographs, subject_,      *run_.context, hull_,
+            images_.get(), bounded_,         run_.progress, larger_.get()};
   }
 
   SparseVolume carve_surface() {
-    check_room(run_.options, subject_, hull_);
+    subject_.held_bytes = check_room(run_.options, subject_, hull_);
     SparseVolume hull = run_.clock.run("hull", Weights::kHull, [&] { return carve_hull(); });
     alike_ = any_mask(subject_.views);
     if (alike_)
@@ -188,7 +182,11 @@ class Carver {
       subject_.views = without_masks(std::move(subject_.views));
     if (method_.from_hull) hull_.release_textures();
     run_.context->release_deleted();
-    run_.clock.run("images", Weights::kImages, [&] { upload(); });
+    run_.clock.run("images", Weights::kImages, [&] {
+      upload();
+      larger_ = larger_photographs(run_.photographs.reader, subject_, gains_, run_.options.noise,
+                                   run_.progress);
+    });
     if (alike_ && !method_.sweeps)
       images_->lend(subject_.views);  // no stage looks at them meanwhile
     Surface surface;
@@ -205,6 +203,7 @@ class Carver {
     } else {
       surface = work();
     }
+    larger_.reset();
     hull_.release_textures();
     run_.report.surface = std::move(surface.findings);
     return std::move(surface.volume);
@@ -232,8 +231,9 @@ class Carver {
     return run_.clock.run("photometric", Weights::kPhotometric, [&] {
       const MeasuredGains found = measure();
       run_.report.photometric = found.findings;
-      if (found.gains) subject_.views = divide_by_gains(std::move(subject_.views), *found.gains);
-      return found.gains.has_value();
+      gains_ = found.gains;
+      if (gains_) subject_.views = divide_by_gains(std::move(subject_.views), *gains_);
+      return gains_.has_value();
     });
   }
 
@@ -353,6 +353,8 @@ class Carver {
   const SilhouetteFindings silhouettes_;
   Hull hull_;
   std::unique_ptr<projtex::ImageSet> images_;
+  std::optional<PhotometricCalibration> gains_;  // that pixels were divided by
+  std::unique_ptr<projtex::OutOfCorePhotographs> larger_;
   bool alike_ = false;  // were the photographs' gains looked at on the hull?
 };
 

@@ -32,7 +32,8 @@ void add_scene(const Report& r, ordered_json& j) {
   for (const auto& [name, value] : r.options) j["options"][name] = value;
   j["box"] = {{"min", array_of(r.box.min)}, {"max", array_of(r.box.max)}, {"source", r.box_source}};
   j["image_scale"] = {{"smallest", r.photographs.smallest_scale},
-                      {"largest", r.photographs.largest_scale}};
+                      {"largest", r.photographs.largest_scale},
+                      {"matched", r.photographs.matched_scale}};
 }
 
 void add_masks(const Report& r, ordered_json& j) {

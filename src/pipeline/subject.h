@@ -3,6 +3,7 @@
 // pixels that are not needed any more.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -27,6 +28,7 @@ struct Subject {
   double noise_sigma = 0;           ///< of the photographs, square-root-encoded units of full scale
   double mask_confidence = 0;       ///< [0, 1]: the least of the views' that have masks
   double full_evidence = 0;         ///< pixels (carving::HullOptions)
+  std::int64_t held_bytes = 0;      ///< for photographs that are matched larger (Plan::held_bytes)
 };
 
 bool any_mask(std::span<const PreparedView> views);

@@ -2,6 +2,7 @@
 
 #include "carving/fit_grid.h"
 #include "core/error.h"
+#include "core/option_word.h"
 #include "mesh/join_meshes.h"
 #include "mesh/remove_islands.h"
 #include "mesh/remove_unseen.h"
@@ -107,6 +108,14 @@ Around make_surroundings(const SurfaceJob& job, const TriMesh& mesh, bool open) 
   for (ShellFindings& shell : around.findings)
     shell.area_share = all > 0 ? shell.area_share / all : 0;
   return around;
+}
+
+void warn_of_surroundings(const ReconstructOptions& options, bool bounded, Progress& progress) {
+  if (!bounded || options.surroundings != Surroundings::kOn) return;
+  progress.warn(concat(option_word("surroundings", "on"),
+                       ": silhouettes bound the object, and what surrounds it is in none of "
+                       "them; it is left out (",
+                       option_word("masks", "none"), " reconstructs without silhouettes)"));
 }
 
 }  // namespace photohull::pipeline

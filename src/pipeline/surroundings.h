@@ -35,4 +35,7 @@ struct Around {
 /// `open`: without what is unseen and doubtful. The method carves around the box.
 Around make_surroundings(const SurfaceJob& job, const TriMesh& mesh, bool open);
 
+/// Where they are asked for and silhouettes bound the object.
+void warn_of_surroundings(const ReconstructOptions& options, bool bounded, Progress& progress);
+
 }  // namespace photohull::pipeline

@@ -39,40 +39,49 @@ std::vector<std::uint8_t> pad(const std::uint8_t* pixels, const ColourImage& ima
   return out;
 }
 
+Encoding encoding_of(std::span<const PreparedView> views) {
+  const bool half = std::ranges::any_of(
+      views, [](const PreparedView& v) { return v.image.encoding == Encoding::kLinearHalf; });
+  return half ? Encoding::kLinearHalf : Encoding::kSrgb8;
+}
+
 }  // namespace
 
-ImageSet::ImageSet(std::span<const PreparedView> views) {
-  PHOTOHULL_CHECK(!views.empty());
-  const std::vector<Camera> cameras = cameras_of(views);
-  const glm::ivec2 size = array_size(cameras);
-  const bool half = std::any_of(views.begin(), views.end(), [](const PreparedView& v) {
-    return v.image.encoding == Encoding::kLinearHalf;
-  });
-  encoding_ = half ? Encoding::kLinearHalf : Encoding::kSrgb8;
-  texture_ =
-      gpu::TextureArray(half ? gpu::TextureFormat::kRgba16f : gpu::TextureFormat::kSrgb8Alpha8,
-                        size.x, size.y, int(views.size()), 0);
-  const std::size_t pixel_bytes = half ? 8 : 4;
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    const ColourImage& image = views[i].image;
-    PHOTOHULL_CHECK(image.width == views[i].camera.intrinsics.width);
-    PHOTOHULL_CHECK(image.height == views[i].camera.intrinsics.height);
-    std::vector<std::uint8_t> converted, padded;
-    const std::uint8_t* pixels = image.bytes.data();
-    if (half && image.encoding == Encoding::kSrgb8) {
-      converted = to_half(image);
-      pixels = converted.data();
-    }
-    if (image.width != size.x || image.height != size.y) {
-      padded = pad(pixels, image, size, pixel_bytes);
-      pixels = padded.data();
-    }
-    texture_.upload(int(i), size.x, size.y, pixels);
-  }
-  texture_.generate_mipmaps();
-  for (const PreparedView& view : views)
-    sharpness_.push_back(std::min(view.sharpness / kUnblurred, 1.0));
+ImageSet::ImageSet(std::span<const PreparedView> views)
+    : ImageSet(array_size(cameras_of(views)), int(views.size()), encoding_of(views)) {
+  for (std::size_t i = 0; i < views.size(); ++i) put(int(i), views[i]);
+  complete();
 }
+
+ImageSet::ImageSet(const glm::ivec2& size, int layers, ColourImage::Encoding encoding)
+    : encoding_(encoding), sharpness_(std::size_t(layers), 1) {
+  PHOTOHULL_CHECK(layers > 0);
+  texture_ = gpu::TextureArray(encoding == Encoding::kLinearHalf ? gpu::TextureFormat::kRgba16f
+                                                                 : gpu::TextureFormat::kSrgb8Alpha8,
+                               size.x, size.y, layers, 0);
+}
+
+void ImageSet::put(int layer, const PreparedView& view) {
+  const ColourImage& image = view.image;
+  PHOTOHULL_CHECK(image.width == view.camera.intrinsics.width);
+  PHOTOHULL_CHECK(image.height == view.camera.intrinsics.height);
+  const glm::ivec2 size(texture_.width(), texture_.height());
+  const bool half = encoding_ == Encoding::kLinearHalf;
+  std::vector<std::uint8_t> converted, padded;
+  const std::uint8_t* pixels = image.bytes.data();
+  if (half && image.encoding == Encoding::kSrgb8) {
+    converted = to_half(image);
+    pixels = converted.data();
+  }
+  if (image.width != size.x || image.height != size.y) {
+    padded = pad(pixels, image, size, half ? 8 : 4);
+    pixels = padded.data();
+  }
+  texture_.upload(layer, size.x, size.y, pixels);
+  sharpness_[std::size_t(layer)] = std::min(view.sharpness / kUnblurred, 1.0);
+}
+
+void ImageSet::complete() { texture_.generate_mipmaps(); }
 
 void ImageSet::lend(std::span<PreparedView> views) const {
   for (PreparedView& view : views)

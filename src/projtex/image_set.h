@@ -17,6 +17,10 @@ class ImageSet {
  public:
   /// Throws Error when the device cannot hold the images.
   explicit ImageSet(std::span<const PreparedView> views);
+  /// Room for images of up to `size` pixels, which put() fills one by one; complete() ends that.
+  ImageSet(const glm::ivec2& size, int layers, ColourImage::Encoding encoding);
+  void put(int layer, const PreparedView& view);
+  void complete();
 
   /// Frees the pixels of views that the device has as they are, as long as they are not needed on
   /// the host; but those with alpha, which says what a photograph shows.

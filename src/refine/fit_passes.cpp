@@ -48,7 +48,7 @@ class FitPass {
       if (is_settled(before[k]) && before[k] != Settled::kFlat) choices_[k].views.clear();
     Matches matches = vertex_textures(job, grid_, mesh_, choices_);
     texture_ = std::move(matches.texture);
-    fits_ = fit_patches(job.context, surfels(), job.photographs, choices_, options_.fit);
+    fits_ = fit_patches(job.context, surfels(), job.matching(grid_), choices_, options_.fit);
     samples_ = matches.samples + samples_of(choices_, options_.fit);
     held_ = held_out(fits_);
   }
@@ -61,7 +61,7 @@ class FitPass {
   std::vector<float> displacements(const SparseVolume& hull, const SparseVolume& volume,
                                    bool seats) {
     const std::vector<float> spacings =
-        tap_spacings(grid_, positions_, job_.photographs.cameras, choices_, options_.fit);
+        tap_spacings(grid_, positions_, job_.matching(grid_).cameras(), choices_, options_.fit);
     std::vector<Peak> peaks = peaks_of(fits_, spacings, options_.fit);
     fits_ = {};
     std::vector<float> trust =

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "carving/fit_grid.h"
 #include "refine/kernels/match_patches.h"
 #include "render/surface_points.h"
 #include "volume/cavities.h"
@@ -16,38 +17,44 @@ namespace {
 constexpr std::size_t kPart = std::size_t(1) << 19;  // surfels that are matched at once
 constexpr std::size_t kManySurfels = std::size_t(1) << 18;
 
-std::vector<PatchSurfel> surfels_of(const GridSpec& grid, const TriMesh& mesh, std::size_t first,
-                                    std::size_t count) {
-  std::vector<PatchSurfel> out;
-  out.reserve(count);
-  for (const render::SurfacePoint& point : render::to_voxels(grid, mesh, first, count))
-    out.push_back({point.position, point.normal});
-  return out;
-}
+/// Where voxels are narrower than so many pixels of the photographs, larger ones are matched.
+constexpr double kFewestPixels = 1.5;
 
-PatchMatcher matcher_of(const RefineJob& job, const GridSpec& grid) {
-  return {job.context, job.photographs.images, projtex::to_grid(job.photographs.cameras, grid),
-          patch_rules(job.options.match, job.photographs.noise_sigma), "refine_match_patches"};
-}
-
-/// What take(first, count) says of parts of the vertices.
+/// Calls take(matcher, surfels, choices, indices) for parts of the vertices that are comparable,
+/// and puts what it says of them into place.
 template <typename Take>
-Matches in_parts(const TriMesh& mesh, const Take& take) {
-  const std::size_t total = mesh.positions.size();
+Matches in_parts(const RefineJob& job, const GridSpec& grid, const TriMesh& mesh,
+                 std::span<const ViewChoice> choices, int scores, const Take& take) {
   Matches all;
-  for (std::size_t first = 0; first < total; first += kPart) {
-    Matches part = take(first, std::min(kPart, total - first));
-    if (first == 0) {
-      const std::size_t counted = part.texture.size();
-      all = std::move(part);
-      all.scores.reserve(all.scores.size() / counted * total);
-      all.texture.reserve(total);
-      continue;
+  all.scores.assign(mesh.positions.size() * std::size_t(scores), kNoScore);
+  all.texture.assign(mesh.positions.size(), 1);
+  const auto match_some = [&](const PatchMatcher& matcher, const HeldNumbers& numbers,
+                              std::span<const std::uint32_t> indices) {
+    std::vector<PatchSurfel> surfels;
+    std::vector<ViewChoice> views;
+    for (const std::uint32_t i : indices) {
+      const render::SurfacePoint point = render::to_voxels(grid, mesh, i);
+      surfels.push_back({point.position, point.normal});
+      views.push_back(numbers.of(choices[i]));
     }
-    all.scores.insert(all.scores.end(), part.scores.begin(), part.scores.end());
-    all.texture.insert(all.texture.end(), part.texture.begin(), part.texture.end());
+    const Matches part = take(matcher, surfels, views, indices);
+    for (std::size_t k = 0; k < indices.size(); ++k) {
+      all.texture[indices[k]] = part.texture[k];
+      std::copy_n(part.scores.begin() + std::ptrdiff_t(k) * scores, scores,
+                  all.scores.begin() + std::ptrdiff_t(indices[k]) * scores);
+    }
     all.samples += part.samples;
-  }
+  };
+  const MatchingPhotographs matching = job.matching(grid);
+  matching.for_each(choices, [&](const projtex::Photographs& photographs,
+                                 std::span<const std::uint32_t> indices,
+                                 const HeldNumbers& numbers) {
+    const PatchMatcher matcher(
+        job.context, photographs.images, projtex::to_grid(photographs.cameras, grid),
+        patch_rules(job.options.match, photographs.noise_sigma), "refine_match_patches");
+    for (std::size_t first = 0; first < indices.size(); first += kPart)
+      match_some(matcher, numbers, indices.subspan(first, std::min(kPart, indices.size() - first)));
+  });
   return all;
 }
 
@@ -77,25 +84,35 @@ void give_back(const TriMesh& mesh) {
   if (mesh.positions.size() >= kManySurfels) malloc_trim(0);
 }
 
+MatchingPhotographs RefineJob::matching(const GridSpec& grid) const {
+  if (larger && grid.voxel_size <
+                    kFewestPixels * carving::pixel_footprint(grid.bounds(), photographs.cameras))
+    return MatchingPhotographs(*larger);
+  return {photographs.images, photographs.cameras, photographs.noise_sigma};
+}
+
 Matches match_vertices(const RefineJob& job, const GridSpec& grid, const TriMesh& mesh,
                        std::span<const glm::vec3> bends, std::span<const ViewChoice> choices,
                        const OffsetRange& range) {
-  const PatchMatcher matcher = matcher_of(job, grid);
-  Matches all = in_parts(mesh, [&](std::size_t first, std::size_t count) {
-    return matcher.match(surfels_of(grid, mesh, first, count),
-                         bends.empty() ? bends : bends.subspan(first, count),
-                         choices.subspan(first, count), range);
-  });
+  Matches all =
+      in_parts(job, grid, mesh, choices, range.count,
+               [&](const PatchMatcher& matcher, std::span<const PatchSurfel> surfels,
+                   std::span<const ViewChoice> views, std::span<const std::uint32_t> indices) {
+                 std::vector<glm::vec3> bent;
+                 if (!bends.empty())
+                   for (const std::uint32_t i : indices) bent.push_back(bends[i]);
+                 return matcher.match(surfels, bent, views, range);
+               });
   all.range = range;
   return all;
 }
 
 Matches vertex_textures(const RefineJob& job, const GridSpec& grid, const TriMesh& mesh,
                         std::span<const ViewChoice> choices) {
-  const PatchMatcher matcher = matcher_of(job, grid);
-  return in_parts(mesh, [&](std::size_t first, std::size_t count) {
-    return matcher.textures(surfels_of(grid, mesh, first, count), choices.subspan(first, count));
-  });
+  return in_parts(job, grid, mesh, choices, 0,
+                  [&](const PatchMatcher& matcher, std::span<const PatchSurfel> surfels,
+                      std::span<const ViewChoice> views,
+                      std::span<const std::uint32_t>) { return matcher.textures(surfels, views); });
 }
 
 }  // namespace photohull::refine

@@ -7,9 +7,11 @@
 #include "core/grid.h"
 #include "core/mesh.h"
 #include "gpu/context.h"
+#include "projtex/out_of_core.h"
 #include "projtex/photographs.h"
 #include "refine/bounding_hull.h"
 #include "refine/match.h"
+#include "refine/matching_photographs.h"
 #include "refine/refine.h"
 #include "refine/settle.h"
 #include "refine/silhouette_cones.h"
@@ -23,7 +25,15 @@ struct RefineJob {
   SilhouetteCones cones;
   projtex::Photographs photographs;
   RefineOptions options;
+  /// Of the same views, larger, for voxels that those do not suffice for; null: there are none.
+  projtex::OutOfCorePhotographs* larger = nullptr;
 
+  /// What surfels of the grid are matched in.
+  MatchingPhotographs matching(const GridSpec& grid) const;
+  /// Of the largest photographs.
+  std::span<const Camera> finest_cameras() const {
+    return larger ? larger->cameras() : photographs.cameras;
+  }
   /// Is what silhouettes leave, and photographs do not tell of, solid?
   bool is_bounded() const { return options.bounded && cones.any(); }
 };

@@ -96,9 +96,9 @@ KnownSurface known_surface(std::span<const glm::vec3> positions, std::span<const
 
 std::vector<Sightline> find_sightlines(gpu::Context& context, const GridSpec& grid,
                                        const KnownSurface& known,
-                                       const projtex::Photographs& photographs,
+                                       const MatchingPhotographs& photographs,
                                        const MatchOptions& match, const LookOptions& options) {
-  const std::vector<projtex::GridCamera> cameras = projtex::to_grid(photographs.cameras, grid);
+  const std::vector<projtex::GridCamera> cameras = projtex::to_grid(photographs.cameras(), grid);
   std::vector<PatchSurfel> surfels;
   std::vector<ViewChoice> pairs;  // a witness, and a view that the surfel is hidden from
   for (std::size_t i = 0; i < known.positions.size(); ++i) {
@@ -110,9 +110,21 @@ std::vector<Sightline> find_sightlines(gpu::Context& context, const GridSpec& gr
       pairs.emplace_back().views = ViewList<ViewChoice::kMostViews>(std::array{witness, view});
     }
   }
-  const PatchMatcher matcher(context, photographs.images, cameras,
-                             patch_rules(match, photographs.noise_sigma), "refine_match_patches");
-  const std::vector<float> scores = matcher.match(surfels, {}, pairs, {}).scores;
+  std::vector<float> scores(surfels.size(), kNoScore);
+  photographs.for_each(
+      pairs, [&](const projtex::Photographs& held, std::span<const std::uint32_t> indices,
+                 const HeldNumbers& numbers) {
+        std::vector<PatchSurfel> some;
+        std::vector<ViewChoice> views;
+        for (const std::uint32_t i : indices) {
+          some.push_back(surfels[i]);
+          views.push_back(numbers.of(pairs[i]));
+        }
+        const PatchMatcher matcher(context, held.images, projtex::to_grid(held.cameras, grid),
+                                   patch_rules(match, held.noise_sigma), "refine_match_patches");
+        const std::vector<float> found = matcher.match(some, {}, views, {}).scores;
+        for (std::size_t k = 0; k < indices.size(); ++k) scores[indices[k]] = found[k];
+      });
   std::vector<Sightline> out;
   for (std::size_t i = 0; i < scores.size(); ++i) {
     if (scores[i] < options.least_score) continue;

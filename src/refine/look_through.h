@@ -8,9 +8,9 @@
 #include "core/describe.h"
 #include "core/grid.h"
 #include "gpu/context.h"
-#include "projtex/photographs.h"
 #include "refine/displacement.h"
 #include "refine/match.h"
+#include "refine/matching_photographs.h"
 #include "refine/view_choice.h"
 
 namespace photohull::refine {
@@ -51,7 +51,7 @@ struct Sightline {
 /// nearest in direction that it was matched in.
 std::vector<Sightline> find_sightlines(gpu::Context& context, const GridSpec& grid,
                                        const KnownSurface& known,
-                                       const projtex::Photographs& photographs,
+                                       const MatchingPhotographs& photographs,
                                        const MatchOptions& match, const LookOptions& options);
 
 /// Takes out of the volume what enough lines of sight pass through, and then, a few times, voxels

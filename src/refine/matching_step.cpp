@@ -55,7 +55,7 @@ class MatchingStep {
     samples_ = matches.samples;
     return {grid_,
             {positions_, bends, texture_, peaks_, choices_, before_},
-            job_.photographs.cameras,
+            job_.finest_cameras(),
             options_.settle};
   }
 
@@ -64,7 +64,7 @@ class MatchingStep {
     KnownSurface known = known_surface(positions_, mesh_.normals, peaks_, choices_, options_.look);
     choices_ = {};
     give_back(mesh_);
-    sightlines_ = find_sightlines(job_.context, grid_, known, job_.photographs, options_.match,
+    sightlines_ = find_sightlines(job_.context, grid_, known, job_.matching(grid_), options_.match,
                                   options_.look);
     known_positions_ = std::move(known.positions);
   }

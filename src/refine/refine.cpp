@@ -210,7 +210,8 @@ SparseVolume refine_surface(gpu::Context& context, const RefineScene& scene,
                 scene.hull_at,
                 {scene.cameras, scene.silhouettes},
                 {scene.images, scene.cameras, options.noise_sigma},
-                options};
+                options,
+                scene.larger};
   job.options.match = fit_angles(scene.cameras, scene.finest.bounds().center(), options.match);
   std::vector<GridSpec> grids =
       grids_to(scene.finest, scene.cameras, job.is_bounded(), options.levels);

@@ -14,6 +14,7 @@
 #include "core/progress.h"
 #include "gpu/context.h"
 #include "projtex/image_set.h"
+#include "projtex/out_of_core.h"
 #include "refine/close_unseen.h"
 #include "refine/displacement.h"
 #include "refine/fit_patches.h"
@@ -169,6 +170,8 @@ struct RefineScene {
   std::span<const carving::Silhouette> silhouettes;  ///< one a camera, parts may be empty
   const projtex::ImageSet& images;                   ///< one a camera
   std::span<const Camera> cameras;
+  /// The same views' photographs, larger, for levels whose voxels ask for them; null: none.
+  projtex::OutOfCorePhotographs* larger = nullptr;
 };
 
 /// The surface that the photographs agree on, on the finest grid, from the hull inwards. A level

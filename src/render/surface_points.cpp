@@ -25,19 +25,15 @@ void subdivide(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, int s
 
 }  // namespace
 
-std::vector<SurfacePoint> to_voxels(const GridSpec& grid, const TriMesh& mesh) {
-  return to_voxels(grid, mesh, 0, mesh.positions.size());
-}
-
-std::vector<SurfacePoint> to_voxels(const GridSpec& grid, const TriMesh& mesh, std::size_t first,
-                                    std::size_t count) {
-  std::vector<SurfacePoint> out(count);
+SurfacePoint to_voxels(const GridSpec& grid, const TriMesh& mesh, std::size_t vertex) {
   const glm::dvec3 offset = (mesh.origin - grid.origin) / grid.voxel_size;
   const double scale = 1.0 / grid.voxel_size;
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const glm::vec3 voxel(scale * glm::dvec3(mesh.positions[first + i]) + offset);
-    out[i] = {voxel, mesh.normals[first + i]};
-  }
+  return {glm::vec3(scale * glm::dvec3(mesh.positions[vertex]) + offset), mesh.normals[vertex]};
+}
+
+std::vector<SurfacePoint> to_voxels(const GridSpec& grid, const TriMesh& mesh) {
+  std::vector<SurfacePoint> out(mesh.positions.size());
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = to_voxels(grid, mesh, i);
   return out;
 }
 

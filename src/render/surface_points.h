@@ -21,9 +21,8 @@ struct SurfacePoint {
 
 /// The mesh's vertices in voxel coordinates.
 std::vector<SurfacePoint> to_voxels(const GridSpec& grid, const TriMesh& mesh);
-/// Of `count` vertices from `first` on.
-std::vector<SurfacePoint> to_voxels(const GridSpec& grid, const TriMesh& mesh, std::size_t first,
-                                    std::size_t count);
+/// One of them.
+SurfacePoint to_voxels(const GridSpec& grid, const TriMesh& mesh, std::size_t vertex);
 
 /// Points on the triangles that have an edge longer than kPointSpacing, a voxel apart or less, with
 /// normals across the triangles, of any length; the corners are left out.

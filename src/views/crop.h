@@ -12,4 +12,7 @@ namespace photohull {
 /// on its image, stays as it is.
 void crop_to_box(const Box& box, int margin, PreparedView& view);
 
+/// The intrinsics that this gives a view of the camera.
+Intrinsics cropped_intrinsics(const Box& box, int margin, const Camera& camera);
+
 }  // namespace photohull

@@ -325,6 +325,11 @@ Intrinsics centred_square(const Intrinsics& source) {
 
 }  // namespace
 
+Intrinsics pinhole_intrinsics(const Intrinsics& source, const Distortion& distortion,
+                              double max_growth) {
+  return is_pinhole(distortion) ? source : undistorted_intrinsics(source, distortion, max_growth);
+}
+
 void undistort(const Distortion& distortion, double max_growth, PreparedView& view) {
   if (is_pinhole(distortion)) return;
   const LensMap map(view.camera.intrinsics, distortion, max_growth);

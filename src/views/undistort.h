@@ -23,6 +23,10 @@ std::optional<glm::dvec2> undistort_point(const Distortion& distortion,
 Intrinsics undistorted_intrinsics(const Intrinsics& source, const Distortion& distortion,
                                   double max_growth);
 
+/// Those that undistort() gives a view: without distortion the source's.
+Intrinsics pinhole_intrinsics(const Intrinsics& source, const Distortion& distortion,
+                              double max_growth);
+
 /// Resamples the image (bicubic, in linear light) and its mask (bilinear) to
 /// undistorted_intrinsics() and sets view.camera to them. Pixels that the photograph does not
 /// show get alpha 0 and coverage 255: they are unknown. Without distortion nothing happens.

@@ -1,5 +1,6 @@
 // How large photographs are read: the rule, its limits, and what becomes of cameras and tracks.
 #include "pipeline/image_scale.h"
+#include "pipeline/larger_photographs.h"
 
 #include <gtest/gtest.h>
 
@@ -201,6 +202,30 @@ TEST_F(PlanJob, MemoryAsksForSmallerOnesUnlessForced) {
   EXPECT_EQ(plan(whole.cost.bytes - 1).scales[0], 1);
 }
 
+TEST_F(PlanJob, WhereMemoryIsShortSomePhotographsAreHeldAsLargeAsTheyAreWanted) {
+  const Plan whole = plan(kNoLimit);
+  EXPECT_EQ(whole.held_bytes, 0);
+  const Plan less = plan(whole.cost.bytes - 1);
+  EXPECT_EQ(less.scales[0], 0.5);
+  EXPECT_GT(less.held_bytes, 0);
+  EXPECT_EQ(less.grid.voxel_size, whole.grid.voxel_size) << "they follow the wanted pixels";
+  options_.resolution = 110;
+  options_.image_scale = 0.5;
+  const std::int64_t half = plan(kNoLimit).cost.bytes;
+  options_.image_scale.reset();
+  const auto fewest = std::int64_t(kFewestHeld * held_bytes(1600 * 1200));
+  const Plan some = plan(half + fewest + (1 << 20));
+  EXPECT_EQ(some.scales[0], 0.5);
+  EXPECT_EQ(some.wanted[0], 1);
+  EXPECT_GT(some.held_bytes, fewest);
+  EXPECT_LE(some.cost.bytes, half + fewest + (1 << 20));
+  const Plan none = plan(half + fewest - (1 << 20));
+  EXPECT_EQ(none.scales[0], 0.5);
+  EXPECT_EQ(none.held_bytes, 0);
+  options_.method = Method::kHull;  // matches nothing
+  EXPECT_EQ(plan(half + fewest + (1 << 20)).held_bytes, 0);
+}
+
 TEST_F(PlanJob, VoxelsCountBeforeMasksAreSeen) {
   // Default voxels, and masks that may be made from the background or not.
   const auto reading = [&](std::int64_t limit, const Box& box = kBox, bool known = false) {
@@ -209,7 +234,10 @@ TEST_F(PlanJob, VoxelsCountBeforeMasksAreSeen) {
   const Plan whole = plan(kNoLimit);
   EXPECT_EQ(reading(kNoLimit).scales[0], 1);
   EXPECT_EQ(reading(kNoLimit).cost.bytes, whole.cost.bytes);
-  const Plan less = reading(whole.cost.bytes - 1);
+  options_.image_scale = 0.5;
+  const std::int64_t half = plan(kNoLimit).cost.bytes;
+  options_.image_scale.reset();
+  const Plan less = reading(half);
   EXPECT_EQ(less.scales, std::vector<double>(12, 0.5));
   EXPECT_EQ(less.wanted, std::vector<double>(12, 1.0));
   EXPECT_LT(less.cost.bytes, whole.cost.bytes);

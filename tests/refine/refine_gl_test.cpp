@@ -4,9 +4,11 @@
 
 #include <functional>
 #include <limits>
+#include <optional>
 
 #include "bowl_scene.h"
 #include "core/error.h"
+#include "refine/view_choice.h"
 #include "support/analytic_volumes.h"
 #include "support/gl_context.h"
 #include "volume/extract_mesh.h"
@@ -26,7 +28,7 @@ class RefineSurface : public testing::Test {
     const auto hull_at = [&](const GridSpec& grid) { return scene_.hull(grid, masks); };
     return refine_surface(context,
                           {scene_.grid(edge), hull_at, scene_.silhouettes(masks),
-                           projtex::ImageSet(scene_.views), scene_.cameras},
+                           projtex::ImageSet(scene_.views), scene_.cameras, larger_},
                           options_, progress_, &report_);
   }
 
@@ -34,6 +36,7 @@ class RefineSurface : public testing::Test {
   RefineOptions options_;
   Progress progress_;
   RefineReport report_;
+  projtex::OutOfCorePhotographs* larger_ = nullptr;
 };
 
 TEST_F(RefineSurface, WhatIsSettledStaysCoarseAndIsNotMatchedAgain) {
@@ -80,6 +83,48 @@ TEST_F(RefineSurface, SameDistancesInEveryRun) {
   const SparseVolume first = run(4), second = run(4);
   EXPECT_EQ(first.table, second.table);
   EXPECT_EQ(first.distance, second.distance);
+}
+
+/// The scene's photographs, of which it holds a few.
+class FewPhotographs : public projtex::OutOfCorePhotographs {
+ public:
+  FewPhotographs(const test::BowlScene& scene, int most, double noise_sigma)
+      : scene_(scene), most_(most), noise_sigma_(noise_sigma) {}
+
+  std::span<const Camera> cameras() const override { return scene_.cameras; }
+  int most() const override { return most_; }
+  double noise_sigma() const override { return noise_sigma_; }
+  const projtex::HeldPhotographs& hold(std::span<const int> numbers) override {
+    EXPECT_LE(int(numbers.size()), most_);
+    ++times_;
+    std::vector<PreparedView> views;
+    std::vector<Camera> cameras;
+    for (const int n : numbers) {
+      views.push_back(scene_.views[std::size_t(n)]);
+      cameras.push_back(scene_.cameras[std::size_t(n)]);
+    }
+    held_.emplace(projtex::ImageSet(views), std::move(cameras));
+    return *held_;
+  }
+  int times() const { return times_; }
+
+ private:
+  const test::BowlScene& scene_;
+  int most_;
+  double noise_sigma_;
+  int times_ = 0;
+  std::optional<projtex::HeldPhotographs> held_;
+};
+
+TEST_F(RefineSurface, HoldingAFewPhotographsAtATimeChangesNothing) {
+  constexpr int kEdge = 12;  // voxels that are narrower than the photographs' pixels
+  const SparseVolume all = run(kEdge);
+  FewPhotographs few(scene_, ViewChoice::kMostViews, options_.noise_sigma);
+  larger_ = &few;
+  const SparseVolume some = run(kEdge);
+  EXPECT_GT(few.times(), 3 * int(scene_.views.size()) / ViewChoice::kMostViews);
+  EXPECT_EQ(all.table, some.table);
+  EXPECT_EQ(all.distance, some.distance);
 }
 
 TEST_F(RefineSurface, WithoutMasks) {

@@ -15,6 +15,7 @@
 #include "pipeline/subject.h"
 #include "pipeline/tuning.h"
 #include "projtex/image_set.h"
+#include "projtex/out_of_core.h"
 
 namespace photohull::pipeline {
 
@@ -29,6 +30,7 @@ struct SurfaceJob {
       images;           ///< of the subject's views; null once the surface has its colours
   bool bounded = true;  ///< do silhouettes bound the surface?
   Progress& progress;
+  projtex::OutOfCorePhotographs* larger = nullptr;  ///< to match the surface in; may be null
 };
 
 struct Surface {
@@ -60,6 +62,8 @@ struct MethodEntry {
   bool by_silhouettes;
   /// Does it find surface without silhouettes, also around cameras?
   bool needs_no_silhouettes;
+  /// Can it match in photographs that are larger than those that are held (SurfaceJob::larger)?
+  bool matches_larger;
   /// Does it begin with the hull at the lattice's voxels?
   bool from_hull;
   const char* stage;  ///< its name for progress and the report; null: none, the hull is the result

@@ -11,6 +11,7 @@
 #include "pipeline/checkpoint_folder.h"
 #include "pipeline/checks.h"
 #include "pipeline/job_identity.h"
+#include "pipeline/larger_photographs.h"
 #include "pipeline/methods/method.h"
 #include "pipeline/stage_weights.h"
 #include "projtex/gpu_views.h"
@@ -108,7 +109,7 @@ Surface carve(const SurfaceJob& job, SparseVolume) {
     return hull;
   };
   out.volume = refine::refine_surface(
-      job.context, {job.subject.grid, hull_at, silhouettes, *job.images, cameras},
+      job.context, {job.subject.grid, hull_at, silhouettes, *job.images, cameras, job.larger},
       parameters_of(job).refine, job.progress, &counts, checkpoint ? &*checkpoint : nullptr);
   out.findings = findings_of(counts);
   check_found(job, out.volume, counts);
@@ -135,7 +136,7 @@ std::int64_t sharpen(const SurfaceJob& job, TriMesh& mesh) {
   const Subject& subject = job.subject;
   const double voxel = subject.grid.voxel_size;
   const double detail =
-      kDetail * carving::pixel_footprint(subject.box, projtex::cameras_of(subject.views));
+      kDetail * carving::pixel_footprint(subject.box, matched_cameras(subject.views));
   return std::int64_t(
       sharpen_edges(parameters_of(job).sharpen, voxel, std::max(detail, voxel), mesh));
 }
@@ -152,6 +153,7 @@ const MethodEntry kRefineMethod = {.method = Method::kRefine,
                                    .sweeps = false,
                                    .by_silhouettes = false,
                                    .needs_no_silhouettes = true,
+                                   .matches_larger = true,
                                    .from_hull = false,
                                    .stage = "refine",
                                    .weight = Weights::kRefine,

@@ -73,6 +73,7 @@ constexpr MethodEntry entry(Method method, const char* name) {
           .sweeps = true,
           .by_silhouettes = false,
           .needs_no_silhouettes = false,
+          .matches_larger = false,
           .from_hull = true,
           .stage = "photo",
           .weight = Weights::kPhoto,

@@ -19,13 +19,10 @@ constexpr std::size_t kBatch = std::size_t(1) << 18;  // surfels on the device a
 
 /// As render::to_voxels has them.
 std::vector<glm::vec3> positions_in_voxels(const GridSpec& grid, const TriMesh& mesh) {
-  constexpr std::size_t kPart = 4096;
   std::vector<glm::vec3> out;
   out.reserve(mesh.positions.size());
-  for (std::size_t first = 0; first < mesh.positions.size(); first += kPart)
-    for (const render::SurfacePoint& surfel :
-         render::to_voxels(grid, mesh, first, std::min(kPart, mesh.positions.size() - first)))
-      out.push_back(surfel.position);
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+    out.push_back(render::to_voxels(grid, mesh, i).position);
   return out;
 }
 
@@ -91,7 +88,7 @@ class Fitter {
 }  // namespace
 
 std::vector<PatchFit> fit_patches(gpu::Context& context, const MeshSurfels& surfels,
-                                  const projtex::Photographs& photographs,
+                                  const MatchingPhotographs& photographs,
                                   std::span<const ViewChoice> choices, const FitOptions& options) {
   const TriMesh& mesh = surfels.mesh;
   PHOTOHULL_CHECK_OP(choices.size(), ==, mesh.positions.size());
@@ -100,20 +97,25 @@ std::vector<PatchFit> fit_patches(gpu::Context& context, const MeshSurfels& surf
       curvatures(surfels.graph, positions, mesh.normals, options.most_bend);
   std::vector<PatchFit> out(positions.size());
   for (std::size_t i = 0; i < out.size(); ++i) out[i].normal = mesh.normals[i];
-  const std::vector<std::uint32_t> fitted = comparable(choices);
-  const Fitter fitter(context, photographs, surfels.grid, options);
   const std::size_t batch = gpu::batch_size(sizeof(shaders::MatchChoice), kBatch);
-  for (std::size_t first = 0; first < fitted.size(); first += batch) {
-    const auto part = std::span(fitted).subspan(first, std::min(batch, fitted.size() - first));
-    std::vector<render::SurfacePoint> points;
-    std::vector<glm::vec3> bent;
-    for (const std::uint32_t i : part) {
-      points.push_back({positions[i], mesh.normals[i]});
-      bent.push_back(bends[i]);
-    }
-    const std::vector<PatchFit> fits = fitter.fit(points, bent, to_device(choices, part));
-    for (std::size_t k = 0; k < part.size(); ++k) out[part[k]] = fits[k];
-  }
+  photographs.for_each(
+      choices, [&](const projtex::Photographs& held, std::span<const std::uint32_t> fitted,
+                   const HeldNumbers& numbers) {
+        const Fitter fitter(context, held, surfels.grid, options);
+        for (std::size_t first = 0; first < fitted.size(); first += batch) {
+          const auto part = fitted.subspan(first, std::min(batch, fitted.size() - first));
+          std::vector<render::SurfacePoint> points;
+          std::vector<glm::vec3> bent;
+          std::vector<ViewChoice> views;
+          for (const std::uint32_t i : part) {
+            points.push_back({positions[i], mesh.normals[i]});
+            bent.push_back(bends[i]);
+            views.push_back(numbers.of(choices[i]));
+          }
+          const std::vector<PatchFit> fits = fitter.fit(points, bent, to_device(views));
+          for (std::size_t k = 0; k < part.size(); ++k) out[part[k]] = fits[k];
+        }
+      });
   return out;
 }
 

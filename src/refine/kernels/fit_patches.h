@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "gpu/context.h"
-#include "projtex/photographs.h"
 #include "refine/fit_patches.h"
+#include "refine/matching_photographs.h"
 #include "refine/surface.h"
 #include "refine/view_choice.h"
 
@@ -17,7 +17,7 @@ namespace photohull::refine {
 /// views' patches from their mean, gain and offset of each eliminated [Goesele07; Furukawa10].
 /// Patches follow the mesh's curvature. Throws Error when the device cannot hold a batch.
 std::vector<PatchFit> fit_patches(gpu::Context& context, const MeshSurfels& surfels,
-                                  const projtex::Photographs& photographs,
+                                  const MatchingPhotographs& photographs,
                                   std::span<const ViewChoice> choices, const FitOptions& options);
 
 }  // namespace photohull::refine

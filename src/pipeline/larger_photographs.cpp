@@ -1,0 +1,199 @@
+#include "pipeline/larger_photographs.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/error.h"
+#include "core/image_scale.h"
+#include "masks/masks.h"
+#include "photo/noise.h"
+#include "pipeline/place_lattice.h"
+#include "views/crop.h"
+#include "views/photometric_samples.h"
+#include "views/prepare_views.h"
+#include "views/undistort.h"
+
+namespace photohull::pipeline {
+namespace {
+
+using Encoding = ColourImage::Encoding;
+
+constexpr std::size_t kDecodedAtOnce = 4;  // photographs, in parallel
+constexpr std::size_t kNoisy = 5;          // photographs that tell the noise
+constexpr double kMipChain = 4.0 / 3;
+
+/// The intrinsics of `k`, which are of a photograph read at `from` of its size, at `to` of it.
+Intrinsics at_scale(Intrinsics k, double from, double to) {
+  const double ratio = to / from;
+  const glm::dvec2 principal = scaled_pixel({k.cx, k.cy}, ratio);
+  k.width = int(std::lround(k.width * ratio));
+  k.height = int(std::lround(k.height * ratio));
+  k.fx *= ratio, k.fy *= ratio, k.skew *= ratio;
+  k.cx = principal.x, k.cy = principal.y;
+  return k;
+}
+
+/// One photograph, and what is done to it.
+struct Entry {
+  SourceView source;  ///< at the scale that it is read at
+  Camera camera;      ///< of the result
+  double scale = 1, sharpness = 1;
+  PhotometricCalibration gains;  ///< of it alone; of no views where there are none
+};
+
+class LargerPhotographs : public projtex::OutOfCorePhotographs {
+ public:
+  LargerPhotographs(const PhotographReader& reader, const Subject& subject,
+                    const std::optional<PhotometricCalibration>& gains, std::optional<double> noise,
+                    const Progress& progress)
+      : reader_(reader), box_(subject.box), progress_(progress) {
+    const std::vector<int> lenses = shared_lenses(frames_of(subject.views));
+    for (std::size_t i = 0; i < subject.views.size(); ++i) {
+      const PreparedView& view = subject.views[i];
+      Entry entry = entry_of(view);
+      if (gains) {
+        entry.gains.views = {gains->views[i]};
+        entry.gains.vignetting = {gains->vignetting[std::size_t(lenses[i])]};
+      }
+      if (view.image.encoding == Encoding::kLinearHalf) encoding_ = Encoding::kLinearHalf;
+      cameras_.push_back(entry.camera);
+      entries_.push_back(std::move(entry));
+    }
+    const glm::ivec2 size = projtex::array_size(cameras_);
+    const double bytes =
+        held_bytes(double(size.x) * size.y) * (encoding_ == Encoding::kLinearHalf ? 2 : 1);
+    most_ = std::max(kFewestHeld,
+                     int(std::min(double(subject.held_bytes) / bytes, double(entries_.size()))));
+    noise_sigma_ =
+        std::max(noise ? *noise / 255 * largest_scale() : measured_noise(), kRoundingNoise);
+  }
+
+  std::span<const Camera> cameras() const override { return cameras_; }
+  int most() const override { return most_; }
+  double noise_sigma() const override { return noise_sigma_; }
+
+  const projtex::HeldPhotographs& hold(std::span<const int> numbers) override {
+    if (held_ && std::ranges::equal(numbers, numbers_)) return *held_;
+    held_.reset();
+    numbers_.assign(numbers.begin(), numbers.end());
+    std::vector<Camera> cameras;
+    for (const int n : numbers) cameras.push_back(cameras_[std::size_t(n)]);
+    // As large as for all photographs: what is sampled does not depend on which are held.
+    projtex::ImageSet images(projtex::array_size(cameras_), int(numbers.size()), encoding_);
+    for (std::size_t first = 0; first < numbers.size(); first += kDecodedAtOnce) {
+      progress_.check_cancelled();
+      const auto some = numbers.subspan(first, std::min(kDecodedAtOnce, numbers.size() - first));
+      const std::vector<PreparedView> views = read_all(some);
+      for (std::size_t k = 0; k < views.size(); ++k) images.put(int(first + k), views[k]);
+    }
+    images.complete();
+    held_.emplace(std::move(images), std::move(cameras));
+    return *held_;
+  }
+
+ private:
+  Entry entry_of(const PreparedView& view) const {
+    Entry out;
+    out.source = view.source;
+    out.scale = view.matched_scale, out.sharpness = view.sharpness;
+    Intrinsics& k = out.source.camera.intrinsics;
+    k = at_scale(k, view.scale, view.matched_scale);
+    // Exactly, where the smaller photograph's last pixels covered less than others.
+    const glm::ivec2 size = reader_.size(view.source.image);
+    k.width = scaled_length(size.x, out.scale), k.height = scaled_length(size.y, out.scale);
+    out.camera = view.camera;
+    out.camera.intrinsics =
+        pinhole_intrinsics(k, view.source.distortion, PrepareOptions().max_frame_growth);
+    out.camera.intrinsics = cropped_intrinsics(box_, kCropMargin, out.camera);
+    return out;
+  }
+
+  double largest_scale() const {
+    double largest = 0;
+    for (const Entry& entry : entries_) largest = std::max(largest, entry.scale);
+    return largest;
+  }
+
+  double measured_noise() const {
+    const std::size_t count = std::min(kNoisy, entries_.size());
+    std::vector<int> numbers;
+    for (std::size_t k = 0; k < count; ++k) numbers.push_back(int(k * entries_.size() / count));
+    std::vector<double> values;
+    for (const PreparedView& view : read_all(numbers))
+      values.push_back(estimate_image_noise(view.image));
+    std::ranges::nth_element(values, values.begin() + long(values.size() / 2));
+    return values[values.size() / 2];
+  }
+
+  std::vector<PreparedView> read_all(std::span<const int> numbers) const {
+    std::vector<PreparedView> out(numbers.size());
+    tbb::parallel_for(std::size_t(0), out.size(),
+                      [&](std::size_t k) { out[k] = read(entries_[std::size_t(numbers[k])]); });
+    return out;
+  }
+
+  PreparedView read(const Entry& entry) const {
+    PreparedView view;
+    view.name = entry.source.name;
+    view.source = entry.source;
+    view.camera = entry.source.camera;
+    view.sharpness = entry.sharpness;
+    view.image = reader_.image(entry.source.image, entry.scale);
+    const Intrinsics& k = view.camera.intrinsics;
+    if (view.image.width != k.width || view.image.height != k.height)
+      throw Error(concat(entry.source.image.string(), ": the photograph had ", k.width, " x ",
+                         k.height, " pixels when the job began, and has ", view.image.width, " x ",
+                         view.image.height, " now; start the job anew"));
+    make_opaque(view.image);
+    undistort(view.source.distortion, PrepareOptions().max_frame_growth, view);
+    crop_to_box(box_, kCropMargin, view);
+    if (!entry.gains.views.empty()) {
+      const std::span one(&view, 1);
+      apply_photometric(entry.gains, frames_of(one), {0}, one);
+    }
+    return view;
+  }
+
+  PhotographReader reader_;
+  Box box_;
+  const Progress& progress_;
+  std::vector<Entry> entries_;
+  std::vector<Camera> cameras_;
+  Encoding encoding_ = Encoding::kSrgb8;
+  int most_ = 0;
+  double noise_sigma_ = 0;
+  std::vector<int> numbers_;  // of those that are held
+  std::optional<projtex::HeldPhotographs> held_;
+};
+
+}  // namespace
+
+double held_bytes(double pixels) { return 4 * kMipChain * pixels; }
+
+std::int64_t fewest_held_bytes(std::span<const PreparedView> views) {
+  const glm::ivec2 size = projtex::array_size(matched_cameras(views));
+  return std::int64_t(kFewestHeld * held_bytes(double(size.x) * size.y));
+}
+
+std::vector<Camera> matched_cameras(std::span<const PreparedView> views) {
+  std::vector<Camera> out;
+  for (const PreparedView& view : views) {
+    out.push_back(view.camera);
+    if (view.matched_scale != view.scale)
+      out.back().intrinsics = at_scale(view.camera.intrinsics, view.scale, view.matched_scale);
+  }
+  return out;
+}
+
+std::unique_ptr<projtex::OutOfCorePhotographs> larger_photographs(
+    const PhotographReader& reader, const Subject& subject,
+    const std::optional<PhotometricCalibration>& gains, std::optional<double> noise,
+    const Progress& progress) {
+  if (subject.held_bytes == 0) return nullptr;
+  return std::make_unique<LargerPhotographs>(reader, subject, gains, noise, progress);
+}
+
+}  // namespace photohull::pipeline

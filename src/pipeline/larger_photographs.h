@@ -1,0 +1,40 @@
+// Photographs that are matched larger than memory holds all of them.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/prepared_view.h"
+#include "core/progress.h"
+#include "pipeline/photographs.h"
+#include "pipeline/subject.h"
+#include "projtex/out_of_core.h"
+#include "views/photometric.h"
+
+namespace photohull::pipeline {
+
+/// How few photographs a surface can be matched in part by part.
+inline constexpr int kFewestHeld = 8;
+
+/// Bytes that a held photograph of so many pixels takes, its mip levels among them.
+double held_bytes(double pixels);
+
+/// Those of as few as can be, at the scales that the views are matched at.
+std::int64_t fewest_held_bytes(std::span<const PreparedView> views);
+
+/// The views' cameras at the scales that they are matched at.
+std::vector<Camera> matched_cameras(std::span<const PreparedView> views);
+
+/// The subject's photographs at the scales that they are matched at, read anew whenever they are
+/// asked for: undistorted, cropped and divided by `gains` as its views are. `noise` is that of the
+/// files, 8-bit codes; nothing: it is measured. Null where the views are as large. Throws Error
+/// where a photograph cannot be read any more. Reader and progress outlive the result.
+std::unique_ptr<projtex::OutOfCorePhotographs> larger_photographs(
+    const PhotographReader& reader, const Subject& subject,
+    const std::optional<PhotometricCalibration>& gains, std::optional<double> noise,
+    const Progress& progress);
+
+}  // namespace photohull::pipeline

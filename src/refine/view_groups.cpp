@@ -1,0 +1,81 @@
+#include "refine/view_groups.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/error.h"
+
+namespace photohull::refine {
+namespace {
+
+using Members = std::vector<std::uint8_t>;  // by view: is it one?
+
+int count(const Members& members) { return std::accumulate(members.begin(), members.end(), 0); }
+
+int count_new(std::span<const int> views, const Members& members) {
+  return int(std::ranges::count_if(views, [&](int v) { return !members[std::size_t(v)]; }));
+}
+
+void add(std::span<const int> views, Members& members) {
+  for (const int v : views) members[std::size_t(v)] = 1;
+}
+
+std::vector<int> listed(const Members& members) {
+  std::vector<int> out;
+  for (std::size_t v = 0; v < members.size(); ++v)
+    if (members[v]) out.push_back(int(v));
+  return out;
+}
+
+/// Surfels of one reference view, in pieces where their views are too many.
+std::vector<ViewGroup> pieces_of(std::vector<std::uint32_t> surfels,
+                                 std::span<const ViewChoice> choices, int views, int most) {
+  std::vector<ViewGroup> out;
+  Members members;
+  for (const std::uint32_t i : surfels) {
+    const std::span<const int> own = choices[i].views.span();
+    if (members.empty() || count(members) + count_new(own, members) > most) {
+      if (!members.empty()) out.back().views = listed(members);
+      members.assign(std::size_t(views), 0);
+      out.emplace_back();
+    }
+    add(own, members);
+    out.back().surfels.push_back(i);
+  }
+  if (!out.empty()) out.back().views = listed(members);
+  return out;
+}
+
+}  // namespace
+
+std::vector<ViewGroup> group_by_views(std::span<const ViewChoice> choices, int views, int most) {
+  PHOTOHULL_CHECK_OP(most, >=, ViewChoice::kMostViews);
+  std::vector<std::vector<std::uint32_t>> by_reference{std::size_t(views)};
+  for (std::uint32_t i = 0; i < choices.size(); ++i)
+    if (choices[i].comparable()) by_reference[std::size_t(choices[i].reference())].push_back(i);
+  std::vector<ViewGroup> left;
+  for (std::vector<std::uint32_t>& surfels : by_reference)
+    for (ViewGroup& piece : pieces_of(std::move(surfels), choices, views, most))
+      left.push_back(std::move(piece));
+  std::vector<ViewGroup> out;
+  Members members{std::size_t(views)};
+  while (!left.empty()) {
+    // The one that brings the fewest views besides those of the group, or of the group before.
+    const auto next = std::ranges::min_element(
+        left, {}, [&](const ViewGroup& piece) { return count_new(piece.views, members); });
+    if (out.empty() || count(members) + count_new(next->views, members) > most) {
+      if (!out.empty()) out.back().views = listed(members);
+      members.assign(std::size_t(views), 0);
+      out.emplace_back();
+    }
+    add(next->views, members);
+    std::vector<std::uint32_t>& all = out.back().surfels;
+    all.insert(all.end(), next->surfels.begin(), next->surfels.end());
+    left.erase(next);
+  }
+  if (!out.empty()) out.back().views = listed(members);
+  for (ViewGroup& group : out) std::ranges::sort(group.surfels);
+  return out;
+}
+
+}  // namespace photohull::refine

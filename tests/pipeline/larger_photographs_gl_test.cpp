@@ -1,0 +1,143 @@
+// Photographs that are read again, larger, to match the surface in.
+#include "pipeline/larger_photographs.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "pipeline/image_scale.h"
+#include "pipeline/photometric.h"
+#include "pipeline/place_lattice.h"
+#include "pipeline/reconstruct.h"
+#include "projtex/gpu_views.h"
+#include "support/gl_context.h"
+#include "support/ray_cast.h"
+#include "support/scratch_folder.h"
+#include "synth/synthesize.h"
+#include "views/prepare_views.h"
+
+namespace photohull::pipeline {
+namespace {
+
+constexpr int kWidth = 203, kHeight = 150, kViews = 10;
+
+/// Photographs by a lens that distorts, of a box that fills their middle.
+class LargerPhotographs : public testing::Test {
+ protected:
+  LargerPhotographs() {
+    test::Rng rng(5);
+    std::vector<MemoryPhotograph> all;
+    for (int i = 0; i < kViews; ++i) {
+      MemoryPhotograph p;
+      p.name = std::to_string(i);
+      const double angle = 2 * M_PI * i / kViews;
+      p.camera = test::look_at(glm::dvec3(6 * std::cos(angle), 6 * std::sin(angle), 1.5),
+                               glm::dvec3(0), 300, kWidth, kHeight);
+      p.image = test::random_image(rng, kWidth, kHeight);
+      if (i % 2 == 0)
+        p.distortion = {DistortionModel::kBrown, {-0.15, 0.05, 0.002, -0.001, 0, 0, 0, 0}};
+      all.push_back(std::move(p));
+    }
+    photographs_ = photographs_in_memory(std::move(all), box_);
+    for (int i = 0; i < kViews; ++i) {
+      gains_.views.push_back(
+          {glm::dvec3(1 + 0.02 * i, 1, 1 - 0.01 * i), glm::dvec3(0.01), 9, true});
+    }
+    gains_.vignetting = {0.2};
+  }
+
+  /// As prepare_scene and the stages after it leave them.
+  std::vector<PreparedView> views_at(double scale) {
+    Scene scene = photographs_.scene;
+    const std::vector<double> scales(kViews, scale);
+    scale_scene(scales, scene);
+    Progress silent;
+    PrepareOptions options;
+    options.masks = MaskPolicy::kNone;
+    PreparedViews prepared = prepare_views(
+        scene, reduced_loader(photographs_.reader, photographs_.scene, scales), options, silent);
+    for (PreparedView& view : prepared.views) view.scale = scale, view.matched_scale = 1;
+    return divide_by_gains(crop_views(std::move(prepared.views), box_), gains_);
+  }
+
+  std::unique_ptr<projtex::OutOfCorePhotographs> larger(std::optional<double> noise = 1) {
+    test::gl_context();
+    subject_.box = box_;
+    subject_.views = views_at(0.5);
+    subject_.held_bytes = 1;
+    return larger_photographs(photographs_.reader, subject_, gains_, noise, silent_);
+  }
+
+  Box box_{glm::dvec3(-0.7), glm::dvec3(0.7)};
+  Photographs photographs_;
+  PhotometricCalibration gains_;
+  Subject subject_;
+  Progress silent_;
+};
+
+TEST_F(LargerPhotographs, AreWhatReadingThemLargeAtOnceGives) {
+  const auto some = larger();
+  const std::vector<PreparedView> all = views_at(1);
+  const std::vector<int> numbers = {7, 2, 3};
+  const projtex::HeldPhotographs& held = some->hold(numbers);
+  ASSERT_EQ(held.images.layers(), 3);
+  for (int k = 0; k < 3; ++k) {
+    const PreparedView& view = all[std::size_t(numbers[std::size_t(k)])];
+    const Intrinsics &found = held.cameras[std::size_t(k)].intrinsics,
+                     &right = view.camera.intrinsics;
+    ASSERT_EQ(found.width, right.width);
+    ASSERT_EQ(found.height, right.height);
+    EXPECT_LT(found.width, kWidth) << "cropped to the box";
+    EXPECT_NEAR(found.fx, right.fx, 1e-9);
+    EXPECT_NEAR(found.cx, right.cx, 1e-9);
+    EXPECT_NEAR(found.cy, right.cy, 1e-9);
+    std::vector<std::uint8_t> pixels(view.image.bytes.size());
+    held.images.texture().read_layer(k, right.width, right.height, pixels.size(), pixels.data());
+    EXPECT_EQ(pixels, view.image.bytes) << view.name;
+  }
+  EXPECT_EQ(some->noise_sigma(), 1.0 / 255);
+  EXPECT_EQ(some->most(), kFewestHeld) << "however little room there is";
+}
+
+TEST_F(LargerPhotographs, TheirNoiseIsMeasured) {
+  EXPECT_GT(larger(std::nullopt)->noise_sigma(), 1.0 / 255) << "pixels are random";
+}
+
+TEST_F(LargerPhotographs, NoneAreReadWhereTheViewsAreAsLarge) {
+  subject_.views = views_at(1);
+  EXPECT_EQ(larger_photographs(photographs_.reader, subject_, {}, 1, silent_), nullptr);
+}
+
+TEST_F(LargerPhotographs, OneThatChangedMeanwhileIsNamed) {
+  const auto some = larger();
+  const auto read = photographs_.reader.image;
+  photographs_.reader.image = [&](const std::filesystem::path& path, double) {
+    return read(path, 0.25);
+  };
+  const auto again = larger_photographs(photographs_.reader, subject_, gains_, 1, silent_);
+  EXPECT_THAT([&] { again->hold(std::vector<int>{4}); },
+              testing::ThrowsMessage<Error>(testing::HasSubstr("4: the photograph had 203 x 150")));
+}
+
+/// A job that may take so much less than the photographs would that it holds them smaller.
+TEST(LargerPhotographsJob, MatchTheSurfaceWhereMemoryIsShort) {
+  const ScratchFolder folder;
+  Progress silent;
+  synth::Spec spec = synth::parse_spec(R"({"geometry": {"shape": "block"}, "truth_samples": 100,
+      "material": {"faces": true, "contrast": 0.6, "size": 0.02},
+      "cameras": {"rings": [{"count": 8, "elevation": 15}, {"count": 4, "elevation": 50}]}})",
+                                       "test", "");
+  spec.image = {1296, 1000, 1};
+  synth::synthesize(spec, folder.path() / "scene", silent);
+  const Photographs photographs = load_photographs(folder.path() / "scene");
+  ReconstructOptions options;
+  options.resolution = 160;
+  options.max_memory = (std::int64_t(285) << 20) + std::int64_t(14.8 * 12 * 1296 * 1000) - 1;
+  const Reconstruction some = Reconstructor(options).run(photographs, silent);
+  EXPECT_EQ(some.report.photographs.smallest_scale, 0.5);
+  EXPECT_EQ(some.report.photographs.matched_scale, 1);
+  EXPECT_THAT(some.report.warnings, testing::Contains(testing::HasSubstr("held at 1/2 of their")));
+}
+
+}  // namespace
+}  // namespace photohull::pipeline
