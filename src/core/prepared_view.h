@@ -32,7 +32,7 @@ struct PreparedView {
   /// Share of fine detail beside views of the same (views/sharpness.h): 1 as sharp as they are.
   double sharpness = 1;
   SourceView source{};  ///< the photograph as the scene lists it, at the scale that it was read at
-  double scale = 1;          ///< that: of the file's size, (0, 1]
+  double scale = 1;     ///< that: of the file's size, (0, 1]
   double matched_scale = 1;  ///< larger where only some photographs are held as large at a time
   ViewSilhouette silhouette{};
 };

@@ -76,25 +76,49 @@ class LargerPhotographs : public projtex::OutOfCorePhotographs {
   double noise_sigma() const override { return noise_sigma_; }
 
   const projtex::HeldPhotographs& hold(std::span<const int> numbers) override {
-    if (held_ && std::ranges::equal(numbers, numbers_)) return *held_;
-    held_.reset();
-    numbers_.assign(numbers.begin(), numbers.end());
-    std::vector<Camera> cameras;
-    for (const int n : numbers) cameras.push_back(cameras_[std::size_t(n)]);
-    // As large as for all photographs: what is sampled does not depend on which are held.
-    projtex::ImageSet images(projtex::array_size(cameras_), int(numbers.size()), encoding_);
-    for (std::size_t first = 0; first < numbers.size(); first += kDecodedAtOnce) {
-      progress_.check_cancelled();
-      const auto some = numbers.subspan(first, std::min(kDecodedAtOnce, numbers.size() - first));
-      const std::vector<PreparedView> views = read_all(some);
-      for (std::size_t k = 0; k < views.size(); ++k) images.put(int(first + k), views[k]);
+    PHOTOHULL_CHECK_OP(int(numbers.size()), <=, most_);
+    if (!held_) make_room();
+    ++turn_;
+    std::vector<int> missing;
+    for (const int n : numbers) {
+      const int layer = held_->layers[std::size_t(n)];
+      if (layer < 0)
+        missing.push_back(n);
+      else
+        used_[std::size_t(layer)] = turn_;
     }
-    images.complete();
-    held_.emplace(std::move(images), std::move(cameras));
+    for (std::size_t first = 0; first < missing.size(); first += kDecodedAtOnce) {
+      progress_.check_cancelled();
+      const auto some =
+          std::span(missing).subspan(first, std::min(kDecodedAtOnce, missing.size() - first));
+      const std::vector<PreparedView> views = read_all(some);
+      for (std::size_t k = 0; k < views.size(); ++k) put(some[k], views[k]);
+    }
+    if (!missing.empty()) held_->images.complete();
     return *held_;
   }
 
  private:
+  void make_room() {
+    // As large as for all photographs: what is sampled does not depend on which are held.
+    const int layers = std::min(most_, int(cameras_.size()));
+    held_.emplace(projtex::ImageSet(projtex::array_size(cameras_), layers, encoding_),
+                  std::vector<Camera>(std::size_t(layers), cameras_.front()),
+                  std::vector<int>(cameras_.size(), -1));
+    used_.assign(std::size_t(layers), 0);
+  }
+
+  /// In place of the one that was not asked for the longest.
+  void put(int number, const PreparedView& view) {
+    const auto oldest = std::ranges::min_element(used_);
+    const int layer = int(oldest - used_.begin());
+    *oldest = turn_;
+    std::ranges::replace(held_->layers, layer, -1);
+    held_->layers[std::size_t(number)] = layer;
+    held_->cameras[std::size_t(layer)] = view.camera;
+    held_->images.put(layer, view);
+  }
+
   Entry entry_of(const PreparedView& view) const {
     Entry out;
     out.source = view.source;
@@ -165,8 +189,9 @@ class LargerPhotographs : public projtex::OutOfCorePhotographs {
   Encoding encoding_ = Encoding::kSrgb8;
   int most_ = 0;
   double noise_sigma_ = 0;
-  std::vector<int> numbers_;  // of those that are held
   std::optional<projtex::HeldPhotographs> held_;
+  std::vector<std::int64_t> used_;  // by layer: the turn in which it was asked for
+  std::int64_t turn_ = 0;
 };
 
 }  // namespace

@@ -11,8 +11,9 @@ namespace photohull::projtex {
 
 /// Some photographs on the device.
 struct HeldPhotographs {
-  ImageSet images;
-  std::vector<Camera> cameras;  ///< one an image
+  ImageSet images;              ///< in no order; there may be layers that hold none
+  std::vector<Camera> cameras;  ///< one a layer
+  std::vector<int> layers;      ///< of every photograph, by its number; -1: it is not held
 };
 
 /// Photographs of which the device holds a few at a time. Who needs all of them works part by part.
@@ -26,8 +27,9 @@ class OutOfCorePhotographs {
   virtual double noise_sigma() const = 0;
   /// How many are held at once.
   virtual int most() const = 0;
-  /// Those with these numbers, in this order; what was held before goes. Throws Error where one
-  /// cannot be read or the device cannot hold them, Cancelled.
+  /// Those with these numbers, most() at most. What was held before goes where there is no room for
+  /// both, what was not asked for the longest first. Throws Error where one cannot be read or the
+  /// device cannot hold them, Cancelled.
   virtual const HeldPhotographs& hold(std::span<const int> numbers) = 0;
 };
 

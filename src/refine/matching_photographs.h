@@ -18,14 +18,14 @@ class HeldNumbers {
  public:
   /// All are held, in their order.
   HeldNumbers() = default;
-  /// Those of `views`, of `count` in all.
-  HeldNumbers(std::span<const int> views, std::size_t count);
+  /// `layers`: by view, as HeldPhotographs has them.
+  explicit HeldNumbers(std::span<const int> layers) : layers_(layers.begin(), layers.end()) {}
 
   /// The same views in the numbers of what is held; `hidden` stays.
   ViewChoice of(ViewChoice choice) const;
 
  private:
-  std::vector<int> places_;  // by view
+  std::vector<int> layers_;
 };
 
 /// What it refers to outlives it.
@@ -52,7 +52,7 @@ class MatchingPhotographs {
     for (const ViewGroup& group : group_by_views(choices, int(cameras_.size()), some_->most())) {
       const projtex::HeldPhotographs& held = some_->hold(group.views);
       work(projtex::Photographs{held.images, held.cameras, noise_sigma_}, std::span(group.surfels),
-           HeldNumbers(group.views, cameras_.size()));
+           HeldNumbers(held.layers));
     }
   }
 

@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <mutex>
+
 #include "core/error.h"
 #include "pipeline/image_scale.h"
 #include "pipeline/photometric.h"
@@ -80,10 +83,11 @@ TEST_F(LargerPhotographs, AreWhatReadingThemLargeAtOnceGives) {
   const std::vector<PreparedView> all = views_at(1);
   const std::vector<int> numbers = {7, 2, 3};
   const projtex::HeldPhotographs& held = some->hold(numbers);
-  ASSERT_EQ(held.images.layers(), 3);
-  for (int k = 0; k < 3; ++k) {
-    const PreparedView& view = all[std::size_t(numbers[std::size_t(k)])];
-    const Intrinsics &found = held.cameras[std::size_t(k)].intrinsics,
+  for (const int n : numbers) {
+    const int layer = held.layers[std::size_t(n)];
+    ASSERT_GE(layer, 0);
+    const PreparedView& view = all[std::size_t(n)];
+    const Intrinsics &found = held.cameras[std::size_t(layer)].intrinsics,
                      &right = view.camera.intrinsics;
     ASSERT_EQ(found.width, right.width);
     ASSERT_EQ(found.height, right.height);
@@ -92,11 +96,39 @@ TEST_F(LargerPhotographs, AreWhatReadingThemLargeAtOnceGives) {
     EXPECT_NEAR(found.cx, right.cx, 1e-9);
     EXPECT_NEAR(found.cy, right.cy, 1e-9);
     std::vector<std::uint8_t> pixels(view.image.bytes.size());
-    held.images.texture().read_layer(k, right.width, right.height, pixels.size(), pixels.data());
+    held.images.texture().read_layer(layer, right.width, right.height, pixels.size(),
+                                     pixels.data());
     EXPECT_EQ(pixels, view.image.bytes) << view.name;
   }
   EXPECT_EQ(some->noise_sigma(), 1.0 / 255);
   EXPECT_EQ(some->most(), kFewestHeld) << "however little room there is";
+}
+
+TEST_F(LargerPhotographs, WhatWasNotAskedForTheLongestGoesFirst) {
+  std::vector<std::string> read;
+  const auto image = photographs_.reader.image;
+  photographs_.reader.image = [&](const std::filesystem::path& path, double scale) {
+    static std::mutex mutex;
+    const std::scoped_lock lock(mutex);
+    read.push_back(path.string());
+    return image(path, scale);
+  };
+  const auto some = larger();
+  ASSERT_EQ(some->most(), 8);
+  const auto hold = [&](const std::vector<int>& numbers) {
+    read.clear();
+    const std::vector<int>& layers = some->hold(numbers).layers;
+    std::ranges::sort(read);
+    for (const int n : numbers) EXPECT_GE(layers[std::size_t(n)], 0);
+    return read;
+  };
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(hold({0, 1, 2, 3, 4, 5}), (Names{"0", "1", "2", "3", "4", "5"}));
+  EXPECT_EQ(hold({0, 6, 7}), (Names{"6", "7"}));
+  EXPECT_EQ(hold({1, 2}), Names());
+  EXPECT_EQ(hold({8, 9, 0}), (Names{"8", "9"})) << "in place of two of 3, 4 and 5";
+  EXPECT_EQ(hold({1, 2, 6, 7}), Names());
+  EXPECT_EQ(hold({3, 4, 5}).size(), 2u);
 }
 
 TEST_F(LargerPhotographs, TheirNoiseIsMeasured) {

@@ -99,11 +99,13 @@ class FewPhotographs : public projtex::OutOfCorePhotographs {
     ++times_;
     std::vector<PreparedView> views;
     std::vector<Camera> cameras;
+    std::vector<int> layers(scene_.views.size(), -1);
     for (const int n : numbers) {
+      layers[std::size_t(n)] = int(views.size());
       views.push_back(scene_.views[std::size_t(n)]);
       cameras.push_back(scene_.cameras[std::size_t(n)]);
     }
-    held_.emplace(projtex::ImageSet(views), std::move(cameras));
+    held_.emplace(projtex::ImageSet(views), std::move(cameras), std::move(layers));
     return *held_;
   }
   int times() const { return times_; }
