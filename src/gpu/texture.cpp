@@ -103,6 +103,16 @@ void TextureArray::upload(int layer, int width, int height, const void* pixels, 
   count_upload(std::size_t(width) * std::size_t(height) * f.bytes);
 }
 
+void TextureArray::copy_layer(const TextureArray& from, int layer) {
+  PHOTOHULL_CHECK(from.format_ == format_ && from.layers_ == 1 && from.levels_ == levels_);
+  PHOTOHULL_CHECK(from.width_ == width_ && from.height_ == height_);
+  for (int level = 0; level < levels_; ++level)
+    glCopyImageSubData(from.id_, GL_TEXTURE_2D_ARRAY, level, 0, 0, 0, id_, GL_TEXTURE_2D_ARRAY,
+                       level, 0, 0, layer, std::max(width_ >> level, 1),
+                       std::max(height_ >> level, 1), 1);
+  check_gl("copying a texture");
+}
+
 void TextureArray::read(int level, std::size_t bytes, void* pixels) const {
   const FormatInfo f = info_of(format_);
   glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);

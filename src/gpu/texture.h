@@ -38,6 +38,9 @@ class TextureArray {
   /// type of the format (bytes for 8-bit formats, halves for 16-bit ones, else floats or integers):
   /// drivers that make halves of floats do not all round to the nearest.
   void upload(int layer, int width, int height, const void* pixels, int level = 0);
+  /// All levels of a layer become those of the only layer of another array of the same format and
+  /// size.
+  void copy_layer(const TextureArray& from, int layer);
   void read(int level, std::size_t bytes, void* pixels) const;
   /// A rectangle at the origin of a layer's level 0, in the natural client type of the format.
   void read_layer(int layer, int width, int height, std::size_t bytes, void* pixels) const;

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/image_scale.h"
+#include "core/scratch_file.h"
 #include "masks/masks.h"
 #include "photo/noise.h"
 #include "pipeline/place_lattice.h"
@@ -41,15 +42,16 @@ struct Entry {
   SourceView source;  ///< at the scale that it is read at
   Camera camera;      ///< of the result
   double scale = 1, sharpness = 1;
-  PhotometricCalibration gains;  ///< of it alone; of no views where there are none
+  PhotometricCalibration gains;     ///< of it alone; of no views where there are none
+  std::optional<ColourImage> kept;  ///< on the disk: what it is, without pixels
 };
 
 class LargerPhotographs : public projtex::OutOfCorePhotographs {
  public:
   LargerPhotographs(const PhotographReader& reader, const Subject& subject,
-                    const std::optional<PhotometricCalibration>& gains, std::optional<double> noise,
-                    const Progress& progress)
-      : reader_(reader), box_(subject.box), progress_(progress) {
+                    const std::optional<PhotometricCalibration>& gains,
+                    const ReconstructOptions& options, const Progress& progress)
+      : reader_(reader), box_(subject.box), progress_(progress), scratch_(options.checkpoint) {
     const std::vector<int> lenses = shared_lenses(frames_of(subject.views));
     for (std::size_t i = 0; i < subject.views.size(); ++i) {
       const PreparedView& view = subject.views[i];
@@ -63,12 +65,13 @@ class LargerPhotographs : public projtex::OutOfCorePhotographs {
       entries_.push_back(std::move(entry));
     }
     const glm::ivec2 size = projtex::array_size(cameras_);
-    const double bytes =
-        held_bytes(double(size.x) * size.y) * (encoding_ == Encoding::kLinearHalf ? 2 : 1);
+    const int half = encoding_ == Encoding::kLinearHalf ? 2 : 1;
+    const double bytes = half * held_bytes(double(size.x) * size.y);
+    slot_ = std::int64_t(4) * half * size.x * size.y;
     most_ = std::max(kFewestHeld,
                      int(std::min(double(subject.held_bytes) / bytes, double(entries_.size()))));
-    noise_sigma_ =
-        std::max(noise ? *noise / 255 * largest_scale() : measured_noise(), kRoundingNoise);
+    noise_sigma_ = std::max(
+        options.noise ? *options.noise / 255 * largest_scale() : measured_noise(), kRoundingNoise);
   }
 
   std::span<const Camera> cameras() const override { return cameras_; }
@@ -94,7 +97,6 @@ class LargerPhotographs : public projtex::OutOfCorePhotographs {
       const std::vector<PreparedView> views = read_all(some);
       for (std::size_t k = 0; k < views.size(); ++k) put(some[k], views[k]);
     }
-    if (!missing.empty()) held_->images.complete();
     return *held_;
   }
 
@@ -141,7 +143,7 @@ class LargerPhotographs : public projtex::OutOfCorePhotographs {
     return largest;
   }
 
-  double measured_noise() const {
+  double measured_noise() {
     const std::size_t count = std::min(kNoisy, entries_.size());
     std::vector<int> numbers;
     for (std::size_t k = 0; k < count; ++k) numbers.push_back(int(k * entries_.size() / count));
@@ -152,14 +154,36 @@ class LargerPhotographs : public projtex::OutOfCorePhotographs {
     return values[values.size() / 2];
   }
 
-  std::vector<PreparedView> read_all(std::span<const int> numbers) const {
+  std::vector<PreparedView> read_all(std::span<const int> numbers) {
     std::vector<PreparedView> out(numbers.size());
     tbb::parallel_for(std::size_t(0), out.size(),
-                      [&](std::size_t k) { out[k] = read(entries_[std::size_t(numbers[k])]); });
+                      [&](std::size_t k) { out[k] = read(std::size_t(numbers[k])); });
     return out;
   }
 
-  PreparedView read(const Entry& entry) const {
+  /// From the disk as it was when it was read before, or else from its file.
+  PreparedView read(std::size_t number) {
+    Entry& entry = entries_[number];
+    const auto at = std::int64_t(number) * slot_;
+    PreparedView view;
+    view.name = entry.source.name;
+    view.camera = entry.camera;
+    view.sharpness = entry.sharpness;
+    if (entry.kept) {
+      view.image = *entry.kept;
+      view.image.bytes.resize(std::size_t(view.image.width) * std::size_t(view.image.height) *
+                              view.image.bytes_per_pixel());
+      if (scratch_.read(at, view.image.bytes.data(), view.image.bytes.size())) return view;
+    }
+    view = decode(entry);
+    if (scratch_.write(at, view.image.bytes.data(), view.image.bytes.size())) {
+      const ColourImage& image = view.image;
+      entry.kept = ColourImage{image.width, image.height, image.encoding, image.has_alpha, {}};
+    }
+    return view;
+  }
+
+  PreparedView decode(const Entry& entry) const {
     PreparedView view;
     view.name = entry.source.name;
     view.source = entry.source;
@@ -189,6 +213,8 @@ class LargerPhotographs : public projtex::OutOfCorePhotographs {
   Encoding encoding_ = Encoding::kSrgb8;
   int most_ = 0;
   double noise_sigma_ = 0;
+  ScratchFile scratch_;
+  std::int64_t slot_ = 0;  // bytes of a photograph there, at most
   std::optional<projtex::HeldPhotographs> held_;
   std::vector<std::int64_t> used_;  // by layer: the turn in which it was asked for
   std::int64_t turn_ = 0;
@@ -215,10 +241,14 @@ std::vector<Camera> matched_cameras(std::span<const PreparedView> views) {
 
 std::unique_ptr<projtex::OutOfCorePhotographs> larger_photographs(
     const PhotographReader& reader, const Subject& subject,
-    const std::optional<PhotometricCalibration>& gains, std::optional<double> noise,
-    const Progress& progress) {
+    const std::optional<PhotometricCalibration>& gains, const ReconstructOptions& options,
+    Progress& progress) {
   if (subject.held_bytes == 0) return nullptr;
-  return std::make_unique<LargerPhotographs>(reader, subject, gains, noise, progress);
+  auto out = std::make_unique<LargerPhotographs>(reader, subject, gains, options, progress);
+  if (const int most = out->most(); most < int(subject.views.size()))
+    progress.note(concat("there is room for ", most, " of ", subject.views.size(),
+                         " photographs as large as the surface is matched in"));
+  return out;
 }
 
 }  // namespace photohull::pipeline

@@ -10,6 +10,7 @@
 #include "core/prepared_view.h"
 #include "core/progress.h"
 #include "pipeline/photographs.h"
+#include "pipeline/reconstruct_options.h"
 #include "pipeline/subject.h"
 #include "projtex/out_of_core.h"
 #include "views/photometric.h"
@@ -28,13 +29,14 @@ std::int64_t fewest_held_bytes(std::span<const PreparedView> views);
 /// The views' cameras at the scales that they are matched at.
 std::vector<Camera> matched_cameras(std::span<const PreparedView> views);
 
-/// The subject's photographs at the scales that they are matched at, read anew whenever they are
-/// asked for: undistorted, cropped and divided by `gains` as its views are. `noise` is that of the
-/// files, 8-bit codes; nothing: it is measured. Null where the views are as large. Throws Error
-/// where a photograph cannot be read any more. Reader and progress outlive the result.
+/// The subject's photographs at the scales that they are matched at, read again whenever they are
+/// asked for: undistorted, cropped and divided by `gains` as its views are. A file without a name
+/// in options.checkpoint, if there is such a folder and room in it, keeps them for the next time.
+/// Notes how many are held. Null where the views are as large. Throws Error where a photograph
+/// cannot be read any more. Reader and progress outlive the result.
 std::unique_ptr<projtex::OutOfCorePhotographs> larger_photographs(
     const PhotographReader& reader, const Subject& subject,
-    const std::optional<PhotometricCalibration>& gains, std::optional<double> noise,
-    const Progress& progress);
+    const std::optional<PhotometricCalibration>& gains, const ReconstructOptions& options,
+    Progress& progress);
 
 }  // namespace photohull::pipeline

@@ -184,7 +184,7 @@ class Carver {
     run_.context->release_deleted();
     run_.clock.run("images", Weights::kImages, [&] {
       upload();
-      larger_ = larger_photographs(run_.photographs.reader, subject_, gains_, run_.options.noise,
+      larger_ = larger_photographs(run_.photographs.reader, subject_, gains_, run_.options,
                                    run_.progress);
     });
     if (alike_ && !method_.sweeps)

@@ -39,6 +39,10 @@ std::vector<std::uint8_t> pad(const std::uint8_t* pixels, const ColourImage& ima
   return out;
 }
 
+double usable_sharpness(const PreparedView& view) {
+  return std::min(view.sharpness / kUnblurred, 1.0);
+}
+
 Encoding encoding_of(std::span<const PreparedView> views) {
   const bool half = std::ranges::any_of(
       views, [](const PreparedView& v) { return v.image.encoding == Encoding::kLinearHalf; });
@@ -49,23 +53,39 @@ Encoding encoding_of(std::span<const PreparedView> views) {
 
 ImageSet::ImageSet(std::span<const PreparedView> views)
     : ImageSet(array_size(cameras_of(views)), int(views.size()), encoding_of(views)) {
-  for (std::size_t i = 0; i < views.size(); ++i) put(int(i), views[i]);
-  complete();
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    upload(views[i], int(i), texture_);
+    sharpness_[i] = usable_sharpness(views[i]);
+  }
+  texture_.generate_mipmaps();
 }
 
 ImageSet::ImageSet(const glm::ivec2& size, int layers, ColourImage::Encoding encoding)
     : encoding_(encoding), sharpness_(std::size_t(layers), 1) {
   PHOTOHULL_CHECK(layers > 0);
-  texture_ = gpu::TextureArray(encoding == Encoding::kLinearHalf ? gpu::TextureFormat::kRgba16f
-                                                                 : gpu::TextureFormat::kSrgb8Alpha8,
-                               size.x, size.y, layers, 0);
+  texture_ = room(size, layers);
 }
 
 void ImageSet::put(int layer, const PreparedView& view) {
+  // On its own: the mip levels of all the others would be made as well.
+  gpu::TextureArray one = room({texture_.width(), texture_.height()}, 1);
+  upload(view, 0, one);
+  one.generate_mipmaps();
+  texture_.copy_layer(one, layer);
+  sharpness_[std::size_t(layer)] = usable_sharpness(view);
+}
+
+gpu::TextureArray ImageSet::room(const glm::ivec2& size, int layers) const {
+  return {encoding_ == Encoding::kLinearHalf ? gpu::TextureFormat::kRgba16f
+                                             : gpu::TextureFormat::kSrgb8Alpha8,
+          size.x, size.y, layers, 0};
+}
+
+void ImageSet::upload(const PreparedView& view, int layer, gpu::TextureArray& to) const {
   const ColourImage& image = view.image;
   PHOTOHULL_CHECK(image.width == view.camera.intrinsics.width);
   PHOTOHULL_CHECK(image.height == view.camera.intrinsics.height);
-  const glm::ivec2 size(texture_.width(), texture_.height());
+  const glm::ivec2 size(to.width(), to.height());
   const bool half = encoding_ == Encoding::kLinearHalf;
   std::vector<std::uint8_t> converted, padded;
   const std::uint8_t* pixels = image.bytes.data();
@@ -77,11 +97,8 @@ void ImageSet::put(int layer, const PreparedView& view) {
     padded = pad(pixels, image, size, half ? 8 : 4);
     pixels = padded.data();
   }
-  texture_.upload(layer, size.x, size.y, pixels);
-  sharpness_[std::size_t(layer)] = std::min(view.sharpness / kUnblurred, 1.0);
+  to.upload(layer, size.x, size.y, pixels);
 }
-
-void ImageSet::complete() { texture_.generate_mipmaps(); }
 
 void ImageSet::lend(std::span<PreparedView> views) const {
   for (PreparedView& view : views)

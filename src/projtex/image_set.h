@@ -17,10 +17,9 @@ class ImageSet {
  public:
   /// Throws Error when the device cannot hold the images.
   explicit ImageSet(std::span<const PreparedView> views);
-  /// Room for images of up to `size` pixels, which put() fills one by one; complete() ends that.
+  /// Room for images of up to `size` pixels, which put() fills one by one.
   ImageSet(const glm::ivec2& size, int layers, ColourImage::Encoding encoding);
   void put(int layer, const PreparedView& view);
-  void complete();
 
   /// Frees the pixels of views that the device has as they are, as long as they are not needed on
   /// the host; but those with alpha, which says what a photograph shows.
@@ -36,6 +35,9 @@ class ImageSet {
   const std::vector<double>& sharpness() const { return sharpness_; }
 
  private:
+  gpu::TextureArray room(const glm::ivec2& size, int layers) const;
+  void upload(const PreparedView& view, int layer, gpu::TextureArray& to) const;
+
   gpu::TextureArray texture_;
   ColourImage::Encoding encoding_ = ColourImage::Encoding::kSrgb8;  // of the texture
   std::vector<double> sharpness_;

@@ -28,6 +28,7 @@ constexpr int kWidth = 203, kHeight = 150, kViews = 10;
 class LargerPhotographs : public testing::Test {
  protected:
   LargerPhotographs() {
+    options_.noise = 1;
     test::Rng rng(5);
     std::vector<MemoryPhotograph> all;
     for (int i = 0; i < kViews; ++i) {
@@ -42,6 +43,11 @@ class LargerPhotographs : public testing::Test {
       all.push_back(std::move(p));
     }
     photographs_ = photographs_in_memory(std::move(all), box_);
+    photographs_.reader.image = [this, read = photographs_.reader.image](
+                                    const std::filesystem::path& path, double scale) {
+      if (unreadable_) throw Error("it is not there");
+      return read(path, scale);
+    };
     for (int i = 0; i < kViews; ++i) {
       gains_.views.push_back(
           {glm::dvec3(1 + 0.02 * i, 1, 1 - 0.01 * i), glm::dvec3(0.01), 9, true});
@@ -63,25 +69,36 @@ class LargerPhotographs : public testing::Test {
     return divide_by_gains(crop_views(std::move(prepared.views), box_), gains_);
   }
 
-  std::unique_ptr<projtex::OutOfCorePhotographs> larger(std::optional<double> noise = 1) {
+  std::unique_ptr<projtex::OutOfCorePhotographs> larger() {
     test::gl_context();
     subject_.box = box_;
     subject_.views = views_at(0.5);
     subject_.held_bytes = 1;
-    return larger_photographs(photographs_.reader, subject_, gains_, noise, silent_);
+    return larger_photographs(photographs_.reader, subject_, gains_, options_, silent_);
   }
 
   Box box_{glm::dvec3(-0.7), glm::dvec3(0.7)};
   Photographs photographs_;
   PhotometricCalibration gains_;
   Subject subject_;
+  ReconstructOptions options_;
   Progress silent_;
+  bool unreadable_ = false;
 };
 
 TEST_F(LargerPhotographs, AreWhatReadingThemLargeAtOnceGives) {
+  const ScratchFolder folder;
+  options_.checkpoint = folder.path();
   const auto some = larger();
   const std::vector<PreparedView> all = views_at(1);
   const std::vector<int> numbers = {7, 2, 3};
+  // They are kept on the disk: read again, they need no files.
+  some->hold(numbers);
+  some->hold(std::vector<int>{0, 1, 4, 5, 6, 8, 9});
+  unreadable_ = true;
+  some->hold(std::vector<int>{0, 1, 4, 5, 6, 8, 9, 2});
+  some->hold(std::vector<int>{0, 1, 4, 5, 6, 8, 9, 7});
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 0);
   const projtex::HeldPhotographs& held = some->hold(numbers);
   for (const int n : numbers) {
     const int layer = held.layers[std::size_t(n)];
@@ -132,12 +149,13 @@ TEST_F(LargerPhotographs, WhatWasNotAskedForTheLongestGoesFirst) {
 }
 
 TEST_F(LargerPhotographs, TheirNoiseIsMeasured) {
-  EXPECT_GT(larger(std::nullopt)->noise_sigma(), 1.0 / 255) << "pixels are random";
+  options_.noise.reset();
+  EXPECT_GT(larger()->noise_sigma(), 1.0 / 255) << "pixels are random";
 }
 
 TEST_F(LargerPhotographs, NoneAreReadWhereTheViewsAreAsLarge) {
   subject_.views = views_at(1);
-  EXPECT_EQ(larger_photographs(photographs_.reader, subject_, {}, 1, silent_), nullptr);
+  EXPECT_EQ(larger_photographs(photographs_.reader, subject_, {}, options_, silent_), nullptr);
 }
 
 TEST_F(LargerPhotographs, OneThatChangedMeanwhileIsNamed) {
@@ -146,7 +164,7 @@ TEST_F(LargerPhotographs, OneThatChangedMeanwhileIsNamed) {
   photographs_.reader.image = [&](const std::filesystem::path& path, double) {
     return read(path, 0.25);
   };
-  const auto again = larger_photographs(photographs_.reader, subject_, gains_, 1, silent_);
+  const auto again = larger_photographs(photographs_.reader, subject_, gains_, options_, silent_);
   EXPECT_THAT([&] { again->hold(std::vector<int>{4}); },
               testing::ThrowsMessage<Error>(testing::HasSubstr("4: the photograph had 203 x 150")));
 }
