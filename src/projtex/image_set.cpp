@@ -68,10 +68,10 @@ ImageSet::ImageSet(const glm::ivec2& size, int layers, ColourImage::Encoding enc
 
 void ImageSet::put(int layer, const PreparedView& view) {
   // On its own: the mip levels of all the others would be made as well.
-  gpu::TextureArray one = room({texture_.width(), texture_.height()}, 1);
-  upload(view, 0, one);
-  one.generate_mipmaps();
-  texture_.copy_layer(one, layer);
+  if (one_.layers() == 0) one_ = room({texture_.width(), texture_.height()}, 1);
+  upload(view, 0, one_);
+  one_.generate_mipmaps();
+  texture_.copy_layer(one_, layer);
   sharpness_[std::size_t(layer)] = usable_sharpness(view);
 }
 

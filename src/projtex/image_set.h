@@ -39,6 +39,7 @@ class ImageSet {
   void upload(const PreparedView& view, int layer, gpu::TextureArray& to) const;
 
   gpu::TextureArray texture_;
+  gpu::TextureArray one_;  // what put() fills before it is copied
   ColourImage::Encoding encoding_ = ColourImage::Encoding::kSrgb8;  // of the texture
   std::vector<double> sharpness_;
 };

@@ -17,8 +17,9 @@ namespace {
 constexpr std::size_t kPart = std::size_t(1) << 19;  // surfels that are matched at once
 constexpr std::size_t kManySurfels = std::size_t(1) << 18;
 
-/// Where voxels are narrower than so many pixels of the photographs, larger ones are matched.
-constexpr double kFewestPixels = 1.5;
+/// Voxels that are narrower than so many pixels are matched in larger photographs at all levels;
+/// at the last one all are.
+constexpr double kFewestPixels = 0.75;
 
 /// Calls take(matcher, surfels, choices, indices) for parts of the vertices that are comparable,
 /// and puts what it says of them into place.
@@ -85,8 +86,8 @@ void give_back(const TriMesh& mesh) {
 }
 
 MatchingPhotographs RefineJob::matching(const GridSpec& grid) const {
-  if (larger && grid.voxel_size <
-                    kFewestPixels * carving::pixel_footprint(grid.bounds(), photographs.cameras))
+  const auto pixel = [&] { return carving::pixel_footprint(grid.bounds(), photographs.cameras); };
+  if (larger && (grid.voxel_size == finest_voxel || grid.voxel_size < kFewestPixels * pixel()))
     return MatchingPhotographs(*larger);
   return {photographs.images, photographs.cameras, photographs.noise_sigma};
 }

@@ -25,6 +25,7 @@ struct RefineJob {
   SilhouetteCones cones;
   projtex::Photographs photographs;
   RefineOptions options;
+  double finest_voxel = 0;  ///< of the last level; world units
   /// Of the same views, larger, for voxels that those do not suffice for; null: there are none.
   projtex::OutOfCorePhotographs* larger = nullptr;
 

@@ -211,6 +211,7 @@ SparseVolume refine_surface(gpu::Context& context, const RefineScene& scene,
                 {scene.cameras, scene.silhouettes},
                 {scene.images, scene.cameras, options.noise_sigma},
                 options,
+                scene.finest.voxel_size,
                 scene.larger};
   job.options.match = fit_angles(scene.cameras, scene.finest.bounds().center(), options.match);
   std::vector<GridSpec> grids =

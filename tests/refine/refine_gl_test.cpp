@@ -119,7 +119,7 @@ class FewPhotographs : public projtex::OutOfCorePhotographs {
 };
 
 TEST_F(RefineSurface, HoldingAFewPhotographsAtATimeChangesNothing) {
-  constexpr int kEdge = 12;  // voxels that are narrower than the photographs' pixels
+  constexpr int kEdge = 6;
   const SparseVolume all = run(kEdge);
   FewPhotographs few(scene_, ViewChoice::kMostViews, options_.noise_sigma);
   larger_ = &few;
