@@ -22,7 +22,9 @@ namespace {
 
 using Encoding = ColourImage::Encoding;
 
-constexpr std::size_t kDecodedAtOnce = 4;  // photographs, in parallel
+constexpr std::size_t kDecodedAtOnce = 2;  // photographs, in parallel
+constexpr double kDecodedBytes = 8;        // a pixel: as it comes, and with alpha
+constexpr double kPixelBytes = 4;          // of 8-bit photographs
 constexpr std::size_t kNoisy = 5;          // photographs that tell the noise
 constexpr double kMipChain = 4.0 / 3;
 
@@ -35,6 +37,18 @@ Intrinsics at_scale(Intrinsics k, double from, double to) {
   k.fx *= ratio, k.fy *= ratio, k.skew *= ratio;
   k.cx = principal.x, k.cy = principal.y;
   return k;
+}
+
+double pixels_of(const glm::ivec2& size) { return double(size.x) * size.y; }
+
+/// Pixels of the largest of the photographs, as they are decoded.
+double largest_file(std::span<const PreparedView> views) {
+  double most = 0;
+  for (const PreparedView& view : views) {
+    const Intrinsics k = at_scale(view.source.camera.intrinsics, view.scale, view.matched_scale);
+    most = std::max(most, double(k.width) * k.height);
+  }
+  return most;
 }
 
 /// One photograph, and what is done to it.
@@ -65,11 +79,12 @@ class LargerPhotographs : public projtex::OutOfCorePhotographs {
       entries_.push_back(std::move(entry));
     }
     const glm::ivec2 size = projtex::array_size(cameras_);
-    const int half = encoding_ == Encoding::kLinearHalf ? 2 : 1;
-    const double bytes = half * held_bytes(double(size.x) * size.y);
-    slot_ = std::int64_t(4) * half * size.x * size.y;
-    most_ = std::max(kFewestHeld,
-                     int(std::min(double(subject.held_bytes) / bytes, double(entries_.size()))));
+    const double bytes =
+        (encoding_ == Encoding::kLinearHalf ? 2 : 1) * kPixelBytes * pixels_of(size);
+    slot_ = std::int64_t(bytes);
+    const double room =
+        double(subject.held_bytes - held_bytes(0, 0, largest_file(subject.views))) / kMipChain;
+    most_ = std::max(kFewestHeld, int(std::min(room / bytes, double(entries_.size()))));
     noise_sigma_ = std::max(
         options.noise ? *options.noise / 255 * largest_scale() : measured_noise(), kRoundingNoise);
   }
@@ -222,11 +237,14 @@ class LargerPhotographs : public projtex::OutOfCorePhotographs {
 
 }  // namespace
 
-double held_bytes(double pixels) { return 4 * kMipChain * pixels; }
+std::int64_t held_bytes(int count, double pixels, double decoded) {
+  return std::int64_t(kPixelBytes * kMipChain * count * pixels +
+                      double(kDecodedAtOnce) * kDecodedBytes * decoded);
+}
 
 std::int64_t fewest_held_bytes(std::span<const PreparedView> views) {
-  const glm::ivec2 size = projtex::array_size(matched_cameras(views));
-  return std::int64_t(kFewestHeld * held_bytes(double(size.x) * size.y));
+  return held_bytes(kFewestHeld, pixels_of(projtex::array_size(matched_cameras(views))),
+                    largest_file(views));
 }
 
 std::vector<Camera> matched_cameras(std::span<const PreparedView> views) {

@@ -20,8 +20,9 @@ namespace photohull::pipeline {
 /// How few photographs a surface can be matched in part by part.
 inline constexpr int kFewestHeld = 8;
 
-/// Bytes that a held photograph of so many pixels takes, its mip levels among them.
-double held_bytes(double pixels);
+/// Bytes that `count` held photographs of so many pixels take, mip levels among them, and decoding
+/// files of `decoded` pixels.
+std::int64_t held_bytes(int count, double pixels, double decoded);
 
 /// Those of as few as can be, at the scales that the views are matched at.
 std::int64_t fewest_held_bytes(std::span<const PreparedView> views);

@@ -63,7 +63,7 @@ std::optional<Plan> plan_to_hold_some(const Request& request, const Scene& scene
   double pixels = 0;
   for (const Camera& camera : wanted)
     pixels = std::max(pixels, double(camera.intrinsics.width) * camera.intrinsics.height);
-  const double least = kFewestHeld * held_bytes(pixels);
+  const std::int64_t least = held_bytes(kFewestHeld, pixels, pixels);
   const double coarsest =
       kCoarsestHeld * voxel_size_of(request.options, box, wanted, plan.silhouettes);
   while (halve_image_scales(box, scene.views, coarsest, plan.scales)) {
@@ -71,10 +71,10 @@ std::optional<Plan> plan_to_hold_some(const Request& request, const Scene& scene
     keep_unexpected_sizes(request.reader, scene.views, plan.scales);
     if (plan.scales != halved) return std::nullopt;
     count_cost(request, scene, box, with_grid, plan.wanted, plan);
-    if (double(plan.cost.bytes) + least > double(limit)) continue;
+    if (plan.cost.bytes + least > limit) continue;
     plan.held_bytes = limit - plan.cost.bytes;
-    plan.cost.bytes += std::int64_t(
-        std::min(double(plan.held_bytes), held_bytes(pixels) * double(scene.views.size())));
+    plan.cost.bytes +=
+        std::min(plan.held_bytes, held_bytes(int(scene.views.size()), pixels, pixels));
     return plan;
   }
   return std::nullopt;

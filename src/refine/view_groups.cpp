@@ -1,6 +1,7 @@
 #include "refine/view_groups.h"
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 
 #include "core/error.h"
@@ -27,22 +28,54 @@ std::vector<int> listed(const Members& members) {
   return out;
 }
 
-/// Surfels of one reference view, in pieces where their views are too many.
+/// How many of the surfels need each view.
+std::vector<std::int64_t> count_uses(std::span<const std::uint32_t> surfels,
+                                     std::span<const ViewChoice> choices, int views) {
+  std::vector<std::int64_t> uses(static_cast<std::size_t>(views));
+  for (const std::uint32_t i : surfels)
+    for (const int v : choices[i].views) ++uses[std::size_t(v)];
+  return uses;
+}
+
+/// Views of the surfel whose views are used most, and others by how much they are used.
+Members most_used(std::span<const std::uint32_t> surfels, std::span<const ViewChoice> choices,
+                  int views, int most) {
+  const std::vector<std::int64_t> uses = count_uses(surfels, choices, views);
+  const std::uint32_t seed = std::ranges::max(surfels, {}, [&](std::uint32_t i) {
+    std::int64_t sum = 0;
+    for (const int v : choices[i].views) sum += uses[std::size_t(v)];
+    return sum;
+  });
+  Members members(static_cast<std::size_t>(views));
+  add(choices[seed].views.span(), members);
+  std::vector<int> order(static_cast<std::size_t>(views));
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, std::greater<>(), [&](int v) { return uses[std::size_t(v)]; });
+  int room = most - count(members);
+  for (const int v : order) {
+    if (room <= 0 || uses[std::size_t(v)] == 0) break;
+    room -= !members[std::size_t(v)];
+    members[std::size_t(v)] = 1;
+  }
+  return members;
+}
+
+/// Surfels of one reference view, in pieces where their views are too many: as many in each as can
+/// be.
 std::vector<ViewGroup> pieces_of(std::vector<std::uint32_t> surfels,
                                  std::span<const ViewChoice> choices, int views, int most) {
   std::vector<ViewGroup> out;
-  Members members;
-  for (const std::uint32_t i : surfels) {
-    const std::span<const int> own = choices[i].views.span();
-    if (members.empty() || count(members) + count_new(own, members) > most) {
-      if (!members.empty()) out.back().views = listed(members);
-      members.assign(std::size_t(views), 0);
-      out.emplace_back();
-    }
-    add(own, members);
-    out.back().surfels.push_back(i);
+  while (!surfels.empty()) {
+    const Members members = most_used(surfels, choices, views, most);
+    const auto left = std::ranges::stable_partition(
+        surfels, [&](std::uint32_t i) { return count_new(choices[i].views.span(), members) == 0; });
+    ViewGroup piece{{}, {surfels.begin(), left.begin()}};
+    Members used(static_cast<std::size_t>(views));
+    for (const std::uint32_t i : piece.surfels) add(choices[i].views.span(), used);
+    piece.views = listed(used);
+    out.push_back(std::move(piece));
+    surfels.erase(surfels.begin(), left.begin());
   }
-  if (!out.empty()) out.back().views = listed(members);
   return out;
 }
 

@@ -213,7 +213,7 @@ TEST_F(PlanJob, WhereMemoryIsShortSomePhotographsAreHeldAsLargeAsTheyAreWanted) 
   options_.image_scale = 0.5;
   const std::int64_t half = plan(kNoLimit).cost.bytes;
   options_.image_scale.reset();
-  const auto fewest = std::int64_t(kFewestHeld * held_bytes(1600 * 1200));
+  const std::int64_t fewest = held_bytes(kFewestHeld, 1600 * 1200, 1600 * 1200);
   const Plan some = plan(half + fewest + (1 << 20));
   EXPECT_EQ(some.scales[0], 0.5);
   EXPECT_EQ(some.wanted[0], 1);

@@ -72,6 +72,16 @@ TEST(ViewGroups, NeighboursStayTogether) {
   EXPECT_LE(loaded, 2.2 * kViews);
 }
 
+TEST(ViewGroups, SurfelsInAnyOrderAreFewPieces) {
+  // Two kinds of surfels of one reference, which do not fit together, by turns.
+  std::vector<ViewChoice> choices(1000);
+  for (std::size_t i = 0; i < choices.size(); ++i)
+    for (int k = 0; k < 6; ++k) choices[i].views.push_back(k == 0 ? 9 : k + (i % 2 ? 9 : 19));
+  const std::vector<ViewGroup> groups = group_by_views(choices, kViews, 8);
+  EXPECT_EQ(groups.size(), 2u);
+  check(groups, choices, 8);
+}
+
 TEST(ViewGroups, NothingToMatchIsNoGroup) {
   EXPECT_TRUE(group_by_views(std::vector<ViewChoice>(10), kViews, 6).empty());
   EXPECT_TRUE(group_by_views({}, kViews, 6).empty());
