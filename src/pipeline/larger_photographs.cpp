@@ -12,6 +12,7 @@
 #include "masks/masks.h"
 #include "photo/noise.h"
 #include "pipeline/place_lattice.h"
+#include "projtex/gpu_views.h"
 #include "views/crop.h"
 #include "views/photometric_samples.h"
 #include "views/prepare_views.h"
@@ -119,9 +120,10 @@ class LargerPhotographs : public projtex::OutOfCorePhotographs {
   void make_room() {
     // As large as for all photographs: what is sampled does not depend on which are held.
     const int layers = std::min(most_, int(cameras_.size()));
-    held_.emplace(projtex::ImageSet(projtex::array_size(cameras_), layers, encoding_),
-                  std::vector<Camera>(std::size_t(layers), cameras_.front()),
-                  std::vector<int>(cameras_.size(), -1));
+    held_ = projtex::HeldPhotographs{
+        projtex::ImageSet(projtex::array_size(cameras_), layers, encoding_),
+        std::vector<Camera>(std::size_t(layers), cameras_.front()),
+        std::vector<int>(cameras_.size(), -1)};
     used_.assign(std::size_t(layers), 0);
   }
 

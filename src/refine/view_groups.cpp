@@ -67,14 +67,16 @@ std::vector<ViewGroup> pieces_of(std::vector<std::uint32_t> surfels,
   std::vector<ViewGroup> out;
   while (!surfels.empty()) {
     const Members members = most_used(surfels, choices, views, most);
-    const auto left = std::ranges::stable_partition(
-        surfels, [&](std::uint32_t i) { return count_new(choices[i].views.span(), members) == 0; });
-    ViewGroup piece{{}, {surfels.begin(), left.begin()}};
+    const auto left = std::stable_partition(surfels.begin(), surfels.end(), [&](std::uint32_t i) {
+      return count_new(choices[i].views.span(), members) == 0;
+    });
+    ViewGroup piece;
+    piece.surfels.assign(surfels.begin(), left);
     Members used(static_cast<std::size_t>(views));
     for (const std::uint32_t i : piece.surfels) add(choices[i].views.span(), used);
     piece.views = listed(used);
     out.push_back(std::move(piece));
-    surfels.erase(surfels.begin(), left.begin());
+    surfels.erase(surfels.begin(), left);
   }
   return out;
 }
@@ -83,7 +85,7 @@ std::vector<ViewGroup> pieces_of(std::vector<std::uint32_t> surfels,
 
 std::vector<ViewGroup> group_by_views(std::span<const ViewChoice> choices, int views, int most) {
   PHOTOHULL_CHECK_OP(most, >=, ViewChoice::kMostViews);
-  std::vector<std::vector<std::uint32_t>> by_reference{std::size_t(views)};
+  std::vector<std::vector<std::uint32_t>> by_reference(static_cast<std::size_t>(views));
   for (std::uint32_t i = 0; i < choices.size(); ++i)
     if (choices[i].comparable()) by_reference[std::size_t(choices[i].reference())].push_back(i);
   std::vector<ViewGroup> left;
@@ -91,7 +93,7 @@ std::vector<ViewGroup> group_by_views(std::span<const ViewChoice> choices, int v
     for (ViewGroup& piece : pieces_of(std::move(surfels), choices, views, most))
       left.push_back(std::move(piece));
   std::vector<ViewGroup> out;
-  Members members{std::size_t(views)};
+  Members members(static_cast<std::size_t>(views), 0);
   while (!left.empty()) {
     // The one that brings the fewest views besides those of the group, or of the group before.
     const auto next = std::ranges::min_element(

@@ -105,7 +105,8 @@ class FewPhotographs : public projtex::OutOfCorePhotographs {
       views.push_back(scene_.views[std::size_t(n)]);
       cameras.push_back(scene_.cameras[std::size_t(n)]);
     }
-    held_.emplace(projtex::ImageSet(views), std::move(cameras), std::move(layers));
+    held_ =
+        projtex::HeldPhotographs{projtex::ImageSet(views), std::move(cameras), std::move(layers)};
     return *held_;
   }
   int times() const { return times_; }
