@@ -28,6 +28,7 @@ constexpr double kDecodedBytes = 8;        // a pixel: as it comes, and with alp
 constexpr double kPixelBytes = 4;          // of 8-bit photographs
 constexpr std::size_t kNoisy = 5;          // photographs that tell the noise
 constexpr double kMipChain = 4.0 / 3;
+constexpr double kMostBytes = 1.9e9;  // of a texture: Mesa's software device takes 2 GiB
 
 /// The intrinsics of `k`, which are of a photograph read at `from` of its size, at `to` of it.
 Intrinsics at_scale(Intrinsics k, double from, double to) {
@@ -83,11 +84,12 @@ class LargerPhotographs : public projtex::OutOfCorePhotographs {
     const double bytes =
         (encoding_ == Encoding::kLinearHalf ? 2 : 1) * kPixelBytes * pixels_of(size);
     slot_ = std::int64_t(bytes);
-    const double room =
-        double(subject.held_bytes - held_bytes(0, 0, largest_file(subject.views))) / kMipChain;
+    const std::int64_t left = subject.held_bytes - held_bytes(0, 0, largest_file(subject.views));
+    const double room = std::min(double(left), kMostBytes) / kMipChain;
     most_ = std::max(kFewestHeld, int(std::min(room / bytes, double(entries_.size()))));
     noise_sigma_ = std::max(
         options.noise ? *options.noise / 255 * largest_scale() : measured_noise(), kRoundingNoise);
+    make_room();  // now, for a device that has no such textures must not tell at the last level
   }
 
   std::span<const Camera> cameras() const override { return cameras_; }
@@ -96,7 +98,6 @@ class LargerPhotographs : public projtex::OutOfCorePhotographs {
 
   const projtex::HeldPhotographs& hold(std::span<const int> numbers) override {
     PHOTOHULL_CHECK_OP(int(numbers.size()), <=, most_);
-    if (!held_) make_room();
     ++turn_;
     std::vector<int> missing;
     for (const int n : numbers) {
