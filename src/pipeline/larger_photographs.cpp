@@ -28,6 +28,8 @@ constexpr double kDecodedBytes = 8;        // a pixel: as it comes, and with alp
 constexpr double kPixelBytes = 4;          // of 8-bit photographs
 constexpr std::size_t kNoisy = 5;          // photographs that tell the noise
 constexpr double kMipChain = 4.0 / 3;
+constexpr int kFewest = 8;            // held photographs: surfels are matched in six
+constexpr double kFreeDisk = 2;       // times what is kept there: results need room, too
 constexpr double kMostBytes = 1.9e9;  // of a texture: Mesa's software device takes 2 GiB
 
 /// The intrinsics of `k`, which are of a photograph read at `from` of its size, at `to` of it.
@@ -41,6 +43,9 @@ Intrinsics at_scale(Intrinsics k, double from, double to) {
   return k;
 }
 
+/// Bytes, of those that 8-bit photographs take.
+int depth_of(Encoding encoding) { return encoding == Encoding::kLinearHalf ? 2 : 1; }
+
 double pixels_of(const glm::ivec2& size) { return double(size.x) * size.y; }
 
 /// Pixels of the largest of the photographs, as they are decoded.
@@ -51,6 +56,22 @@ double largest_file(std::span<const PreparedView> views) {
     most = std::max(most, double(k.width) * k.height);
   }
   return most;
+}
+
+/// That of the set: what is of higher precision makes all of it so.
+Encoding encoding_of(std::span<const PreparedView> views) {
+  const bool half = std::ranges::any_of(
+      views, [](const PreparedView& v) { return v.image.encoding == Encoding::kLinearHalf; });
+  return half ? Encoding::kLinearHalf : Encoding::kSrgb8;
+}
+
+/// The folder where it has room for so many bytes, and as many again; else none.
+std::filesystem::path with_room(const std::filesystem::path& folder, double bytes) {
+  if (folder.empty()) return {};
+  std::error_code failure;
+  const std::filesystem::space_info space = std::filesystem::space(folder, failure);
+  return !failure && double(space.available) >= kFreeDisk * bytes ? folder
+                                                                  : std::filesystem::path();
 }
 
 /// One photograph, and what is done to it.
@@ -67,26 +88,26 @@ class LargerPhotographs : public projtex::OutOfCorePhotographs {
   LargerPhotographs(const PhotographReader& reader, const Subject& subject,
                     const std::optional<PhotometricCalibration>& gains,
                     const ReconstructOptions& options, const Progress& progress)
-      : reader_(reader), box_(subject.box), progress_(progress), scratch_(options.checkpoint) {
+      : reader_(reader),
+        box_(subject.box),
+        progress_(progress),
+        encoding_(encoding_of(subject.views)) {
     const std::vector<int> lenses = shared_lenses(frames_of(subject.views));
     for (std::size_t i = 0; i < subject.views.size(); ++i) {
-      const PreparedView& view = subject.views[i];
-      Entry entry = entry_of(view);
+      Entry entry = entry_of(subject.views[i]);
       if (gains) {
         entry.gains.views = {gains->views[i]};
         entry.gains.vignetting = {gains->vignetting[std::size_t(lenses[i])]};
       }
-      if (view.image.encoding == Encoding::kLinearHalf) encoding_ = Encoding::kLinearHalf;
       cameras_.push_back(entry.camera);
       entries_.push_back(std::move(entry));
     }
-    const glm::ivec2 size = projtex::array_size(cameras_);
-    const double bytes =
-        (encoding_ == Encoding::kLinearHalf ? 2 : 1) * kPixelBytes * pixels_of(size);
-    slot_ = std::int64_t(bytes);
+    const double pixels = depth_of(encoding_) * pixels_of(projtex::array_size(cameras_));
+    slot_ = std::int64_t(kPixelBytes * pixels);
+    scratch_.emplace(with_room(options.checkpoint, double(slot_) * double(entries_.size())));
     const std::int64_t left = subject.held_bytes - held_bytes(0, 0, largest_file(subject.views));
-    const double room = std::min(double(left), kMostBytes) / kMipChain;
-    most_ = std::max(kFewestHeld, int(std::min(room / bytes, double(entries_.size()))));
+    const double room = std::min(double(left), kMostBytes) / (kMipChain * kPixelBytes * pixels);
+    most_ = std::max(kFewest, int(std::min(room, double(entries_.size()))));
     noise_sigma_ = std::max(
         options.noise ? *options.noise / 255 * largest_scale() : measured_noise(), kRoundingNoise);
     make_room();  // now, for a device that has no such textures must not tell at the last level
@@ -191,10 +212,10 @@ class LargerPhotographs : public projtex::OutOfCorePhotographs {
       view.image = *entry.kept;
       view.image.bytes.resize(std::size_t(view.image.width) * std::size_t(view.image.height) *
                               view.image.bytes_per_pixel());
-      if (scratch_.read(at, view.image.bytes.data(), view.image.bytes.size())) return view;
+      if (scratch_->read(at, view.image.bytes.data(), view.image.bytes.size())) return view;
     }
     view = decode(entry);
-    if (scratch_.write(at, view.image.bytes.data(), view.image.bytes.size())) {
+    if (scratch_->write(at, view.image.bytes.data(), view.image.bytes.size())) {
       const ColourImage& image = view.image;
       entry.kept = ColourImage{image.width, image.height, image.encoding, image.has_alpha, {}};
     }
@@ -228,10 +249,10 @@ class LargerPhotographs : public projtex::OutOfCorePhotographs {
   const Progress& progress_;
   std::vector<Entry> entries_;
   std::vector<Camera> cameras_;
-  Encoding encoding_ = Encoding::kSrgb8;
+  Encoding encoding_;
   int most_ = 0;
   double noise_sigma_ = 0;
-  ScratchFile scratch_;
+  std::optional<ScratchFile> scratch_;
   std::int64_t slot_ = 0;  // bytes of a photograph there, at most
   std::optional<projtex::HeldPhotographs> held_;
   std::vector<std::int64_t> used_;  // by layer: the turn in which it was asked for
@@ -245,9 +266,15 @@ std::int64_t held_bytes(int count, double pixels, double decoded) {
                       double(kDecodedAtOnce) * kDecodedBytes * decoded);
 }
 
+int fewest_held(std::size_t views) { return int(std::min<std::size_t>(views, kFewest)); }
+
+bool can_be_held(std::size_t views, double pixels) {
+  return double(held_bytes(fewest_held(views), pixels, 0)) <= kMostBytes;
+}
+
 std::int64_t fewest_held_bytes(std::span<const PreparedView> views) {
-  return held_bytes(kFewestHeld, pixels_of(projtex::array_size(matched_cameras(views))),
-                    largest_file(views));
+  return held_bytes(fewest_held(views.size()),
+                    pixels_of(projtex::array_size(matched_cameras(views))), largest_file(views));
 }
 
 std::vector<Camera> matched_cameras(std::span<const PreparedView> views) {
@@ -265,6 +292,14 @@ std::unique_ptr<projtex::OutOfCorePhotographs> larger_photographs(
     const std::optional<PhotometricCalibration>& gains, const ReconstructOptions& options,
     Progress& progress) {
   if (subject.held_bytes == 0) return nullptr;
+  const double pixels = depth_of(encoding_of(subject.views)) *
+                        pixels_of(projtex::array_size(matched_cameras(subject.views)));
+  if (!can_be_held(subject.views.size(), pixels)) {
+    progress.warn(concat("the surface is matched in the photographs as they are held: ",
+                         fewest_held(subject.views.size()),
+                         " larger ones do not fit into one texture"));
+    return nullptr;
+  }
   auto out = std::make_unique<LargerPhotographs>(reader, subject, gains, options, progress);
   if (const int most = out->most(); most < int(subject.views.size()))
     progress.note(concat("there is room for ", most, " of ", subject.views.size(),

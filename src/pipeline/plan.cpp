@@ -63,7 +63,9 @@ std::optional<Plan> plan_to_hold_some(const Request& request, const Scene& scene
   double pixels = 0;
   for (const Camera& camera : wanted)
     pixels = std::max(pixels, double(camera.intrinsics.width) * camera.intrinsics.height);
-  const std::int64_t least = held_bytes(kFewestHeld, pixels, pixels);
+  const std::size_t views = scene.views.size();
+  if (!can_be_held(views, pixels)) return std::nullopt;
+  const std::int64_t least = held_bytes(fewest_held(views), pixels, pixels);
   const double coarsest =
       kCoarsestHeld * voxel_size_of(request.options, box, wanted, plan.silhouettes);
   while (halve_image_scales(box, scene.views, coarsest, plan.scales)) {
@@ -73,8 +75,7 @@ std::optional<Plan> plan_to_hold_some(const Request& request, const Scene& scene
     count_cost(request, scene, box, with_grid, plan.wanted, plan);
     if (plan.cost.bytes + least > limit) continue;
     plan.held_bytes = limit - plan.cost.bytes;
-    plan.cost.bytes +=
-        std::min(plan.held_bytes, held_bytes(int(scene.views.size()), pixels, pixels));
+    plan.cost.bytes += std::min(plan.held_bytes, held_bytes(int(views), pixels, pixels));
     return plan;
   }
   return std::nullopt;

@@ -67,9 +67,10 @@ Decoded decode_as_needed(const Photographs& photographs, ReadScene& read,
   const std::optional<Box> box = smaller_box(options, *read.scene.box, out.prepared.views);
   if (!box) return out;
   Reading reading = choose_reading(photographs, read.scene, *box, options, progress);
-  if (reading.scales == read.reading.scales) return out;
-  out = {};
+  const bool same = reading.scales == read.reading.scales;
   read.reading = std::move(reading);
+  if (same) return out;
+  out = {};
   return decode(photographs, read.scene, read.reading.scales, masks, progress);
 }
 

@@ -1,7 +1,6 @@
 // The photographs that surfels are matched in: all at once, or a few at a time.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>

@@ -213,7 +213,7 @@ TEST_F(PlanJob, WhereMemoryIsShortSomePhotographsAreHeldAsLargeAsTheyAreWanted) 
   options_.image_scale = 0.5;
   const std::int64_t half = plan(kNoLimit).cost.bytes;
   options_.image_scale.reset();
-  const std::int64_t fewest = held_bytes(kFewestHeld, 1600 * 1200, 1600 * 1200);
+  const std::int64_t fewest = held_bytes(fewest_held(12), 1600 * 1200, 1600 * 1200);
   const Plan some = plan(half + fewest + (1 << 20));
   EXPECT_EQ(some.scales[0], 0.5);
   EXPECT_EQ(some.wanted[0], 1);
@@ -222,6 +222,11 @@ TEST_F(PlanJob, WhereMemoryIsShortSomePhotographsAreHeldAsLargeAsTheyAreWanted) 
   const Plan none = plan(half + fewest - (1 << 20));
   EXPECT_EQ(none.scales[0], 0.5);
   EXPECT_EQ(none.held_bytes, 0);
+  for (SourceView& v : scene_.views) v.camera.intrinsics.width = 40000;  // no texture holds eight
+  options_.resolution.reset();
+  EXPECT_EQ(plan(plan(kNoLimit).cost.bytes - 1).held_bytes, 0);
+  for (SourceView& v : scene_.views) v.camera.intrinsics.width = 1600;
+  options_.resolution = 110;
   options_.method = Method::kHull;  // matches nothing
   EXPECT_EQ(plan(half + fewest + (1 << 20)).held_bytes, 0);
 }

@@ -9,9 +9,11 @@
 
 #include "core/error.h"
 #include "pipeline/image_scale.h"
+#include "pipeline/inspect.h"
 #include "pipeline/photometric.h"
 #include "pipeline/place_lattice.h"
 #include "pipeline/reconstruct.h"
+#include "pipeline/recording_progress.h"
 #include "projtex/gpu_views.h"
 #include "support/gl_context.h"
 #include "support/ray_cast.h"
@@ -118,7 +120,7 @@ TEST_F(LargerPhotographs, AreWhatReadingThemLargeAtOnceGives) {
     EXPECT_EQ(pixels, view.image.bytes) << view.name;
   }
   EXPECT_EQ(some->noise_sigma(), 1.0 / 255);
-  EXPECT_EQ(some->most(), kFewestHeld) << "however little room there is";
+  EXPECT_EQ(some->most(), fewest_held(kViews)) << "however little room there is";
 }
 
 TEST_F(LargerPhotographs, WhatWasNotAskedForTheLongestGoesFirst) {
@@ -169,6 +171,17 @@ TEST_F(LargerPhotographs, OneThatChangedMeanwhileIsNamed) {
               testing::ThrowsMessage<Error>(testing::HasSubstr("4: the photograph had 203 x 150")));
 }
 
+TEST_F(LargerPhotographs, WhatNoTextureHoldsIsAWarning) {
+  RecordingProgress heard(silent_);
+  subject_.box = box_;
+  subject_.views = views_at(0.5);
+  for (PreparedView& view : subject_.views) view.camera.intrinsics.width = 400000;
+  subject_.held_bytes = 1;
+  EXPECT_EQ(larger_photographs(photographs_.reader, subject_, {}, options_, heard), nullptr);
+  EXPECT_THAT(heard.warnings(),
+              testing::ElementsAre(testing::HasSubstr("8 larger ones do not fit into one")));
+}
+
 /// A job that may take so much less than the photographs would that it holds them smaller.
 TEST(LargerPhotographsJob, MatchTheSurfaceWhereMemoryIsShort) {
   const ScratchFolder folder;
@@ -182,7 +195,11 @@ TEST(LargerPhotographsJob, MatchTheSurfaceWhereMemoryIsShort) {
   const Photographs photographs = load_photographs(folder.path() / "scene");
   ReconstructOptions options;
   options.resolution = 160;
-  options.max_memory = (std::int64_t(285) << 20) + std::int64_t(14.8 * 12 * 1296 * 1000) - 1;
+  const auto info = [&] { return inspect(photographs.scene, options); };
+  EXPECT_EQ(info().matched, info().scales);
+  options.max_memory = info().memory_bytes - 1;
+  EXPECT_EQ(info().scales[0], 0.5);
+  EXPECT_EQ(info().matched[0], 1);
   const Reconstruction some = Reconstructor(options).run(photographs, silent);
   EXPECT_EQ(some.report.photographs.smallest_scale, 0.5);
   EXPECT_EQ(some.report.photographs.matched_scale, 1);
