@@ -80,6 +80,13 @@ void BatchArguments::add_to(CLI::App& command) {
                      "first and last frame, such as 0000-0299: each scene once for each, with the "
                      "frame's number in place of {frame} in its name and options");
   command
+      .add_option("--chain", chain,
+                  "so many frames follow each other: each starts from the surface of the one "
+                  "before, the first of every chain from nothing, and cameras and gains are those "
+                  "of the very first; 1: every frame by itself")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  command
       .add_option("--out", out,
                   "folder for the results, in a folder each; made when it does not exist")
       ->required();
@@ -103,11 +110,17 @@ std::vector<BatchPiece> BatchArguments::pieces() const {
                        ": give the first and the last, such as 0-299 or 0000-0299");
     given = batch::pieces_of_frames(given, *range);
   }
+  if (frames.empty() && chain > 1)
+    throw UsageError(concat("--chain ", chain, " is for frames: give --frames"));
   check_pieces(given);
+  const std::vector<batch::Precedent> before = batch::precedents(given, chain);
   std::vector<BatchPiece> pieces;
-  for (const batch::Piece& one : given) {
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    const batch::Piece& one = given[i];
     BatchPiece piece{one.name, {}, job, load};
     if (!frames.empty()) name_frame(piece, one.frame);
+    if (before[i].follow) piece.job.follow = std::filesystem::path(out) / *before[i].follow;
+    if (before[i].rig) piece.job.rig = std::filesystem::path(out) / *before[i].rig;
     pieces.push_back(parse_piece(one, std::move(piece), out));
   }
   return pieces;

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <map>
 #include <new>
+#include <numeric>
+#include <thread>
 
 #include "cli/front/exit_code.h"
 #include "core/error.h"
@@ -24,6 +26,7 @@ using Clock = std::chrono::steady_clock;
 /// The table is written this often, and rarer where that takes long: many processes that share a
 /// file system would else do little but look for each other's results.
 constexpr std::chrono::seconds kTableEvery(5);
+constexpr std::chrono::seconds kAskAgain(1);  ///< whether others have finished
 constexpr int kTableShare = 50;  ///< of the time goes into tables at most: one in so many
 
 /// A piece's share of the batch's progress; says whose warnings they are.
@@ -133,20 +136,76 @@ class Batch {
     return sum;
   }
 
+  /// Goes through the pieces again while some wait for what others have at hand, and once more at
+  /// the end, for a process that had one may have been killed.
   void make_all() {
-    std::vector<std::size_t> in_other_hands;
-    for (std::size_t i = 0; i < pieces_.size() && !enough(); ++i) {
+    std::vector<std::size_t> left(pieces_.size());
+    std::iota(left.begin(), left.end(), 0);
+    bool again = true;
+    for (bool first = true; again && !left.empty(); first = false) {
+      const std::vector<std::size_t> open = make_some(left, first);
+      if (enough()) return;
+      const bool waiting = std::ranges::any_of(
+          open, [&](std::size_t i) { return state(pieces_[i]) == Input::kInOtherHands; });
+      if (waiting && open.size() == left.size()) wait();
+      again = first || waiting;
+      left = open;
+    }
+    for (const std::size_t i : left) ++(state(pieces_[i]) == Input::kMissing ? early_ : elsewhere_);
+  }
+
+  /// Returns those that others are at work at, or that wait for such.
+  std::vector<std::size_t> make_some(const std::vector<std::size_t>& some, bool first) {
+    std::vector<std::size_t> open;
+    for (const std::size_t i : some) {
+      if (enough()) break;
       progress_.check_cancelled();
-      PieceProgress progress(progress_, pieces_[i].name, pipeline::total_weight(pieces_[i].job));
-      if (!work_at(i, progress)) in_other_hands.push_back(i);
+      PieceProgress progress(progress_, pieces_[i].name,
+                             first ? pipeline::total_weight(pieces_[i].job) : 0);
+      if (state(pieces_[i]) != Input::kThere || !work_at(i, progress)) open.push_back(i);
       progress.finish();
       if (Clock::now() > next_table_) write_table();
     }
-    for (const std::size_t i : in_other_hands) {
-      if (enough()) return;
-      PieceProgress progress(progress_, pieces_[i].name, 0);
-      if (!work_at(i, progress)) ++elsewhere_;
+    return open;
+  }
+
+  void wait() {
+    std::this_thread::sleep_for(kAskAgain);
+    progress_.check_cancelled();
+  }
+
+  /// Of the results of other pieces that a piece goes by.
+  enum class Input { kThere, kInOtherHands, kMissing };
+
+  Input state(const BatchPiece& piece) const {
+    for (const std::filesystem::path& folder : {piece.job.follow, piece.job.rig}) {
+      const auto name = store_.piece_of(folder);
+      if (!name || outcome_of(*name)) continue;
+      const bool mine = std::ranges::any_of(
+          pieces_, [&](const BatchPiece& other) { return other.name == *name; });
+      return mine || !store_.hold(*name) ? Input::kInOtherHands : Input::kMissing;
     }
+    return Input::kThere;
+  }
+
+  /// What became of a piece, where this process has seen to it or somebody of the same plan has.
+  std::optional<Outcome> outcome_of(const std::string& name) const {
+    for (std::size_t i = 0; i < pieces_.size(); ++i)
+      if (pieces_[i].name == name) return rows_[i].outcome;
+    auto made = store_.outcome(name);
+    if (made && (options_.plan.empty() || made->plan != options_.plan)) made.reset();
+    return made;
+  }
+
+  /// The piece without earlier results that there are none of.
+  BatchPiece with_what_is_there(BatchPiece piece, PieceProgress& progress) const {
+    for (std::filesystem::path* folder : {&piece.job.follow, &piece.job.rig}) {
+      const auto name = store_.piece_of(*folder);
+      if (!name || outcome_of(*name)->has_result()) continue;
+      progress.note(*name + " has no result to go by");
+      folder->clear();
+    }
+    return piece;
   }
 
   bool enough() const { return options_.most > 0 && made_ >= options_.most; }
@@ -161,7 +220,7 @@ class Batch {
     }
     const auto held = store_.hold(piece.name);
     if (!held) return false;
-    const Outcome outcome = make(piece, progress);
+    const Outcome outcome = make(with_what_is_there(piece, progress), progress);
     if (options_.sequence && outcome.has_result())
       store_.publish(piece.name, "volume.vdb", "volume." + piece.name + ".vdb");
     rows_[i].outcome = outcome;
@@ -245,6 +304,8 @@ class Batch {
     if (elsewhere_ > 0)
       text += concat("; other processes were at work at ", elsewhere_,
                      ", run this again for the table of all");
+    if (early_ > 0)
+      text += concat("; ", early_, " follow frames that are not made yet and were not asked for");
     return text;
   }
 
@@ -254,7 +315,7 @@ class Batch {
   TerminalProgress progress_;
   std::vector<batch::Row> rows_;
   Clock::time_point next_table_ = Clock::now() + kTableEvery;
-  int made_ = 0, kept_ = 0, elsewhere_ = 0;
+  int made_ = 0, kept_ = 0, elsewhere_ = 0, early_ = 0;
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/read_file.h"
 #include "kept_steps.h"
+#include "pipeline/earlier_results.h"
 #include "pipeline/image_scale.h"
 #include "pipeline/input_hashes.h"
 #include "pipeline/stage_weights.h"
@@ -82,6 +83,9 @@ std::string model_identity(const pipeline::ReconstructOptions& given,
     identity.add(name + " " + value);
   for (const pipeline::InputFile& file : pipeline::hash_inputs(io::load_scene(scene, load)))
     identity.add(file.path.string() + " " + file.xxh3_128);
+  if (!job.follow.empty()) identity.add(pipeline::digest_of_file(job.follow / "volume.vdb"));
+  if (!job.rig_folder().empty())
+    identity.add(pipeline::digest_of(pipeline::read_rig(job.rig_folder())));
   return identity.digest();
 }
 

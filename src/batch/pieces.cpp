@@ -138,15 +138,32 @@ std::vector<Piece> read_piece_list(const fs::path& file) {
 
 std::vector<Piece> pieces_of_frames(const std::vector<Piece>& pieces, const FrameRange& frames) {
   std::vector<Piece> out;
-  for (const Piece& piece : pieces)
+  std::size_t sequence = 0;
+  for (const Piece& piece : pieces) {
+    ++sequence;
     for (int frame = frames.first; frame <= frames.last; ++frame) {
       const std::string number = frames.text(frame);
       Piece one = piece;
       one.frame = number;
+      one.sequence = sequence;
       one.name = pieces.size() == 1 ? number : piece.name + "." + number;
       for (std::string& word : one.words) word = with_frame(word, number);
       out.push_back(std::move(one));
     }
+  }
+  return out;
+}
+
+std::vector<Precedent> precedents(const std::vector<Piece>& pieces, int chain) {
+  std::vector<Precedent> out(pieces.size());
+  if (chain <= 1) return out;
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (pieces[i].frame.empty() || pieces[i].sequence != pieces[first].sequence) first = i;
+    if (i == first) continue;
+    out[i].rig = pieces[first].name;
+    if ((i - first) % std::size_t(chain) != 0) out[i].follow = pieces[i - 1].name;
+  }
   return out;
 }
 

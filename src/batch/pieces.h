@@ -14,6 +14,7 @@ struct Piece {
   std::vector<std::string> words;  ///< scene, and options in the command line's words
   std::string frame;               ///< its number as text; empty: it is no frame
   std::string from;                ///< where it was asked for: "plants.txt line 3", "SCENE"
+  std::size_t sequence = 0;        ///< a number that frames of one sequence have in common
 };
 
 /// Numbers of frames, inclusive.
@@ -44,6 +45,16 @@ std::vector<Piece> read_piece_list(const std::filesystem::path& file);
 /// Each piece once for each frame: named by the frame, and where there are several pieces by
 /// its own name and the frame.
 std::vector<Piece> pieces_of_frames(const std::vector<Piece>& pieces, const FrameRange& frames);
+
+/// Names of the pieces that another one goes by.
+struct Precedent {
+  std::optional<std::string> follow;  ///< whose surface it starts from
+  std::optional<std::string> rig;     ///< whose cameras and gains it takes
+};
+
+/// For each piece: frames of one sequence follow each other in chains of `chain`, and all go by the
+/// rig of the first. With chains of 1, and for what is no frame, nothing.
+std::vector<Precedent> precedents(const std::vector<Piece>& pieces, int chain);
 
 /// Throws UsageError where there is no piece, where two have the same name, or where a name is
 /// none that a folder can have.

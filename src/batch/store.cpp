@@ -40,6 +40,13 @@ Store::Store(fs::path folder) : folder_(std::move(folder)) { make(folder_ / ".ph
 
 fs::path Store::kept(const std::string& name) const { return folder_ / ".photohull-batch" / name; }
 
+std::optional<std::string> Store::piece_of(const fs::path& results) const {
+  if (results.empty()) return std::nullopt;
+  const fs::path tidy = fs::absolute(results).lexically_normal();
+  if (tidy.parent_path() != fs::absolute(folder_).lexically_normal()) return std::nullopt;
+  return tidy.filename().string();
+}
+
 void Store::set_plan(const Plan& plan) const { write_atomically(kept(kPlan), to_json(plan)); }
 
 Plan Store::plan() const { return plan_from_json(read_whole_file(kept(kPlan)), kept(kPlan)); }

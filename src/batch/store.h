@@ -25,6 +25,8 @@ class Store {
 
   const std::filesystem::path& folder() const { return folder_; }
   std::filesystem::path results(const std::string& name) const { return folder_ / name; }
+  /// The piece whose results are, or will be, in the folder; nothing: it is none of this batch.
+  std::optional<std::string> piece_of(const std::filesystem::path& results) const;
   void set_plan(const Plan& plan) const;
   /// Throws Error where there is none, or a damaged one.
   Plan plan() const;

@@ -143,6 +143,7 @@ struct RefineFitFindings {
 
 struct RefineFindings {
   int resumed_levels = 0;  ///< of the levels, done by an earlier run that was interrupted
+  bool followed = false;   ///< did the first level start from the moment before?
   std::vector<RefineLevelFindings> levels;
   std::vector<RefineFitFindings> fits;
 };

@@ -21,6 +21,12 @@ void add_options(ReconstructOptions options, io::LoadSceneOptions load, std::ost
       out << option.name << ' ' << std::quoted(text_of(option, kIdentityDigits)) << '\n';
 }
 
+/// What earlier results give to this one.
+void add_earlier(const ReconstructOptions& options, std::ostream& out) {
+  if (!options.follow.empty()) add_file(options.follow / "volume.vdb", out);
+  if (!options.rig_folder().empty()) add_file(options.rig_folder() / "report.json", out);
+}
+
 }  // namespace
 
 std::string job_identity(const ReconstructOptions& options, const Photographs& photographs,
@@ -33,6 +39,7 @@ std::string job_identity(const ReconstructOptions& options, const Photographs& p
   text << grid.voxel_size << ' ' << grid.origin.x << ' ' << grid.origin.y << ' ' << grid.origin.z
        << ' ' << grid.bricks.x << ' ' << grid.bricks.y << ' ' << grid.bricks.z << '\n';
   add_box(subject.box, text);
+  add_earlier(options, text);
   add_file(photographs.scene.path, text);
   text << photographs.digest << '\n';
   for (const PreparedView& view : subject.views) {

@@ -46,7 +46,12 @@ MeasuredGains measure(const PhotometricJob& job, const TriMesh& mesh, double vox
 
 }  // namespace
 
+bool gains_are_known(const PhotometricJob& job) {
+  return job.rig && job.options.photometric == Photometric::kAuto;
+}
+
 MeasuredGains measure_gains_on_hull(const PhotometricJob& job, Hull& hull, const Subject& subject) {
+  if (gains_are_known(job)) return gains_of(*job.rig, subject.views);
   if (job.options.photometric == Photometric::kAuto) {
     const CoarseHull quick = coarse_hull(kCheckVoxels, hull, subject);
     if (auto alike = are_alike(job, quick.mesh, quick.voxel_size, subject.views)) return *alike;

@@ -6,6 +6,7 @@
 
 #include "core/mesh.h"
 #include "core/progress.h"
+#include "pipeline/earlier_results.h"
 #include "pipeline/findings.h"
 #include "pipeline/hull.h"
 #include "pipeline/reconstruct_options.h"
@@ -18,12 +19,11 @@ struct PhotometricJob {
   const ReconstructOptions& options;
   double noise_sigma = 0;  ///< of the photographs
   Progress& progress;
+  const ResultRig* rig = nullptr;  ///< whose gains hold; null: none
 };
 
-struct MeasuredGains {
-  PhotometricFindings findings;
-  std::optional<PhotometricCalibration> gains;  ///< where pixels are to be divided by them
-};
+/// Do gains hold that were measured before? Then nothing is measured.
+bool gains_are_known(const PhotometricJob& job);
 
 /// Gains are measured on coarse hulls of the subject.
 MeasuredGains measure_gains_on_hull(const PhotometricJob& job, Hull& hull, const Subject& subject);

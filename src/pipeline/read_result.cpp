@@ -129,9 +129,8 @@ bool has_texture(const ReportFile& report) {
          std::ranges::find(*files, "mesh.glb") != files->end();
 }
 
-}  // namespace
-
-ResultModel read_result(const fs::path& folder) {
+/// The file of a folder of results.
+fs::path report_of(const fs::path& folder) {
   std::error_code ignored;
   if (!fs::exists(folder, ignored))
     throw Error(concat(folder.string(), ": there is no such folder"));
@@ -142,7 +141,20 @@ ResultModel read_result(const fs::path& folder) {
     throw Error(concat(folder.string(),
                        " has no report.json, so no result is there: 'photohull reconstruct SCENE ",
                        option_word("out"), " ", folder.string(), "' writes one"));
-  const ReportFile report(path);
+  return path;
+}
+
+}  // namespace
+
+ResultReport read_report(const fs::path& folder) {
+  const ReportFile report(report_of(folder));
+  const auto photometric = report.root().find("photometric");
+  return {read_look(report),
+          photometric == report.root().end() ? std::string() : photometric->dump()};
+}
+
+ResultModel read_result(const fs::path& folder) {
+  const ReportFile report(report_of(folder));
   ResultModel out;
   out.look = read_look(report);
   if (has_texture(report)) {

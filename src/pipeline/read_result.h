@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/mesh.h"
@@ -18,6 +19,13 @@ struct ResultModel {
 
   const TriMesh& shape() const { return textured ? textured->mesh : mesh; }
 };
+
+/// What report.json of a folder of results tells. Throws as read_result does.
+struct ResultReport {
+  LookFindings look;
+  std::string photometric;  ///< JSON (pipeline/photometric.h); empty: it was not asked for
+};
+ResultReport read_report(const std::filesystem::path& folder);
 
 /// The model of a folder that `write` wrote: from mesh.glb where the report says that it has a
 /// texture, else from mesh.ply. Normals are there. Throws Error where there is no such folder,

@@ -13,14 +13,15 @@
 #include "core/process_limits.h"
 #include "mesh/join_meshes.h"
 #include "photo/opencv_threads.h"
-#include "pipeline/agree_cameras.h"
-#include "pipeline/camera_cache.h"
+#include "pipeline/cameras_stage.h"
 #include "pipeline/check_room.h"
 #include "pipeline/device_work.h"
+#include "pipeline/earlier_results.h"
 #include "pipeline/find_silhouettes.h"
 #include "pipeline/finish_mesh.h"
 #include "pipeline/given_words.h"
 #include "pipeline/judge_result.h"
+#include "pipeline/keep_evidence.h"
 #include "pipeline/larger_photographs.h"
 #include "pipeline/look.h"
 #include "pipeline/photometric_stage.h"
@@ -48,6 +49,7 @@ struct Run {
   StageClock clock{progress};
   Report report{};
   std::unique_ptr<gpu::Context> context{};
+  EarlierResults earlier{};
 };
 
 /// What the photographs show, up to silhouettes.
@@ -78,10 +80,8 @@ Prepared prepare(Run& run) {
   AgreeingCameras agreeing{std::move(scene.views), {}, {}};
   if (const double weight = Weights::cameras(options); weight > 0)
     agreeing = run.clock.run("cameras", weight, [&] {
-      return options.checkpoint.empty()
-                 ? agree_cameras(options, scene.scene, std::move(agreeing.views), progress)
-                 : agree_cameras_once(options.checkpoint, options, scene.scene,
-                                      std::move(agreeing.views), progress);
+      return find_cameras(options, run.earlier.given_rig(), scene.scene, std::move(agreeing.views),
+                          progress);
     });
   report.cameras = agreeing.findings;
   const SourcedBox box =
@@ -106,22 +106,6 @@ Prepared prepare(Run& run) {
           masks,
           std::move(agreeing.findings),
           std::move(found.findings)};
-}
-
-Evidence keep_evidence(const TriMesh& mesh, const std::vector<render::PooledEvidence>& evidence) {
-  Evidence out;
-  out.mesh = mesh;
-  for (const render::PooledEvidence& e : evidence) {
-    out.scalars["scatter"].push_back(e.scatter);
-    out.scalars["disagreement"].push_back(e.disagreement);
-    out.scalars["fine_share"].push_back(e.fine_share);
-  }
-  return out;
-}
-
-TriMesh joined(TriMesh mesh, const TriMesh& other) {
-  append_mesh(other, mesh);
-  return mesh;
 }
 
 /// From silhouettes to the surface, its colours, and what is to be thought of it.
@@ -162,20 +146,24 @@ class Carver {
                         .colour = coloured.findings,
                         .islands = surface.findings,
                         .error = {}};
-    deliver(joined(std::move(surface.mesh), around.mesh), surface.seen, out);
+    append_mesh(around.mesh, surface.mesh);
+    deliver(std::move(surface.mesh), surface.seen, out);
     return out;
   }
 
  private:
   SurfaceJob job() {
-    return {run_.options,  run_.photographs, subject_,      *run_.context, hull_,
-            images_.get(), bounded_,         run_.progress, larger_.get()};
+    return {run_.options,  run_.photographs,
+            subject_,      *run_.context,
+            hull_,         images_.get(),
+            bounded_,      run_.progress,
+            larger_.get(), run_.earlier.given_surface()};
   }
 
   SparseVolume carve_surface() {
     subject_.held_bytes = check_room(run_.options, subject_, hull_);
     SparseVolume hull = run_.clock.run("hull", Weights::kHull, [&] { return carve_hull(); });
-    alike_ = any_mask(subject_.views);
+    alike_ = any_mask(subject_.views) || gains_are_known(photometric_job());
     if (alike_)
       make_alike([&] { return measure_gains_on_hull(photometric_job(), hull_, subject_); });
     if (!masks_are_needed(run_.options, subject_.views))
@@ -204,6 +192,7 @@ class Carver {
       surface = work();
     }
     larger_.reset();
+    run_.earlier.surface.reset();
     hull_.release_textures();
     run_.report.surface = std::move(surface.findings);
     return std::move(surface.volume);
@@ -221,7 +210,9 @@ class Carver {
 
   void upload() { images_ = std::make_unique<projtex::ImageSet>(subject_.views); }
 
-  PhotometricJob photometric_job() { return {run_.options, subject_.noise_sigma, run_.progress}; }
+  PhotometricJob photometric_job() {
+    return {run_.options, subject_.noise_sigma, run_.progress, run_.earlier.given_rig()};
+  }
 
   /// Divides the photographs by the gains that `measure` finds, before colours are compared. Did
   /// pixels change?
@@ -379,6 +370,7 @@ Reconstruction Reconstructor::run(const Photographs& photographs, Progress& give
   const OneOpenCvThread one_thread;
   RecordingProgress progress(given);
   Run run{options_, photographs, progress, take_volume};
+  run.earlier = read_earlier(options_);
   Prepared prepared = prepare(run);
   Reconstruction out = Carver(run, std::move(prepared)).carve();
   out.report = std::move(run.report);

@@ -57,6 +57,10 @@ void check_combinations(const ReconstructOptions& o) {
     throw UsageError(concat(option_word("surroundings", "on"), ": ",
                             option_word("method", method_of(o).name),
                             " has none; they are made by ", option_word("method", "refine")));
+  if (!o.follow.empty() && !method_of(o).follows)
+    throw UsageError(concat(option_word("follow"), ": ", option_word("method", method_of(o).name),
+                            " starts from no surface; give ", option_word("rig"),
+                            " for cameras and gains alone"));
   check_sweep_options(o);
 }
 
@@ -186,6 +190,15 @@ void describe_sweeps(Described& to, ReconstructOptions& o) {
             "sweeps: pixels around its projection within which each view may show a voxel: bears "
             "cameras that are wrong by as much (default: 0)")
       .expects = concat("0 to ", carving::kMaxSearchRadius, " pixels");
+}
+
+void describe_earlier(Described& to, ReconstructOptions& o) {
+  to.text("follow", &o.follow,
+          "results of the moment before, of the same rig: the surface starts from theirs (refine), "
+          "and their cameras and gains hold");
+  to.text("rig", &o.rig,
+          "results of the same rig: their cameras and gains hold, and nothing of them is measured "
+          "again");
 }
 
 void describe_run(Described& to, ReconstructOptions& o) {
@@ -320,6 +333,7 @@ void describe(Described& to, ReconstructOptions& o, io::LoadSceneOptions& load) 
   to.affects(Stage::kSurface);
   describe_sweeps(to, o);
   to.affects(Stage::kViews);
+  describe_earlier(to, o);
   describe_run(to, o);
 }
 

@@ -83,6 +83,9 @@ struct ReconstructOptions {
   std::optional<carving::Statistic> consistency;
   std::optional<visibility::SweepTest> visibility;
   std::optional<double> r_consistency;
+  /// Folders of results: of the moment before, whose surface this one's starts from, and of the
+  /// same rig, whose cameras and gains hold. Empty: none.
+  std::filesystem::path follow, rig;
   bool fresh = false;
   bool evidence = false;
   ReportPage report_page = ReportPage::kOn;
@@ -103,6 +106,8 @@ struct ReconstructOptions {
   /// Throws UsageError naming the option.
   void validate() const;
   Method effective_method() const;
+  /// The folder whose cameras and gains hold; empty: none.
+  const std::filesystem::path& rig_folder() const { return rig.empty() ? follow : rig; }
   /// Does the box stay as it is, however much larger than the object it may be?
   bool box_stands() const { return box.exact || lattice == Lattice::kFixed; }
 };

@@ -14,6 +14,7 @@
 #include "refine/bounding_hull.h"
 #include "refine/checkpoint.h"
 #include "refine/fit_passes.h"
+#include "refine/follow.h"
 #include "refine/job.h"
 #include "refine/matching_step.h"
 #include "refine/settle.h"
@@ -62,8 +63,10 @@ void keep(const CheckpointFile& file, const Checkpoint& checkpoint, Progress& pr
 
 class SurfaceRefiner {
  public:
-  SurfaceRefiner(RefineJob job, std::vector<GridSpec> grids, Progress& progress)
-      : job_(job), grids_(std::move(grids)), progress_(progress) {}
+  /// `before`: what the first of the grids starts from; null: from a guess.
+  SurfaceRefiner(RefineJob job, std::vector<GridSpec> grids, const SparseVolume* before,
+                 Progress& progress)
+      : job_(job), grids_(std::move(grids)), before_(before), progress_(progress) {}
 
   SparseVolume run(const CheckpointFile* checkpoint, RefineReport& report) {
     if (checkpoint) resume(*checkpoint, report);
@@ -77,6 +80,8 @@ class SurfaceRefiner {
 
  private:
   bool is_last(std::size_t level) const { return level + 1 == grids_.size(); }
+  /// Does the level start from a guess?
+  bool is_guessed(std::size_t level) const { return level == 0 && !before_; }
 
   /// Takes over the levels that an interrupted run of the same job had done.
   void resume(const CheckpointFile& checkpoint, RefineReport& report) {
@@ -116,13 +121,13 @@ class SurfaceRefiner {
 
   /// The volume that a level starts from: the one before on finer voxels, or a guess.
   void begin(std::size_t level, const SparseVolume& hull, LevelReport& counts) {
+    const SparseVolume& from = level == 0 && before_ ? *before_ : volume_;
     volume_ =
-        level == 0
+        is_guessed(level)
             ? first_guess(job_, hull)
-            : bounded(distance_from_mesh(extract_mesh(volume_), volume_, hull.grid, kNearReach),
-                      hull);
+            : bounded(distance_from_mesh(extract_mesh(from), from, hull.grid, kNearReach), hull);
     restore_lost(job_, hull, volume_, counts);
-    if (level > 0 && job_.options.voting)
+    if (!is_guessed(level) && job_.options.voting)
       revise_by_votes(job_, hull, is_last(level), volume_, counts);
   }
 
@@ -130,15 +135,16 @@ class SurfaceRefiner {
   StepFindings match(std::size_t level, BoundingHull& bounding, LevelReport& counts) {
     const SparseVolume& hull = bounding.volume();
     const RefineOptions& options = job_.options;
-    const int iterations = is_last(level) ? options.fine_iterations
-                           : level == 0   ? options.coarse_iterations
-                                          : kMiddleIterations;
+    const int iterations = is_last(level)      ? options.fine_iterations
+                           : is_guessed(level) ? options.coarse_iterations
+                                               : kMiddleIterations;
     StepFindings findings;
     for (int i = 0; i < iterations; ++i) {
       progress_.check_cancelled();
       const bool is_final = is_last(level) && i + 1 == iterations;
       const NearDistances before(volume_);
-      findings = matching_step(job_, settled_, hull, {level == 0, is_final}, volume_, counts);
+      findings =
+          matching_step(job_, settled_, hull, {is_guessed(level), is_final}, volume_, counts);
       measure_anew(before, bounding, is_final ? kFullReach : kNearReach);
       keep_thin(job_, hull, volume_, counts);
       if (is_final) restore_lost(job_, hull, volume_, counts);
@@ -173,6 +179,7 @@ class SurfaceRefiner {
 
   RefineJob job_;
   std::vector<GridSpec> grids_;  // coarse to fine
+  const SparseVolume* before_;
   Progress& progress_;
   SparseVolume volume_;
   SettledBricks settled_;  // by the level before
@@ -217,7 +224,14 @@ SparseVolume refine_surface(gpu::Context& context, const RefineScene& scene,
   std::vector<GridSpec> grids =
       grids_to(scene.finest, scene.cameras, job.is_bounded(), options.levels);
   RefineReport counts;
-  SparseVolume volume = SurfaceRefiner(job, std::move(grids), progress).run(checkpoint, counts);
+  const std::size_t last = std::min(grids.size(), std::size_t(options.follow_levels));
+  if (scene.before && resembles(*scene.before, scene.hull_at(*(grids.end() - long(last))))) {
+    grids.erase(grids.begin(), grids.end() - long(last));
+    counts.followed = true;
+  }
+  SparseVolume volume =
+      SurfaceRefiner(job, std::move(grids), counts.followed ? scene.before : nullptr, progress)
+          .run(checkpoint, counts);
   if (report) *report = std::move(counts);
   return volume;
 }

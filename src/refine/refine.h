@@ -49,7 +49,7 @@ struct RefineOptions {
   /// Do the silhouettes, where there are any, bound what they show (carving::silhouettes_bound)?
   /// No choice of a user.
   bool bounded = true;
-  int levels = 0;
+  int levels = 0, follow_levels = 2;
   static constexpr int kCoarsestVoxels = 80, kFewestVoxels = 20;
   int coarse_iterations = 3, fine_iterations = 1;
   int coarse_offsets = 11, fine_offsets = 7;
@@ -86,6 +86,9 @@ inline void describe(Described& to, RefineOptions& o) {
   to.number("levels", &o.levels, from_to(0, 8), "",
             "sizes of voxels, each half the one before; the last is the result's")
       .zero = "automatic";
+  to.number(
+      "follow_levels", &o.follow_levels, from_to(1, 8), "",
+      "the last levels, which alone are done where the surface of the moment before is known");
   to.number("coarse_iterations", &o.coarse_iterations, at_least(1), "",
             "iterations of matching and moving, at the first level");
   to.number("fine_iterations", &o.fine_iterations, at_least(1), "",
@@ -149,7 +152,8 @@ struct FitReport {
 };
 
 struct RefineReport {
-  int resumed = 0;  ///< levels that an earlier run had done
+  int resumed = 0;        ///< levels that an earlier run had done
+  bool followed = false;  ///< did it start from the moment before?
   std::vector<LevelReport> levels;
   std::vector<FitReport> fits;
 };
@@ -172,12 +176,17 @@ struct RefineScene {
   std::span<const Camera> cameras;
   /// The same views' photographs, larger, for levels whose voxels ask for them; null: none.
   projtex::OutOfCorePhotographs* larger = nullptr;
+  /// The surface a moment ago, on any grid, of what may have moved by some voxels since; null: it
+  /// is not known.
+  const SparseVolume* before = nullptr;
 };
 
 /// The surface that the photographs agree on, on the finest grid, from the hull inwards. A level
 /// starts from the one before, takes back what only finer voxels of the hull show, and then matches
 /// the surface's tangent patches between the views that see them and moves its signed distance, a
 /// few times over. Surface that no camera sees is closed smoothly. Deterministic on one device.
+/// Where the surface of the moment before is known, and the silhouettes show little that it has
+/// not, the last levels start from it and the others are not done.
 /// With a `checkpoint`, levels that an interrupted run of the same job finished are not done again;
 /// the caller removes the file. Throws Cancelled, UsageError for options, and what hull_at throws.
 SparseVolume refine_surface(gpu::Context& context, const RefineScene& scene,

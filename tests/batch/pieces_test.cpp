@@ -107,5 +107,23 @@ TEST(Frames, MakePiecesOfTheirOwn) {
   EXPECT_EQ(two[4].name, "b.10");
 }
 
+TEST(Precedents, FramesFollowEachOtherInChains) {
+  const std::vector<Piece> frames =
+      pieces_of_frames(pieces_of_scenes({"x/a", "x/b"}), {.first = 3, .last = 7, .digits = 1});
+  ASSERT_EQ(frames.size(), 10u);
+  for (const Precedent& one : precedents(frames, 1)) EXPECT_FALSE(one.follow || one.rig);
+  const std::vector<Precedent> all = precedents(frames, 2);
+  for (const std::size_t first : {0u, 5u}) {
+    EXPECT_FALSE(all[first].follow || all[first].rig) << "the first of a sequence";
+    for (std::size_t i = 1; i < 5; ++i) {
+      EXPECT_EQ(all[first + i].rig, frames[first].name);
+      EXPECT_EQ(all[first + i].follow.has_value(), i % 2 == 1) << i;
+    }
+    EXPECT_EQ(all[first + 3].follow, frames[first + 2].name);
+  }
+  for (const Precedent& one : precedents(pieces_of_scenes({"a", "b"}), 9))
+    EXPECT_FALSE(one.follow || one.rig) << "they are no frames";
+}
+
 }  // namespace
 }  // namespace photohull::batch

@@ -35,6 +35,15 @@ TEST(Store, KeepsWhatBecameOfPieces) {
   EXPECT_FALSE(store.outcome("a"));
 }
 
+TEST(Store, KnowsItsPiecesByTheirFolders) {
+  const ScratchFolder folder;
+  const Store store(folder / "out");
+  EXPECT_EQ(store.piece_of(folder / "out/0007"), "0007");
+  EXPECT_EQ(store.piece_of(folder / "x/../out/./0007"), "0007");
+  EXPECT_FALSE(store.piece_of(folder / "elsewhere/0007"));
+  EXPECT_FALSE(store.piece_of({}));
+}
+
 TEST(Store, PublishesVolumesOfASequence) {
   const ScratchFolder folder;
   const Store store(folder / "out");

@@ -125,6 +125,60 @@ TEST_F(BatchCommand, FramesTakeTheirOwnPhotographs) {
   EXPECT_FALSE(fs::exists(folder_ / "film/volume.09.vdb"));
 }
 
+TEST_F(BatchCommand, FramesFollowEachOtherInChains) {
+  const Arguments chain = {"batch",         scene(),
+                           "--frames",      "1-3",
+                           "--images",      path("images"),
+                           "--masks",       path("cutouts"),
+                           "--resolution",  "40",
+                           "--report-page", "off",
+                           "--chain",       "2",
+                           "--out"};
+  const auto with = [&](const char* command, const std::string& to) {
+    Arguments all = chain;
+    all[0] = command;
+    all.push_back(path(to));
+    return all;
+  };
+  const auto report = [&](const std::string& folder) {
+    return nlohmann::json::parse(read_bytes(folder_ / folder / "report.json"));
+  };
+  succeed(with("batch", "film"));
+  for (const int frame : {1, 2, 3}) {
+    const nlohmann::json told = report(concat("film/", frame));
+    EXPECT_EQ(told.at("followed"), frame % 2 == 0) << frame;
+    EXPECT_EQ(told.at("photometric").contains("taken_from"), frame != 1) << frame;
+  }
+  EXPECT_THAT(succeed(with("batch", "film")).out, HasSubstr("3 of them made before"));
+  // Two processes: what follows waits for what it follows, and ends the same.
+  succeed(with("plan", "job"));
+  EXPECT_THAT(succeed({"run", path("job"), "--pieces", "2"}).out,
+              HasSubstr("1 follow frames that are not made yet"));
+  auto other = std::async(std::launch::async, [&] { return run_photohull({"run", path("job")}); });
+  EXPECT_EQ(run_photohull({"run", path("job")}).code, 0);
+  EXPECT_EQ(other.get().code, 0);
+  succeed({"merge", path("job")});
+  for (const char* file : {"2/mesh.ply", "3/mesh.ply"})
+    EXPECT_EQ(read_bytes(folder_ / "film" / file), read_bytes(folder_ / "job" / file)) << file;
+  fail(2, {"batch", scene(), "--chain", "2", "--out", out()}, {"--chain 2", "--frames"});
+}
+
+TEST_F(BatchCommand, FramesAfterOneWithoutResultAreMadeByThemselves) {
+  for (const char* frame : {"1", "2", "3"}) {
+    fs::create_directories(folder_ / "masks");
+    fs::copy(folder_ / "cutouts", folder_ / "masks" / frame, fs::copy_options::recursive);
+  }
+  write_masks("masks/2", 0, 0);
+  const Finished run = run_photohull({"batch", scene(), "--frames", "1-3", "--masks",
+                                      path("masks/{frame}"), "--resolution", "40", "--report-page",
+                                      "off", "--chain", "3", "--out", path("film")});
+  EXPECT_EQ(run.code, 1);
+  EXPECT_THAT(run.err, HasSubstr("3: 2 has no result to go by"));
+  const auto third = nlohmann::json::parse(read_bytes(folder_ / "film/3/report.json"));
+  EXPECT_EQ(third.at("followed"), false);
+  EXPECT_TRUE(third.at("photometric").contains("taken_from")) << "the first frame's";
+}
+
 TEST_F(BatchCommand, FaultsAreToldBeforeTheWork) {
   fail(2, batch("\"" + scene() + "\" --name a\n\"" + scene() + "\" --resolution 0\n", "out"),
        {"list.txt line 2", "--resolution"});

@@ -28,7 +28,7 @@ class RefineSurface : public testing::Test {
     const auto hull_at = [&](const GridSpec& grid) { return scene_.hull(grid, masks); };
     return refine_surface(context,
                           {scene_.grid(edge), hull_at, scene_.silhouettes(masks),
-                           projtex::ImageSet(scene_.views), scene_.cameras, larger_},
+                           projtex::ImageSet(scene_.views), scene_.cameras, larger_, before_},
                           options_, progress_, &report_);
   }
 
@@ -37,6 +37,7 @@ class RefineSurface : public testing::Test {
   Progress progress_;
   RefineReport report_;
   projtex::OutOfCorePhotographs* larger_ = nullptr;
+  const SparseVolume* before_ = nullptr;
 };
 
 TEST_F(RefineSurface, WhatIsSettledStaysCoarseAndIsNotMatchedAgain) {
@@ -128,6 +129,39 @@ TEST_F(RefineSurface, HoldingAFewPhotographsAtATimeChangesNothing) {
   EXPECT_GT(few.times(), 3 * int(scene_.views.size()) / ViewChoice::kMostViews);
   EXPECT_EQ(all.table, some.table);
   EXPECT_EQ(all.distance, some.distance);
+}
+
+/// The bowl, moved by an offset in voxels, on a lattice of its own.
+SparseVolume moved_bowl(const GridSpec& grid, const glm::dvec3& offset) {
+  return sample_volume(
+      grid.bricks + 1,
+      [&](const glm::dvec3& v) {
+        return test::bowl(grid.world(v - 3.5 - offset)) / grid.voxel_size;
+      },
+      grid.world(glm::dvec3(-3.5)), grid.voxel_size);
+}
+
+TEST_F(RefineSurface, FollowsTheMomentBefore) {
+  options_.levels = 3;
+  const double alone = test::mean_error(run(8));
+  EXPECT_FALSE(report_.followed);
+  const SparseVolume before = moved_bowl(scene_.grid(8), {2, -1.5, 1});
+  before_ = &before;
+  const double followed = test::mean_error(run(8));
+  EXPECT_TRUE(report_.followed);
+  EXPECT_EQ(report_.levels.size(), 2u);
+  EXPECT_LT(followed, 1.1 * alone);
+}
+
+TEST_F(RefineSurface, AMomentThatIsElsewhereIsNotFollowed) {
+  options_.levels = 3;
+  const SparseVolume alone = run(6);
+  const SparseVolume before = moved_bowl(scene_.grid(6), glm::dvec3(18, 0, 0));
+  before_ = &before;
+  const SparseVolume volume = run(6);
+  EXPECT_FALSE(report_.followed);
+  EXPECT_EQ(volume.table, alone.table);
+  EXPECT_EQ(volume.distance, alone.distance);
 }
 
 TEST_F(RefineSurface, WithoutMasks) {

@@ -31,6 +31,7 @@ struct SurfaceJob {
   bool bounded = true;  ///< do silhouettes bound the surface?
   Progress& progress;
   projtex::OutOfCorePhotographs* larger = nullptr;  ///< to match the surface in; may be null
+  const SparseVolume* before = nullptr;             ///< the surface a moment ago; may be null
 };
 
 struct Surface {
@@ -64,6 +65,8 @@ struct MethodEntry {
   bool needs_no_silhouettes;
   /// Can it match in photographs that are larger than those that are held (SurfaceJob::larger)?
   bool matches_larger;
+  /// Can it start from the surface of the moment before (SurfaceJob::before)?
+  bool follows;
   /// Does it begin with the hull at the lattice's voxels?
   bool from_hull;
   const char* stage;  ///< its name for progress and the report; null: none, the hull is the result

@@ -51,6 +51,7 @@ Parameters parameters_of(const SurfaceJob& job) {
 SurfaceFindings findings_of(const refine::RefineReport& counts) {
   SurfaceFindings out;
   out.refine.resumed_levels = counts.resumed;
+  out.refine.followed = counts.followed;
   for (const refine::FitReport& fit : counts.fits)
     out.refine.fits.push_back(
         {fit.seconds, fit.held_before, fit.held_after, fit.mean_move, fit.kept});
@@ -109,9 +110,13 @@ Surface carve(const SurfaceJob& job, SparseVolume) {
     return hull;
   };
   out.volume = refine::refine_surface(
-      job.context, {job.subject.grid, hull_at, silhouettes, *job.images, cameras, job.larger},
+      job.context,
+      {job.subject.grid, hull_at, silhouettes, *job.images, cameras, job.larger, job.before},
       parameters_of(job).refine, job.progress, &counts, checkpoint ? &*checkpoint : nullptr);
   out.findings = findings_of(counts);
+  if (job.before && !counts.followed)
+    job.progress.note(concat(job.options.follow.string(),
+                             ": too much lies elsewhere now, so the surface was found anew"));
   check_found(job, out.volume, counts);
   return out;
 }
@@ -154,6 +159,7 @@ const MethodEntry kRefineMethod = {.method = Method::kRefine,
                                    .by_silhouettes = false,
                                    .needs_no_silhouettes = true,
                                    .matches_larger = true,
+                                   .follows = true,
                                    .from_hull = false,
                                    .stage = "refine",
                                    .weight = Weights::kRefine,

@@ -74,6 +74,7 @@ constexpr MethodEntry entry(Method method, const char* name) {
           .by_silhouettes = false,
           .needs_no_silhouettes = false,
           .matches_larger = false,
+          .follows = false,
           .from_hull = true,
           .stage = "photo",
           .weight = Weights::kPhoto,
