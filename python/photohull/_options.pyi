@@ -120,6 +120,11 @@ class ReconstructOptions(TypedDict, total=False):
     # sweeps: pixels around its projection within which each view may show a voxel: bears cameras that
     # are wrong by as much (default: 0) (pixels).
     r_consistency: float | None
+    # results of the moment before, of the same rig: the surface starts from theirs (refine), and
+    # their cameras and gains hold.
+    follow: str | float | os.PathLike[str] | None
+    # results of the same rig: their cameras and gains hold, and nothing of them is measured again.
+    rig: str | float | os.PathLike[str] | None
     # at which photographs are read; auto: what the voxels need, and the memory bears. Default: auto.
     image_scale: float | str | None
     # memory that the job may take; auto: three quarters of what is available (bytes). Default: auto.
