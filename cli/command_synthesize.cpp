@@ -1,9 +1,12 @@
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
+#include "batch/pieces.h"
 #include "cli/front/command_table.h"
 #include "commands.h"
 #include "core/error.h"
@@ -16,7 +19,7 @@ namespace photohull::cli {
 namespace {
 
 struct SynthesizeArguments {
-  std::string spec, out;
+  std::string spec, out, frames;
   gpu::DeviceOptions device;
   std::optional<std::string> size;
   std::optional<int> views;
@@ -50,6 +53,35 @@ synth::Spec read_spec(const SynthesizeArguments& a) {
   return synth::parse_spec(synth::spec_text(spec), a.spec, "");
 }
 
+void print_end(const SynthesizeArguments& a, const synth::SynthesizedScene& made) {
+  if (!made.middlebury)
+    std::printf("lens distortion: no Middlebury cameras, which cannot express it\n");
+  std::printf("  %s\n", a.out.c_str());
+}
+
+void run_frames(const SynthesizeArguments& a, const synth::Spec& spec) {
+  const auto range = batch::parse_frames(a.frames);
+  if (!range)
+    throw UsageError("--frames " + a.frames +
+                     ": give the first and the last, such as 0-59 or 0000-0059");
+  std::vector<std::filesystem::path> folders;
+  for (int frame = range->first; frame <= range->last; ++frame)
+    folders.push_back(std::filesystem::path(a.out) / range->text(frame));
+  TerminalProgress progress(synth::sequence_weight(spec, int(folders.size())));
+  const std::vector<synth::SynthesizedScene> made =
+      synth::synthesize_frames(spec, folders, progress, a.device.device, a.device.threads);
+  progress.finish();
+  double least_seen = 1, largest_fill = 0;
+  for (const synth::SynthesizedScene& scene : made) {
+    least_seen = std::min(least_seen, scene.seen);
+    largest_fill = std::max(largest_fill, scene.largest_fill);
+  }
+  std::printf("%zu frames of %d views, %g across; the object covers up to %.0f %% of a picture\n",
+              made.size(), made.front().views, made.front().diagonal, 100 * largest_fill);
+  std::printf("in each at least %.1f %% of the surface is seen by a camera\n", 100 * least_seen);
+  print_end(a, made.front());
+}
+
 void run_synthesize(const SynthesizeArguments& a) {
   if (a.list) return print_shapes();
   if (a.spec.empty())
@@ -59,6 +91,7 @@ void run_synthesize(const SynthesizeArguments& a) {
   if (a.device.threads > 0)
     limit.emplace(tbb::global_control::max_allowed_parallelism, a.device.threads);
   const synth::Spec spec = read_spec(a);
+  if (!a.frames.empty()) return run_frames(a, spec);
   TerminalProgress progress(synth::total_weight(spec));
   const synth::SynthesizedScene made =
       synth::synthesize(spec, a.out, progress, a.device.device, a.device.threads);
@@ -66,9 +99,7 @@ void run_synthesize(const SynthesizeArguments& a) {
   std::printf("%d views of %zu triangles, %g across; the object covers up to %.0f %% of a frame\n",
               made.views, made.triangles, made.diagonal, 100 * made.largest_fill);
   std::printf("%.1f %% of the surface is seen by a camera\n", 100 * made.seen);
-  if (!made.middlebury)
-    std::printf("lens distortion: no Middlebury cameras, which cannot express it\n");
-  std::printf("  %s\n", a.out.c_str());
+  print_end(a, made);
 }
 
 }  // namespace
@@ -81,6 +112,9 @@ void add_synthesize(CLI::App& app) {
   c->add_option("--views", a->views, "number of views in place of the spec's");
   c->add_option("--size", a->size, "image size in place of the spec's, such as 640x480");
   c->add_option("--seed", a->seed, "seed of everything random in place of the spec's");
+  c->add_option("--frames", a->frames,
+                "numbers of a sequence's frames, such as 0000-0059: one scene each, in folders of "
+                "--out, while the spec's motion passes once");
   add_flags_of(*c, a->device);
   c->add_flag("--list", a->list, "print the built-in shapes with their parameters and stop");
   c->footer(
@@ -91,6 +125,7 @@ void add_synthesize(CLI::App& app) {
       "  photohull synthesize datasets/synthetic/block.json --out out/block\n"
       "  photohull synthesize datasets/synthetic/plant.json --out out/plant --size 1280x960\n"
       "  photohull synthesize my_spec.json --out out/mine --views 12 --seed 7\n"
+      "  photohull synthesize datasets/synthetic/figure.json --frames 0000-0059 --out out/dance\n"
       "  photohull synthesize --list\n"
       "  photohull reconstruct out/block --out out/block/result");
   c->callback([a] { run_synthesize(*a); });

@@ -167,7 +167,7 @@ float add_code_noise(float light, double sigma, Random& random) {
 
 /// What the sensor reads, in linear light, 1 = white.
 std::vector<glm::vec3> develop(const Picture& picture, const DegradationSpec& spec,
-                               std::uint64_t seed, std::size_t view, bool again) {
+                               std::uint64_t seed, std::size_t view, std::uint64_t take) {
   std::vector<glm::vec3> image = picture.colour;
   if (spec.vignetting > 0) vignette(image, picture.width, picture.height, spec.vignetting);
   blur(image, picture.width, picture.height, spec.blur);
@@ -181,7 +181,7 @@ std::vector<glm::vec3> develop(const Picture& picture, const DegradationSpec& sp
     glm::vec3& light = image[i];
     light *= gain;
     if (noisy) {
-      Random random(seed ^ mix_bits(kNoise), view, again ? i + image.size() : i);
+      Random random(seed ^ mix_bits(kNoise), view, i + take * image.size());
       for (int c = 0; c < 3; ++c) {
         const double variance = spec.read_noise * spec.read_noise +
                                 spec.photon_noise * spec.photon_noise * std::max(0.0f, light[c]);
@@ -189,7 +189,7 @@ std::vector<glm::vec3> develop(const Picture& picture, const DegradationSpec& sp
       }
     }
     if (spec.code_noise > 0) {
-      Random random(seed ^ mix_bits(kCodeNoise), view, again ? i + image.size() : i);
+      Random random(seed ^ mix_bits(kCodeNoise), view, i + take * image.size());
       for (int c = 0; c < 3; ++c)
         light[c] = add_code_noise(light[c], spec.code_noise / 255, random);
     }
@@ -200,19 +200,20 @@ std::vector<glm::vec3> develop(const Picture& picture, const DegradationSpec& sp
 }  // namespace
 
 std::vector<std::uint8_t> expose(const Picture& picture, const DegradationSpec& spec,
-                                 std::uint64_t seed, std::size_t view, bool again) {
+                                 std::uint64_t seed, std::size_t view, std::uint64_t take) {
   std::vector<std::uint8_t> bytes;
   bytes.reserve(picture.colour.size() * 3);
-  for (const glm::vec3& light : develop(picture, spec, seed, view, again))
+  for (const glm::vec3& light : develop(picture, spec, seed, view, take))
     for (int c = 0; c < 3; ++c) bytes.push_back(encode(light[c]));
   return spec.jpeg > 0 ? through_jpeg(bytes, picture.width, picture.height, spec.jpeg) : bytes;
 }
 
 std::vector<std::uint16_t> expose_16_bits(const Picture& picture, const DegradationSpec& spec,
-                                          std::uint64_t seed, std::size_t view) {
+                                          std::uint64_t seed, std::size_t view,
+                                          std::uint64_t take) {
   std::vector<std::uint16_t> codes;
   codes.reserve(picture.colour.size() * 3);
-  for (const glm::vec3& light : develop(picture, spec, seed, view, false))
+  for (const glm::vec3& light : develop(picture, spec, seed, view, take))
     for (int c = 0; c < 3; ++c)
       codes.push_back(
           std::uint16_t(std::lround(65535 * srgb_from_linear(std::clamp(light[c], 0.0f, 1.0f)))));

@@ -13,13 +13,14 @@ namespace photohull::synth {
 /// order of a real one: vignetting, blur, motion blur, exposure and white balance, noise, clipping,
 /// sRGB, JPEG. Vignetting takes a share v r^2 of the light, r = 1 in the corners; the variance of
 /// the noise is read^2 + photon^2 * light; code_noise is added to the sRGB codes. `view` and the
-/// seed decide what differs between views; `again` is the same view with other noise.
+/// seed decide what differs between views; another `take` is the same view with other noise.
 std::vector<std::uint8_t> expose(const Picture& picture, const DegradationSpec& spec,
-                                 std::uint64_t seed, std::size_t view, bool again = false);
+                                 std::uint64_t seed, std::size_t view, std::uint64_t take = 0);
 
 /// The same at 16 bits a channel, without JPEG.
 std::vector<std::uint16_t> expose_16_bits(const Picture& picture, const DegradationSpec& spec,
-                                          std::uint64_t seed, std::size_t view);
+                                          std::uint64_t seed, std::size_t view,
+                                          std::uint64_t take = 0);
 
 /// The factors of red, green and blue light by which exposure and white balance of a view differ.
 glm::vec3 view_gain(const DegradationSpec& spec, std::uint64_t seed, std::size_t view);

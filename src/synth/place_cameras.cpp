@@ -90,16 +90,30 @@ bool is_inside(const Surface& surface, const glm::dvec3& point) {
   return true;
 }
 
-/// Half the larger of width and height that the surface needs for focal length 1, where the frame's
+/// What is to be in the frame: all vertices; of what moves, the corners of the box of all frames.
+std::vector<glm::dvec3> points_to_show(const Surface& surface) {
+  std::vector<glm::dvec3> points;
+  if (!surface.moves)
+    for (std::size_t i = 0; i < surface.mesh.positions.size(); ++i)
+      points.push_back(surface.mesh.world(i));
+  else
+    for (int corner = 0; corner < 8; ++corner)
+      points.push_back(mix(surface.box.min, surface.box.max,
+                           glm::dvec3(corner & 1, (corner >> 1) & 1, corner >> 2)));
+  return points;
+}
+
+/// Half the larger of width and height that the points need for focal length 1, where the frame's
 /// sides are 2 x aspect.
-double half_extent(const Surface& surface, const Pose& pose, double aspect, std::size_t view) {
+double half_extent(const std::vector<glm::dvec3>& points, double diagonal, const Pose& pose,
+                   double aspect, std::size_t view) {
   double extent = 0, nearest = INFINITY;
-  for (std::size_t i = 0; i < surface.mesh.positions.size(); ++i) {
-    const glm::dvec3 p = pose.rotation * surface.mesh.world(i) + pose.translation;
+  for (const glm::dvec3& point : points) {
+    const glm::dvec3 p = pose.rotation * point + pose.translation;
     nearest = std::min(nearest, p.z);
     extent = std::max({extent, std::abs(p.x) / (p.z * aspect), std::abs(p.y) / p.z});
   }
-  if (!(nearest > 1e-3 * surface.diagonal))
+  if (!(nearest > 1e-3 * diagonal))
     throw Error(concat("cameras: the object reaches behind or into the camera of view ", view,
                        "; raise cameras.distance or cameras.distances"));
   return extent;
@@ -121,6 +135,7 @@ std::vector<LensCamera> place_cameras(const Spec& spec, const Surface& surface) 
   const double width = spec.image.width, height = spec.image.height;
   std::vector<LensCamera> all;
   const bool within = c.layout == "within";  // what surrounds a camera does not fit a frame
+  const std::vector<glm::dvec3> points = points_to_show(surface);
   double largest = 0;
   for (const glm::dvec3& d : directions(c)) {
     const std::size_t i = all.size();
@@ -136,8 +151,9 @@ std::vector<LensCamera> place_cameras(const Spec& spec, const Surface& surface) 
     const double focal = c.focals[i % c.focals.size()];
     lens.camera.intrinsics.fx = focal;
     if (!within)
-      largest = std::max(
-          largest, focal * half_extent(surface, lens.camera.cam_from_world, width / height, i));
+      largest =
+          std::max(largest, focal * half_extent(points, surface.diagonal,
+                                                lens.camera.cam_from_world, width / height, i));
     all.push_back(lens);
   }
   const DegradationSpec& g = spec.degradations;

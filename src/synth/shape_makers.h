@@ -28,6 +28,9 @@ TriMesh make_seedling(const ShapeValues& v);
 TriMesh make_cage(const ShapeValues& v);
 TriMesh make_wheel(const ShapeValues& v);
 
+// shapes_figure.cpp
+TriMesh make_figure(const ShapeValues& v);
+
 // shapes_implicit.cpp
 TriMesh make_gyroid(const ShapeValues& v);
 

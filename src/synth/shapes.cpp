@@ -140,6 +140,11 @@ std::vector<Shape> wire_shapes() {
 
 std::vector<Shape> implicit_shapes() {
   return {
+      {"figure",
+       "a person who dances on one leg, on a round plinth; the pose is that of a phase",
+       {{"phase", 0.1, 0, 1, "of the dance; 1 is the pose of 0 again"},
+        {"swing", 35, 0, 60, "degrees that arms and the free leg swing to either side"}},
+       make_figure},
       {"gyroid",
        "a ball cut from the sheet of a gyroid: curved walls, tunnels through and through",
        {{"radius", 1.0, 0.01, 100, "of the ball"},

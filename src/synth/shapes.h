@@ -43,4 +43,7 @@ TriMesh make_shape(const Shape& shape, const ShapeValues& values = {});
 /// near the surface, roughly.
 double gyroid_field(const glm::dvec3& p, const ShapeValues& values);
 
+/// The same of the figure shape's surface.
+double figure_field(const glm::dvec3& p, const ShapeValues& values);
+
 }  // namespace photohull::synth

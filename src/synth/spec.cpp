@@ -68,10 +68,20 @@ class SpecWriter {
     (*at_)["parameters"] = Json::object();
     for (const auto& [name, value] : geometry.parameters) (*at_)["parameters"][name] = value;
   }
+  void motion(const GeometrySpec&, const MotionSpec& motion) {
+    Json& entry = (*at_)["motion"] = Json::object();
+    for (const auto& [name, ends] : motion.parameters) entry[name] = {ends[0], ends[1]};
+    write_ends(entry, "rotate", motion.rotate);
+    write_ends(entry, "translate", motion.translate);
+  }
 
   Json root = Json::object();
 
  private:
+  static void write_ends(Json& entry, const char* name, const std::vector<glm::dvec3>& ends) {
+    for (const glm::dvec3& p : ends) entry[name].push_back({p.x, p.y, p.z});
+  }
+
   Json* at_ = &root;
 };
 
@@ -107,6 +117,11 @@ void check_together(const Spec& s, const std::string& source) {
     fail(
         "degradations.mask_style: aliased masks cannot grow or shrink; set degradations.mask_grow "
         "to 0 or choose cut");
+  if (s.moment.frame >= s.moment.frames)
+    fail(concat("moment.frame: the sequence has ", s.moment.frames,
+                " frames, the last of which is ", s.moment.frames - 1));
+  if (!s.motion.empty() && s.sheet.turn != glm::dvec3(0.0))
+    fail("sheet.turn: what lies on another side does not move; leave out sheet.turn or motion");
   const int views = view_count(s.cameras);
   if (views > kMostViews)
     fail(concat("cameras: ", views, " views are more than ", kMostViews, "; ask for fewer"));

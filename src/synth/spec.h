@@ -1,9 +1,11 @@
 // What a synthesized scene is made of.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -20,6 +22,23 @@ struct GeometrySpec {
   double scale = 1;
   glm::dvec3 rotate{0.0};     ///< degrees
   glm::dvec3 translate{0.0};  ///< world units
+};
+
+/// What of the geometry changes over a sequence of frames: its values at the first frame, and those
+/// that the frame after the last would have, so that a period closes. In between they change
+/// evenly.
+struct MotionSpec {
+  std::map<std::string, std::array<double, 2>> parameters;  ///< of the built-in shape, by name
+  std::vector<glm::dvec3> rotate;     ///< two in place of the geometry's, or none; degrees
+  std::vector<glm::dvec3> translate;  ///< the same; world units
+
+  bool empty() const { return parameters.empty() && rotate.empty() && translate.empty(); }
+};
+
+/// Which frame of a sequence is photographed.
+struct MomentSpec {
+  int frame = 0;   ///< counted from 0
+  int frames = 1;  ///< of the sequence
 };
 
 struct MaterialSpec {
@@ -163,6 +182,8 @@ struct Spec {
   std::string name = "scene";
   std::uint64_t seed = 1;
   GeometrySpec geometry;
+  MotionSpec motion;
+  MomentSpec moment;
   MaterialSpec material;
   LightSpec light;
   BackgroundSpec background;
@@ -174,6 +195,7 @@ struct Spec {
 };
 
 inline constexpr int kMostViews = 2000;
+inline constexpr int kMostFrames = 1000000;
 inline constexpr int kLargestImage = 16384;  ///< pixels along a side
 inline constexpr double kMostRays = 2e11;    ///< of a whole scene
 

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/nearest_name.h"
+#include "synth/spec_visit.h"
 
 namespace photohull::synth {
 
@@ -160,6 +161,41 @@ void SpecReader::shape(GeometrySpec& geometry) {
   object("parameters", [&] {
     for (const ShapeParameter& p : chosen.parameters)
       number(p.name, geometry.parameters[p.name], p.low, p.high);
+  });
+}
+
+void SpecReader::check_ends(const Json& j, const std::string& place) const {
+  check_list(j, place);
+  if (j.size() != 2)
+    fail(place, concat("expected two values, of the first frame and of the end, found ", j.size()));
+}
+
+void SpecReader::ends(const char* name, std::vector<glm::dvec3>& value, double low, double high) {
+  const Json* j = take(name);
+  if (!j) return;
+  const std::string place = path(name);
+  check_ends(*j, place);
+  value.clear();
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::string at = place + "[" + std::to_string(i) + "]";
+    const std::vector<double> numbers = number_list((*j)[i], at, low, high);
+    if (numbers.size() != 3) fail(at, concat("expected 3 numbers, found ", numbers.size()));
+    value.emplace_back(numbers[0], numbers[1], numbers[2]);
+  }
+}
+
+void SpecReader::motion(const GeometrySpec& geometry, MotionSpec& motion) {
+  const Shape* shape = find_shape(geometry.shape);  // a mesh file has no parameters
+  object("motion", [&] {
+    for (const ShapeParameter& p : shape ? shape->parameters : std::vector<ShapeParameter>()) {
+      const Json* j = take(p.name);
+      if (!j) continue;
+      check_ends(*j, path(p.name));
+      const std::vector<double> both = number_list(*j, path(p.name), p.low, p.high);
+      motion.parameters[p.name] = {both[0], both[1]};
+    }
+    ends("rotate", motion.rotate, -kFullTurn, kFullTurn);
+    ends("translate", motion.translate, -kFarthest, kFarthest);
   });
 }
 

@@ -51,6 +51,7 @@ class SpecReader {
       inside((*j)[i], place + "[" + std::to_string(i) + "]", [&] { visit(value[i]); });
   }
   void shape(GeometrySpec& geometry);
+  void motion(const GeometrySpec& geometry, MotionSpec& motion);
   /// A field to pass over.
   void ignore(const char* name) { take(name); }
   /// Throws for fields that nobody asked for.
@@ -64,6 +65,9 @@ class SpecReader {
   int checked_integer(const nlohmann::json& j, const std::string& place, int low, int high) const;
   std::vector<double> number_list(const nlohmann::json& j, const std::string& place, double low,
                                   double high) const;
+  /// Throws unless a motion has two ends.
+  void check_ends(const nlohmann::json& j, const std::string& place) const;
+  void ends(const char* name, std::vector<glm::dvec3>& value, double low, double high);
   void check_list(const nlohmann::json& j, const std::string& place) const;
   void enter(const nlohmann::json& j, const std::string& place);
   template <typename Visit>

@@ -10,9 +10,11 @@ namespace photohull::synth {
 //   flag(name, bool&)                    text(name, string&)              choice(name, string&,
 //   {...}) vector(name, dvec3& or dvec2&, low, high) numbers(name, vector<double>&, low, high)
 //   integers(name, vector<int>&, low, high) object(name, function)               objects(name,
-//   vector<T>&, function of T&) shape(GeometrySpec&)
+//   vector<T>&, function of T&) shape(GeometrySpec&) motion(const GeometrySpec&, MotionSpec&)
 
 inline constexpr double kFar = 1e9;
+inline constexpr double kFullTurn = 360;  ///< degrees that the geometry may be turned by
+inline constexpr double kFarthest = 1e6;  ///< that it may be moved
 
 template <typename Visitor>
 void visit_material(Visitor& v, MaterialSpec& m) {
@@ -123,8 +125,13 @@ void visit_spec(Visitor& v, Spec& s) {
   v.object("geometry", [&] {
     v.shape(s.geometry);
     v.number("scale", s.geometry.scale, 1e-6, 1e6);
-    v.vector("rotate", s.geometry.rotate, -360, 360);
-    v.vector("translate", s.geometry.translate, -1e6, 1e6);
+    v.vector("rotate", s.geometry.rotate, -kFullTurn, kFullTurn);
+    v.vector("translate", s.geometry.translate, -kFarthest, kFarthest);
+  });
+  v.motion(s.geometry, s.motion);
+  v.object("moment", [&] {
+    v.integer("frame", s.moment.frame, 0, kMostFrames - 1);
+    v.integer("frames", s.moment.frames, 1, kMostFrames);
   });
   v.object("material", [&] { visit_material(v, s.material); });
   v.object("light", [&] { visit_light(v, s.light); });

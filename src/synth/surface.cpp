@@ -20,17 +20,6 @@ glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& fallback) {
   return size > 0 ? v / size : fallback;
 }
 
-/// Degrees about x, y and z, in that order.
-glm::dmat3 turn_by(const glm::dvec3& degrees) {
-  glm::dmat4 turn(1);
-  for (int axis = 2; axis >= 0; --axis) {
-    glm::dvec3 around(0);
-    around[axis] = 1;
-    turn = glm::rotate(turn, glm::radians(degrees[axis]), around);
-  }
-  return glm::dmat3(turn);
-}
-
 void move(const GeometrySpec& g, TriMesh& mesh) {
   const glm::dmat3 linear = turn_by(g.rotate) * g.scale;
   for (glm::vec3& p : mesh.positions) p = glm::vec3(linear * glm::dvec3(p));
@@ -139,6 +128,26 @@ std::vector<std::uint32_t> find_patches(const Surface& s) {
 
 }  // namespace
 
+glm::dmat3 turn_by(const glm::dvec3& degrees) {
+  glm::dmat4 turn(1);
+  for (int axis = 2; axis >= 0; --axis) {
+    glm::dvec3 around(0);
+    around[axis] = 1;
+    turn = glm::rotate(turn, glm::radians(degrees[axis]), around);
+  }
+  return glm::dmat3(turn);
+}
+
+Box tight_box(const TriMesh& mesh) {
+  Box box{glm::dvec3(INFINITY), glm::dvec3(-INFINITY)};
+  for (const auto& triangle : mesh.triangles)
+    for (const std::uint32_t i : triangle) {
+      box.min = min(box.min, mesh.world(i));
+      box.max = max(box.max, mesh.world(i));
+    }
+  return box;
+}
+
 glm::vec3 Surface::normal(const Hit& hit) const {
   const auto& n = normals[hit.triangle];
   const float u = float(hit.u), v = float(hit.v);
@@ -155,12 +164,7 @@ Surface make_surface(TriMesh mesh, const std::string& source) {
   s.mesh = std::move(mesh);
   s.mesh.normals.clear(), s.mesh.colours.clear(), s.mesh.confidence.clear();
   s.rays = std::make_unique<RayScene>(s.mesh);  // checks that coordinates are finite
-  s.box = {glm::dvec3(INFINITY), glm::dvec3(-INFINITY)};
-  for (const auto& triangle : s.mesh.triangles)
-    for (const std::uint32_t i : triangle) {
-      s.box.min = min(s.box.min, s.mesh.world(i));
-      s.box.max = max(s.box.max, s.mesh.world(i));
-    }
+  s.box = tight_box(s.mesh);
   s.diagonal = s.box.diagonal();
   s.own = {glm::dmat3(1.0), s.box.center(), s.box.size(), s.diagonal};
   double area = 0;
@@ -172,12 +176,16 @@ Surface make_surface(TriMesh mesh, const std::string& source) {
   return s;
 }
 
-Surface make_surface(const GeometrySpec& geometry) {
-  const bool file = !geometry.mesh.empty();
-  TriMesh mesh = file ? read_mesh(geometry.mesh)
-                      : make_shape(*find_shape(geometry.shape), geometry.parameters);
+TriMesh make_mesh(const GeometrySpec& geometry) {
+  TriMesh mesh = geometry.mesh.empty()
+                     ? make_shape(*find_shape(geometry.shape), geometry.parameters)
+                     : read_mesh(geometry.mesh);
   move(geometry, mesh);
-  return make_surface(std::move(mesh), file ? geometry.mesh : geometry.shape);
+  return mesh;
+}
+
+Surface make_surface(const GeometrySpec& geometry) {
+  return make_surface(make_mesh(geometry), geometry.mesh.empty() ? geometry.shape : geometry.mesh);
 }
 
 Surface make_surface(const GeometrySpec& geometry, const glm::dvec3& turn) {

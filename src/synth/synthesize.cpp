@@ -16,6 +16,7 @@
 #include "synth/degrade_image.h"
 #include "synth/degrade_mask.h"
 #include "synth/light_maps.h"
+#include "synth/motion.h"
 #include "synth/place_cameras.h"
 #include "synth/random.h"
 #include "synth/scene_files.h"
@@ -39,6 +40,17 @@ class SharedProgress {
  private:
   Progress& progress_;
   std::mutex mutex_;
+};
+
+/// What the frames of a sequence share.
+struct Sequence {
+  std::optional<Box> box;  ///< around the surface of all frames, where it moves
+  std::unique_ptr<gpu::Context> context;
+  std::string frame;  ///< the one that is made, for the names of stages; empty: no sequence
+
+  std::string stage(const std::string& name) const {
+    return frame.empty() ? name : "frame " + frame + ": " + name;
+  }
 };
 
 /// One seed for all that degrades.
@@ -77,9 +89,19 @@ double mean_pixel(const std::vector<LensCamera>& cameras, const glm::dvec3& midd
   return sum / double(cameras.size());
 }
 
-/// Some thousand vertices spread over the mesh.
-std::vector<glm::dvec3> control_points(const TriMesh& mesh) {
+/// Some thousand vertices spread over the mesh; where it moves, points spread over the box of
+/// all frames, so that their cameras are off alike.
+std::vector<glm::dvec3> control_points(const Surface& surface) {
   std::vector<glm::dvec3> points;
+  const TriMesh& mesh = surface.mesh;
+  constexpr int kSide = 12;
+  if (surface.moves) {
+    for (int i = 0; i < kSide * kSide * kSide; ++i) {
+      const glm::dvec3 place(i % kSide, i / kSide % kSide, i / (kSide * kSide));
+      points.push_back(surface.box.min + surface.box.size() * (place / (kSide - 1.0)));
+    }
+    return points;
+  }
   const std::size_t stride = mesh.positions.size() / 2000 + 1;
   for (std::size_t i = 0; i < mesh.positions.size(); i += stride) points.push_back(mesh.world(i));
   return points;
@@ -147,6 +169,7 @@ double write_views(const Spec& spec, const Surface& surface, const std::vector<L
   const Shading still(spec, surface, pixel, sheet);
   if (context) maps.emplace(*context, spec.light, surface, still.lights());
   const std::uint64_t seed = degradation_seed(spec);
+  const auto frame = std::uint64_t(spec.moment.frame);  // each has noise of its own
   const double rows = double(cameras.size()) * spec.image.height;
   std::atomic<long> rows_done = 0;
   std::vector<double> fill(cameras.size());
@@ -166,15 +189,16 @@ double write_views(const Spec& spec, const Surface& surface, const std::vector<L
     const int w = picture.width, h = picture.height;
     if (spec.image.bits == 16)
       files.write_picture(names[i], w, h,
-                          expose_16_bits(picture, spec.degradations, seed, indices[i]));
+                          expose_16_bits(picture, spec.degradations, seed, indices[i], 2 * frame));
     else
-      files.write_picture(names[i], w, h, expose(picture, spec.degradations, seed, indices[i]));
+      files.write_picture(names[i], w, h,
+                          expose(picture, spec.degradations, seed, indices[i], 2 * frame));
     if (spec.image.maps) files.write_maps(names[i], picture);
     if (!spec.background.plates) return;
     // Taken with the camera as it stands, with noise of its own.
     const Picture empty = render_background(shading, cameras[i], indices[i]);
     files.write_plate(names[i], empty.width, empty.height,
-                      expose(empty, spec.degradations, seed, indices[i], true));
+                      expose(empty, spec.degradations, seed, indices[i], 2 * frame + 1));
   };
   if (maps)
     for (std::size_t i = 0; i < cameras.size(); ++i) write_view(i);
@@ -182,10 +206,11 @@ double write_views(const Spec& spec, const Surface& surface, const std::vector<L
     tbb::parallel_for(std::size_t(0), cameras.size(), write_view);
   if (!spec.image.masks) return *std::max_element(fill.begin(), fill.end());
   const auto& wrong = spec.degradations.mask_wrong;
+  const std::uint64_t mask_seed = frame == 0 ? seed : mix_bits(seed + frame);
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     const bool other = std::find(wrong.begin(), wrong.end(), int(indices[i])) != wrong.end();
     const Mask& source = masks[other ? (i + 1) % masks.size() : i];
-    files.write_mask(names[i], degrade_mask(source, spec.degradations, seed, indices[i]));
+    files.write_mask(names[i], degrade_mask(source, spec.degradations, mask_seed, indices[i]));
   }
   return *std::max_element(fill.begin(), fill.end());
 }
@@ -193,13 +218,14 @@ double write_views(const Spec& spec, const Surface& surface, const std::vector<L
 std::string result_text(const SynthesizedScene& scene, const std::vector<std::string>& names,
                         const Surface& surface, const PrintedSheet* sheet) {
   const auto list = [](const glm::dvec3& p) { return nlohmann::json{p.x, p.y, p.z}; };
+  const Box box = surface.moves ? tight_box(surface.mesh) : surface.box;
   nlohmann::json gains = nlohmann::json::array();
   for (const glm::dvec3& gain : scene.gains) gains.push_back(list(gain));
   nlohmann::json result = {{"writer", "photohull synthesize"},
                            {"views", names},
                            {"triangles", scene.triangles},
                            {"diagonal", scene.diagonal},
-                           {"tight_box", {list(surface.box.min), list(surface.box.max)}},
+                           {"tight_box", {list(box.min), list(box.max)}},
                            {"gains", gains},
                            {"seen_share", scene.seen},
                            {"largest_fill", scene.largest_fill}};
@@ -219,23 +245,28 @@ double render_weight(const Spec& spec) {
          view_count(spec.cameras) / 2e7;
 }
 
-}  // namespace
+double scene_weight(const Spec& spec) { return 1 + render_weight(spec) + truth_weight(spec); }
 
-double total_weight(const Spec& spec) { return 1 + render_weight(spec) + truth_weight(spec); }
-
-SynthesizedScene synthesize(const Spec& spec, const std::filesystem::path& folder,
-                            Progress& progress, const std::string& device, int threads) {
-  std::unique_ptr<gpu::Context> context;
+Sequence begin_sequence(const Spec& spec, Progress& progress, const std::string& device,
+                        int threads) {
+  Sequence sequence;
   if (spec.light.shadows && spec.light.shadow_test != kShadowRays)
-    context = gpu::Context::create(device, threads);
-  progress.stage("surface", 1);
-  const Surface surface =
-      make_surface(spec.geometry, spec.sheet.board.empty() ? glm::dvec3(0.0) : spec.sheet.turn);
-  check_orientation(surface.mesh, progress);
+    sequence.context = gpu::Context::create(device, threads);
+  sequence.box = box_of_frames(spec, progress);
+  return sequence;
+}
+
+/// The scene of the spec's moment.
+SynthesizedScene make_scene(const Spec& spec, const std::filesystem::path& folder,
+                            const Sequence& sequence, Progress& progress) {
+  progress.stage(sequence.stage("surface"), 1);
+  const Surface surface = surface_at_moment(spec, sequence.box);
+  const bool first = sequence.frame.empty() || spec.moment.frame == 0;  // warnings are said once
+  if (first) check_orientation(surface.mesh, progress);
   progress.check_cancelled();
   const std::vector<LensCamera> all = place_cameras(spec, surface);
   const std::vector<std::size_t> kept = kept_views(spec, all.size());
-  check_wrong_masks(spec, kept, progress);
+  if (first) check_wrong_masks(spec, kept, progress);
   const std::vector<std::size_t> indices = ordered_views(spec, kept);
   std::vector<LensCamera> cameras;
   std::vector<std::string> names;
@@ -243,8 +274,8 @@ SynthesizedScene synthesize(const Spec& spec, const std::filesystem::path& folde
     cameras.push_back(all[i]);
     names.push_back(view_name(i));
   }
-  const std::vector<LensCamera> written = degrade_cameras(
-      cameras, spec.degradations, degradation_seed(spec), control_points(surface.mesh));
+  const std::vector<LensCamera> written =
+      degrade_cameras(cameras, spec.degradations, degradation_seed(spec), control_points(surface));
 
   std::optional<PrintedSheet> sheet;
   if (!spec.sheet.board.empty()) sheet.emplace(spec, surface);
@@ -252,12 +283,12 @@ SynthesizedScene synthesize(const Spec& spec, const std::filesystem::path& folde
 
   const SceneFiles files(folder, names, spec.image);
   SharedProgress shared(progress);
-  progress.stage("photographs", render_weight(spec));
+  progress.stage(sequence.stage("photographs"), render_weight(spec));
   SynthesizedScene result;
   result.largest_fill = write_views(spec, surface, cameras, indices, names, files, shared,
-                                    context.get(), sheet ? &*sheet : nullptr);
+                                    sequence.context.get(), sheet ? &*sheet : nullptr);
 
-  progress.stage("truth", truth_weight(spec));
+  progress.stage(sequence.stage("truth"), truth_weight(spec));
   std::vector<TruthSample> samples = sample_surface(surface, spec.truth_samples, spec.seed);
   count_views(surface, cameras, samples, [&](double share) { shared.update(share); });
   files.write_truth(surface.mesh, samples);
@@ -275,6 +306,35 @@ SynthesizedScene synthesize(const Spec& spec, const std::filesystem::path& folde
   result.seen = double(seen) / double(samples.size());
   files.finish(spec_text(spec, result_text(result, names, surface, sheet ? &*sheet : nullptr)));
   return result;
+}
+
+}  // namespace
+
+double total_weight(const Spec& spec) { return box_weight(spec) + scene_weight(spec); }
+
+double sequence_weight(Spec spec, int frames) {
+  spec.moment = {0, frames};
+  return box_weight(spec) + frames * scene_weight(spec);
+}
+
+SynthesizedScene synthesize(const Spec& spec, const std::filesystem::path& folder,
+                            Progress& progress, const std::string& device, int threads) {
+  return make_scene(spec, folder, begin_sequence(spec, progress, device, threads), progress);
+}
+
+std::vector<SynthesizedScene> synthesize_frames(Spec spec,
+                                                const std::vector<std::filesystem::path>& folders,
+                                                Progress& progress, const std::string& device,
+                                                int threads) {
+  spec.moment = {0, int(folders.size())};
+  Sequence sequence = begin_sequence(spec, progress, device, threads);
+  std::vector<SynthesizedScene> made;
+  for (const std::filesystem::path& folder : folders) {
+    sequence.frame = folder.filename().string();
+    made.push_back(make_scene(spec, folder, sequence, progress));
+    ++spec.moment.frame;
+  }
+  return made;
 }
 
 }  // namespace photohull::synth

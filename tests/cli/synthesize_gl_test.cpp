@@ -51,6 +51,20 @@ TEST_F(Synthesize, LightsLookThroughMaps) {
   EXPECT_THAT(read_bytes(path("maps/spec.json")), HasSubstr("\"shadow_test\": \"recommended\""));
 }
 
+TEST_F(Synthesize, FramesOfASequenceAreScenes) {
+  const std::string file = spec(R"({"geometry": {"shape": "torus"}, "motion": {"tube": [0.3, 0.5]},
+      "truth_samples": 1000, "image": {"samples": 1}})");
+  const Finished made = succeed({"synthesize", file, "--out", path("ring"), "--views", "6",
+                                 "--size", "96x72", "--frames", "08-10"});
+  EXPECT_THAT(made.out, HasSubstr("3 frames of 6 views"));
+  EXPECT_EQ(listing(path("ring")).size(), listing(path("ring/08")).size() * 3 + 3);
+  EXPECT_EQ(read_bytes(path("ring/08/transforms.json")),
+            read_bytes(path("ring/10/transforms.json")));
+  EXPECT_NE(read_bytes(path("ring/08/gt.ply")), read_bytes(path("ring/10/gt.ply")));
+  const Finished info = succeed({"info", path("ring/09")});
+  EXPECT_THAT(info.out, HasSubstr("6 of 6 views"));
+}
+
 TEST_F(Synthesize, ShapesAreListed) {
   const Finished list = succeed({"synthesize", "--list"});
   for (const char* word : {"gyroid", "plant", "radius", "0.01 to 100"})
@@ -67,6 +81,10 @@ TEST_F(Synthesize, WrongUsageAndSpecsAreNamed) {
   fail(2, {"synthesize", right, "--out", out(), "--size", "640"}, {"--size 640"});
   fail(2, {"synthesize", right, "--out", out(), "--size", "640x480x2"}, {"--size"});
   fail(2, {"synthesize", right, "--out", out(), "--views", "0"}, {"--views 0"});
+  fail(2, {"synthesize", right, "--out", out(), "--frames", "9-3"}, {"--frames 9-3", "0000-0059"});
+  const std::string moving = spec(R"({"motion": {"radus": [1, 2]}})");
+  fail(1, {"synthesize", moving, "--out", out(), "--frames", "0-3"},
+       {"spec.json", "motion.radus", "did you mean radius?"});
   fail(2, {"synthesize", right, "--out", out(), "--threads", "-1"}, {"--threads -1"});
 }
 

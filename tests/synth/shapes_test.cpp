@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -210,6 +212,64 @@ TEST(Shapes, GyroidVerticesAreZerosOfItsFunction) {
   for (const glm::vec3& p : make_shape(shape).positions)
     worst = std::max(worst, std::abs(gyroid_field(glm::dvec3(p), values)));
   EXPECT_LT(worst, 1e-6);
+}
+
+TEST(Figure, MeshFollowsItsFunction) {
+  const Shape& shape = *find_shape("figure");
+  for (const double phase : {0.1, 0.6}) {
+    ShapeValues values = defaults(shape);
+    values["phase"] = phase;
+    const TriMesh mesh = make_shape(shape, values);
+    double vertices = 0, facets = 0;
+    for (std::size_t i = 0; i < mesh.positions.size(); i += 3)
+      vertices = std::max(vertices, std::abs(figure_field(mesh.world(i), values)));
+    EXPECT_LT(vertices, 1e-6);
+    for (std::size_t i = 0; i < mesh.triangles.size(); i += 3) {
+      const auto& [a, b, c] = mesh.triangles[i];
+      const glm::dvec3 middle = (mesh.world(a) + mesh.world(b) + mesh.world(c)) / 3.0;
+      facets = std::max(facets, std::abs(figure_field(middle, values)));
+    }
+    const Box box = tight_box(mesh);
+    EXPECT_NEAR(box.size().z, 2, 0.1);
+    // The function changes by three quarters of the distance at least.
+    EXPECT_LT(facets, 0.75 * 1e-4 * box.diagonal());
+  }
+}
+
+TEST(Figure, LimbsMeetAtJointsOnlyInEveryPose) {
+  const Shape& shape = *find_shape("figure");
+  for (const double swing : {60.0, 25.0})
+    for (int step = 0; step < (swing > 30 ? 4 : 2); ++step) {
+      const TriMesh mesh = make_shape(shape, {{"phase", step / 4.0}, {"swing", swing}});
+      // A surface in one part without handles: Euler's characteristic is 2.
+      const std::vector<std::uint32_t> part = parts_of(mesh);
+      EXPECT_EQ(std::count(part.begin(), part.end(), part[0]), std::ptrdiff_t(part.size()));
+      EXPECT_EQ(std::ptrdiff_t(mesh.positions.size()) - std::ptrdiff_t(mesh.triangles.size() / 2),
+                2)
+          << swing << " " << step;
+    }
+}
+
+TEST(Figure, PhaseIsPeriodicAndThePlinthStandsStill) {
+  const Shape& shape = *find_shape("figure");
+  const TriMesh first = make_shape(shape, {{"phase", 0.0}});
+  const TriMesh last = make_shape(shape, {{"phase", 1.0}}),
+                half = make_shape(shape, {{"phase", 0.5}});
+  ASSERT_EQ(first.triangles.size(), last.triangles.size());
+  for (std::size_t i = 0; i < first.positions.size(); ++i)
+    ASSERT_LT(length(first.positions[i] - last.positions[i]), 1e-5);
+  const auto lowest = [](const TriMesh& mesh) {
+    std::vector<std::array<float, 3>> points;
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+      if (mesh.world(i).z < 0.14)
+        points.push_back({mesh.positions[i].x, mesh.positions[i].y, mesh.positions[i].z});
+    return points;
+  };
+  const auto a = lowest(first), b = lowest(half);
+  ASSERT_EQ(a.size(), b.size());
+  ASSERT_GT(a.size(), 1000u);
+  for (std::size_t i = 0; i < a.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) ASSERT_NEAR(a[i][k], b[i][k], 1e-5);
 }
 
 TEST(Shapes, BlockHasExactPlanesAndHole) {
