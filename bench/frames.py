@@ -3,7 +3,7 @@
     python3 -m bench frames [--spec datasets/synthetic/figure.json] [--frames 60] [--chains 1,10,60] [--size 640x480]
         [--first 12] [--words "OPTIONS OF RECONSTRUCT"] [--out FILE] [--keep FOLDER]
 
-Renders the spec's motion, lets `photohull batch --frames` reconstruct it with chains of several lengths, in turn, and
+Renders the spec's motion, with cameras that differ in exposure, with noise and without shadows, lets `photohull batch --frames` reconstruct it with chains of several lengths, in turn, and
 compares time, F-scores and colours. Time is that of the reconstructions, from batch.csv, and a ratio to chains of 1. F is
 the mean over the frames at 0.1 and 0.25 % of the diagonal, and the lowest difference of a frame from chains of 1. Flicker is
 the root mean square, in 8-bit codes of sRGB, of how much colours change from frame to frame on parts that do not move;
@@ -16,20 +16,22 @@ from statistics import fmean
 import numpy as np
 from PIL import Image
 
-from bench import ply, tables
+from bench import page, ply
 from bench.runner import SYNTHETIC, Photohull, add_keep, add_program, f_scores, keep_json, listed, read_spec, work_folder
 
+# Shadows would move over what stands still. Cameras have gains of their own, and noise.
+CHANGES = {"light": {"shadows": False}, "degradations": {"photon_noise": 0.01, "read_noise": 0.003, "blur": 0.4,
+                                                          "exposure": 0.15, "white_balance": 0.05}}
 STILL_POINTS = 400
 STILL = 1e-4  # share of the diagonal by which still parts may differ between frames' exact surfaces
 THRESHOLDS = (0.001, 0.0025)
-COLUMNS = ["chain", "CPU s a frame", "ratio", "wall ratio", "F 0.1 %", "F 0.25 %", "lowest difference", "flicker", "noise"]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_program(parser)
     parser.add_argument("--spec", type=Path, default=SYNTHETIC / "figure.json")
     parser.add_argument("--frames", type=int, default=60, help="of one period (default: %(default)s)")
-    parser.add_argument("--first", type=int, help="only so many of them")
+    parser.add_argument("--first", type=int, help="only so many of them (default: all)")
     parser.add_argument("--chains", type=listed, default=["1", "10", "60"], help="default: 1,10,60")
     parser.add_argument("--size", help="of the photographs (default: the spec's)")
     parser.add_argument("--words", default="", help="options for reconstruct, in one text")
@@ -92,29 +94,40 @@ def measure(photohull: Photohull, scene: Path, frames: list[str], chain: int, wo
         rows = list(csv.DictReader(table))
     scores = [f_scores(photohull.evaluate(out / frame / "mesh.ply", "--truth", scene / frame, "--thresholds",
                                           ",".join(map(str, THRESHOLDS)))) for frame in frames]
-    return {"chain": chain, "cpu": fmean(float(r["cpu_seconds"]) for r in rows),
-            "wall": fmean(float(r["wall_seconds"]) for r in rows),
-            "f": [[100 * s[t] for t in THRESHOLDS] for s in scores],
+    return {"chain": chain, "cpu_s": fmean(float(r["cpu_seconds"]) for r in rows),
+            "wall_s": fmean(float(r["wall_seconds"]) for r in rows),
+            "frames": [[100 * s[t] for t in THRESHOLDS] for s in scores],
             "flicker": flicker(out, frames, still_points(scene, frames)), "noise": noise(scene, frames)}
 
 
-def cells(r: dict, base: dict) -> list[str]:
-    lowest = min(b - a for one, other in zip(base["f"], r["f"], strict=True) for a, b in zip(one, other, strict=True))
-    means = [fmean(f[i] for f in r["f"]) for i in range(len(THRESHOLDS))]
-    return [str(r["chain"]), f"{r['cpu']:.2f}", f"{r['cpu'] / base['cpu']:.2f}", f"{r['wall'] / base['wall']:.2f}",
-            *(f"{m:.2f}" for m in means), f"{lowest:+.2f}", f"{r['flicker']:.2f}", f"{r['noise']:.2f}"]
+def compared(r: dict, base: dict) -> dict:
+    """With what is said of it beside chains of 1."""
+    lowest = min(b - a for one, other in zip(base["frames"], r["frames"], strict=True)
+                 for a, b in zip(one, other, strict=True))
+    f = [fmean(frame[i] for frame in r["frames"]) for i in range(len(THRESHOLDS))]
+    return r | {"ratio": r["cpu_s"] / base["cpu_s"], "wall_ratio": r["wall_s"] / base["wall_s"], "f01": f[0], "f025": f[1],
+                "lowest": lowest}
+
+
+def start_of(spec: dict, share: float) -> dict:
+    """The spec of the first share of its motion."""
+    def cut(first, last):
+        if isinstance(first, list):
+            return [cut(a, b) for a, b in zip(first, last, strict=True)]
+        return first + share * (last - first)
+
+    return spec | {"motion": {name: [first, cut(first, last)] for name, (first, last) in spec["motion"].items()}}
 
 
 def run(options: argparse.Namespace) -> None:
     photohull = Photohull(options.program)
     count = options.first or options.frames
-    digits = len(str(options.frames - 1))
-    all_frames = [f"{i:0{digits}d}" for i in range(options.frames)]
+    frames = [f"{i:0{len(str(count - 1))}d}" for i in range(count)]
     with work_folder(options.keep) as folder:
         size = ["--size", options.size] if options.size else []
-        scene = photohull.synthesize(read_spec(options.spec), folder / "scene", "--frames",
-                                     f"{all_frames[0]}-{all_frames[-1]}", *size)
-        rows = [measure(photohull, scene, all_frames[:count], int(chain), options.words.split(), folder)
-                for chain in options.chains]
-    tables.show(COLUMNS, [cells(r, rows[0]) for r in rows])
+        scene = photohull.synthesize(start_of(read_spec(options.spec) | CHANGES, count / options.frames), folder / "scene",
+                                     "--frames", f"{frames[0]}-{frames[-1]}", *size)
+        rows = [measure(photohull, scene, frames, int(chain), options.words.split(), folder) for chain in options.chains]
+    rows = [compared(r, rows[0]) for r in rows]
+    print(page.table_of(page.data("benchmarks")["frames"], rows))
     keep_json(options.out, rows)

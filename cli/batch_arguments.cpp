@@ -82,8 +82,8 @@ void BatchArguments::add_to(CLI::App& command) {
   command
       .add_option("--chain", chain,
                   "so many frames follow each other: each starts from the surface of the one "
-                  "before, the first of every chain from nothing, and cameras and gains are those "
-                  "of the very first; 1: every frame by itself")
+                  "before (refine), the first of every chain from nothing, and cameras and gains "
+                  "are those of the very first; 1: every frame by itself")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   command
@@ -119,7 +119,8 @@ std::vector<BatchPiece> BatchArguments::pieces() const {
     const batch::Piece& one = given[i];
     BatchPiece piece{one.name, {}, job, load};
     if (!frames.empty()) name_frame(piece, one.frame);
-    if (before[i].follow) piece.job.follow = std::filesystem::path(out) / *before[i].follow;
+    if (before[i].follow && job.effective_method() == pipeline::Method::kRefine)
+      piece.job.follow = std::filesystem::path(out) / *before[i].follow;
     if (before[i].rig) piece.job.rig = std::filesystem::path(out) / *before[i].rig;
     pieces.push_back(parse_piece(one, std::move(piece), out));
   }

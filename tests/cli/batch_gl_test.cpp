@@ -116,9 +116,11 @@ TEST_F(BatchCommand, FramesTakeTheirOwnPhotographs) {
   const Finished run =
       run_photohull({"batch", scene(), "--frames", "08-10", "--images", path("frames/{frame}"),
                      "--masks", path("masks/{frame}"), "--method", "hull", "--resolution", "24",
-                     "--report-page", "off", "--out", path("film")});
+                     "--report-page", "off", "--chain", "3", "--out", path("film")});
   EXPECT_EQ(run.code, 1);
   EXPECT_THAT(run.err, HasSubstr("1 of 3 scenes have no result, the first is 09: "));
+  EXPECT_THAT(read_bytes(folder_ / "film/10/report.json"), HasSubstr("\"taken_from\""))
+      << "a hull starts from no surface, and its gains are the first frame's";
   for (const char* frame : {"08", "10"})
     EXPECT_EQ(read_bytes(folder_ / "film" / concat("volume.", frame, ".vdb")),
               read_bytes(folder_ / "film" / frame / "volume.vdb"));
