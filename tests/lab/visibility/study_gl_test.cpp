@@ -15,7 +15,6 @@ TEST(VisibilityStudy, ListsAreExactAndAPlainMapIsNot) {
   options.resolutions = {64};
   options.techniques = {"plain", "lists"};
   options.width = 80, options.height = 60, options.silhouettes = 30, options.repeats = 1;
-  options.volume_bricks = 16;
   Progress progress;
   const Study study = study_visibility(test::gl_context(), options, progress);
   ASSERT_EQ(study.cells.size(), 2u);
