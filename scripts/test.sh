@@ -176,7 +176,7 @@ started=$SECONDS
 if [ $with_all = yes ]; then
   check_aloud "tests of the program" run_tests release --label-exclude unit
 else
-  check_aloud "tests" run_tests release --exclude-regex '^docs_commands_'
+  check_aloud "tests" run_tests release
 fi
 if [ $with_all = yes ]; then
   check "clang-format" formatting
