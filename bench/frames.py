@@ -1,16 +1,17 @@
 """Frames of something that moves, each by itself and in chains.
 
-    python3 -m bench frames [--spec datasets/synthetic/figure.json] [--frames 60] [--chains 1,10,60] [--size 640x480]
-        [--first 12] [--words "OPTIONS OF RECONSTRUCT"] [--out FILE] [--keep FOLDER]
+    python3 -m bench frames [--spec datasets/synthetic/figure.json] [--frames 60] [--first 8] [--ways alone,of_4,...]
+        [--size 640x480] [--repeat 3] [--out FILE] [--keep FOLDER]
 
-Renders the spec's motion, with cameras that differ in exposure, with noise and without shadows, lets `photohull batch --frames` reconstruct it with chains of several lengths, in turn, and
-compares time, F-scores and colours. Time is that of the reconstructions, from batch.csv, each frame's in the quickest of
-several rounds, and a ratio to chains of 1. F is
-the mean over the frames at 0.1 and 0.25 % of the diagonal, and the lowest difference of a frame from chains of 1. Flicker is
-the root mean square, in 8-bit codes of sRGB, of how much colours change from frame to frame on parts that do not move;
-noise is the same of the photographs' pixels there."""
+Renders the spec's motion, with cameras that differ in exposure, with noise and without shadows, lets `photohull batch
+--frames` reconstruct it in several ways, in turn, and compares time, F-scores and colours. Time is that of the
+reconstructions, from batch.csv, each frame's in the quickest of several rounds, and a ratio to the first way. F is the
+mean over the frames at 0.1 and 0.25 % of the diagonal, and the lowest difference of a frame from the first way.
+Flicker is the root mean square, in 8-bit codes of sRGB, of how much colours change from frame to frame on parts that do
+not move; noise is the same of the photographs' pixels there."""
 import argparse
 import csv
+import json
 from pathlib import Path
 from statistics import fmean
 
@@ -26,17 +27,26 @@ CHANGES = {"light": {"shadows": False}, "degradations": {"photon_noise": 0.01, "
 STILL_POINTS = 400
 STILL = 1e-4  # share of the diagonal by which still parts may differ between frames' exact surfaces
 THRESHOLDS = (0.001, 0.0025)
+# Length of the chains, and options.
+WAYS = {
+    "alone": ("each by itself", 1, []),
+    "of_4": ("chains of 4", 4, []),
+    "of_8": ("chains of 8", 8, []),
+    "last": ("of 8, the last level alone", 8, ["follow.levels=1"]),
+    "last_unvoted": ("of 8, the last level without votes", 8, ["follow.levels=1", "voting=0"]),
+    "always": ("of 8, whatever has moved", 8, ["follow.least_inside=0"]),
+    "hardly": ("of 8, where hardly anything has moved", 8, ["follow.least_inside=0.9"]),
+}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_program(parser)
     parser.add_argument("--spec", type=Path, default=SYNTHETIC / "figure.json")
     parser.add_argument("--frames", type=int, default=60, help="of one period (default: %(default)s)")
-    parser.add_argument("--first", type=int, help="only so many of them (default: all)")
-    parser.add_argument("--chains", type=listed, default=["1", "10", "60"], help="default: 1,10,60")
+    parser.add_argument("--first", type=int, default=8, help="only so many of them (default: %(default)s)")
+    parser.add_argument("--ways", type=listed, default=list(WAYS), help="default: %(default)s")
     parser.add_argument("--size", help="of the photographs (default: the spec's)")
     parser.add_argument("--repeat", type=int, default=3, help="rounds, of which each frame's quickest counts (default: %(default)s)")
-    parser.add_argument("--words", default="", help="options for reconstruct, in one text")
     parser.add_argument("--out", type=Path)
     add_keep(parser)
 
@@ -88,8 +98,10 @@ def noise(scene: Path, frames: list[str]) -> float:
     return float(np.median(change[change <= np.quantile(change, 0.3)]))
 
 
-def make(photohull: Photohull, scene: Path, frames: list[str], chain: int, words: list[str], out: Path) -> dict:
-    """The sums of CPU and wall seconds of every frame."""
+def make(photohull: Photohull, scene: Path, frames: list[str], way: str, out: Path) -> dict:
+    """CPU and wall seconds of every frame."""
+    _, chain, changes = WAYS[way]
+    words = [word for change in changes for word in ("--tune", change)]
     photohull.call("batch", str(scene) + "/{frame}", "--frames", f"{frames[0]}-{frames[-1]}", "--chain", chain, "--fresh",
                    "--out", out, *words)
     with open(out / "batch.csv", encoding="utf-8", newline="") as table:
@@ -105,12 +117,13 @@ def quickest(rounds: list[dict], name: str) -> float:
 def judged(photohull: Photohull, scene: Path, frames: list[str], out: Path) -> dict:
     scores = [f_scores(photohull.evaluate(out / frame / "mesh.ply", "--truth", scene / frame, "--thresholds",
                                           ",".join(map(str, THRESHOLDS)))) for frame in frames]
-    return {"frames": [[100 * s[t] for t in THRESHOLDS] for s in scores],
+    reports = [json.loads((out / frame / "report.json").read_text(encoding="utf-8")) for frame in frames]
+    return {"followed": sum(r["followed"] for r in reports), "frames": [[100 * s[t] for t in THRESHOLDS] for s in scores],
             "flicker": flicker(out, frames, still_points(scene, frames)), "noise": noise(scene, frames)}
 
 
 def compared(r: dict, base: dict) -> dict:
-    """With what is said of it beside chains of 1."""
+    """With what is said of it beside the first way."""
     lowest = min(b - a for one, other in zip(base["frames"], r["frames"], strict=True)
                  for a, b in zip(one, other, strict=True))
     f = [fmean(frame[i] for frame in r["frames"]) for i in range(len(THRESHOLDS))]
@@ -130,17 +143,15 @@ def start_of(spec: dict, share: float) -> dict:
 
 def run(options: argparse.Namespace) -> None:
     photohull = Photohull(options.program)
-    count = options.first or options.frames
-    frames = [f"{i:0{len(str(count - 1))}d}" for i in range(count)]
+    frames = [f"{i:0{len(str(options.first - 1))}d}" for i in range(options.first)]
     with work_folder(options.keep) as folder:
         size = ["--size", options.size] if options.size else []
-        scene = photohull.synthesize(start_of(read_spec(options.spec) | CHANGES, count / options.frames), folder / "scene",
-                                     "--frames", f"{frames[0]}-{frames[-1]}", *size)
-        outs = {int(chain): folder / f"chain{chain}" for chain in options.chains}
-        rounds = [{chain: make(photohull, scene, frames, chain, options.words.split(), out) for chain, out in outs.items()}
+        scene = photohull.synthesize(start_of(read_spec(options.spec) | CHANGES, options.first / options.frames),
+                                     folder / "scene", "--frames", f"{frames[0]}-{frames[-1]}", *size)
+        rounds = [{way: make(photohull, scene, frames, way, folder / way) for way in options.ways}
                   for _ in range(options.repeat)]
-        rows = [{"chain": chain} | {f"{name}_s": quickest([r[chain] for r in rounds], name) for name in ("cpu", "wall")}
-                | judged(photohull, scene, frames, out) for chain, out in outs.items()]
+        rows = [{"way": WAYS[way][0]} | {f"{name}_s": quickest([r[way] for r in rounds], name) for name in ("cpu", "wall")}
+                | judged(photohull, scene, frames, folder / way) for way in options.ways]
     rows = [compared(r, rows[0]) for r in rows]
     print(page.table_of(page.data("benchmarks")["frames"], rows))
     keep_json(options.out, rows)

@@ -3,7 +3,7 @@
 #
 # Sets photohull up (see scripts/setup.sh) and runs all its tests.
 #
-#   --all    also check what tests cannot: formatting, scripts, citations, links and commands in the docs,
+#   --all    also check what tests cannot: formatting, scripts, citations, links in the docs,
 #            glTF files (npm installs their validator), installation and the Debian package; and
 #            build once more with clang and the address and undefined-behaviour sanitizers, to run
 #            the unit tests so instead of without them, the fuzzers and clang-tidy

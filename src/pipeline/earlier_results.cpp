@@ -131,13 +131,16 @@ MeasuredGains gains_of(const ResultRig& rig, const std::vector<PreparedView>& vi
           std::ranges::find(views, view.at("name").get<std::string>(), &PreparedView::name);
       if (here == views.end()) continue;
       const std::size_t i = std::size_t(here - views.begin());
-      for (int channel = 0; channel < 3; ++channel)
-        gains.views[i].gain[channel] = view.at("gain").at(std::size_t(channel)).get<double>();
+      for (int channel = 0; channel < 3; ++channel) {
+        double& gain = gains.views[i].gain[channel];
+        gain = view.at("gain").at(std::size_t(channel)).get<double>();
+        if (!(gain > 0)) throw_damaged(rig);
+      }
       gains.views[i].solved = view.at("solved").get<bool>();
-      gains.vignetting[std::size_t(lenses[i])] =
+      double& vignetting = gains.vignetting[std::size_t(lenses[i])];
+      vignetting =
           all.at("lenses").at(view.at("lens").get<std::size_t>()).at("vignetting").get<double>();
-      for (int channel = 0; channel < 3; ++channel)
-        if (!(gains.views[i].gain[channel] > 0)) throw_damaged(rig);
+      if (!(vignetting < 1)) throw_damaged(rig);
     }
     out.gains = std::move(gains);
   } catch (const nlohmann::json::exception&) {

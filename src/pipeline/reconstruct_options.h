@@ -108,6 +108,11 @@ struct ReconstructOptions {
   Method effective_method() const;
   /// The folder whose cameras and gains hold; empty: none.
   const std::filesystem::path& rig_folder() const { return rig.empty() ? follow : rig; }
+  /// Are the cameras those of that folder, without a refinement of their own?
+  bool takes_rig_cameras() const {
+    return !rig_folder().empty() &&
+           refine_cameras.value_or(RefineCameras::kOff) == RefineCameras::kOff;
+  }
   /// Does the box stay as it is, however much larger than the object it may be?
   bool box_stands() const { return box.exact || lattice == Lattice::kFixed; }
 };

@@ -7,7 +7,7 @@
 namespace photohull::pipeline {
 
 double Weights::cameras(const ReconstructOptions& options) {
-  if (!options.refine_cameras && !options.rig_folder().empty()) return kLookAtCameras;
+  if (options.takes_rig_cameras()) return kLookAtCameras;
   if (!options.refine_cameras) return options.quality == Quality::kDraft ? 0 : kLookAtCameras;
   return *options.refine_cameras == RefineCameras::kOff ? 0 : kCameras;
 }

@@ -1,12 +1,9 @@
 #include "refine/follow.h"
 
-#include <cmath>
 #include <cstdint>
 
 namespace photohull::refine {
 namespace {
-
-constexpr double kLeastInside = 0.6;  // of what was solid
 
 class Overlap {
  public:
@@ -22,7 +19,9 @@ class Overlap {
     if (in_grid && hull_.at(nearest) < 0) inside_ += count;
   }
 
-  double share() const { return all_ > 0 ? double(inside_) / double(all_) : 0; }
+  bool is_at_least(double share) const {
+    return all_ > 0 && double(inside_) >= share * double(all_);
+  }
 
  private:
   const GridSpec& grid_;
@@ -32,7 +31,7 @@ class Overlap {
 
 }  // namespace
 
-bool resembles(const SparseVolume& before, const SparseVolume& hull) {
+bool resembles(const SparseVolume& before, const SparseVolume& hull, const FollowOptions& options) {
   const glm::ivec3 n = before.grid.bricks;
   Overlap overlap(before.grid, hull);
   for (int z = 0; z < n.z; ++z)
@@ -47,7 +46,7 @@ bool resembles(const SparseVolume& before, const SparseVolume& hull) {
           if (before.distance[std::size_t(slot) * kBrickVoxels + std::size_t(v)] < 0)
             overlap.add(glm::dvec3(corner + glm::ivec3(v >> 6, (v >> 3) & 7, v & 7)), 1);
       }
-  return overlap.share() >= kLeastInside;
+  return overlap.is_at_least(options.least_inside);
 }
 
 }  // namespace photohull::refine

@@ -224,8 +224,9 @@ SparseVolume refine_surface(gpu::Context& context, const RefineScene& scene,
   std::vector<GridSpec> grids =
       grids_to(scene.finest, scene.cameras, job.is_bounded(), options.levels);
   RefineReport counts;
-  const std::size_t last = std::min(grids.size(), std::size_t(options.follow_levels));
-  if (scene.before && resembles(*scene.before, scene.hull_at(*(grids.end() - long(last))))) {
+  const std::size_t last = std::min(grids.size(), std::size_t(options.follow.levels));
+  if (scene.before && job.is_bounded() &&
+      resembles(*scene.before, scene.hull_at(*(grids.end() - long(last))), options.follow)) {
     grids.erase(grids.begin(), grids.end() - long(last));
     counts.followed = true;
   }

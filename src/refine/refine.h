@@ -18,6 +18,7 @@
 #include "refine/close_unseen.h"
 #include "refine/displacement.h"
 #include "refine/fit_patches.h"
+#include "refine/follow.h"
 #include "refine/hull_prior.h"
 #include "refine/look_through.h"
 #include "refine/match.h"
@@ -49,7 +50,8 @@ struct RefineOptions {
   /// Do the silhouettes, where there are any, bound what they show (carving::silhouettes_bound)?
   /// No choice of a user.
   bool bounded = true;
-  int levels = 0, follow_levels = 2;
+  int levels = 0;
+  FollowOptions follow;
   static constexpr int kCoarsestVoxels = 80, kFewestVoxels = 20;
   int coarse_iterations = 3, fine_iterations = 1;
   int coarse_offsets = 11, fine_offsets = 7;
@@ -86,9 +88,7 @@ inline void describe(Described& to, RefineOptions& o) {
   to.number("levels", &o.levels, from_to(0, 8), "",
             "sizes of voxels, each half the one before; the last is the result's")
       .zero = "automatic";
-  to.number(
-      "follow_levels", &o.follow_levels, from_to(1, 8), "",
-      "the last levels, which alone are done where the surface of the moment before is known");
+  to.group("follow", o.follow);
   to.number("coarse_iterations", &o.coarse_iterations, at_least(1), "",
             "iterations of matching and moving, at the first level");
   to.number("fine_iterations", &o.fine_iterations, at_least(1), "",
@@ -185,8 +185,8 @@ struct RefineScene {
 /// starts from the one before, takes back what only finer voxels of the hull show, and then matches
 /// the surface's tangent patches between the views that see them and moves its signed distance, a
 /// few times over. Surface that no camera sees is closed smoothly. Deterministic on one device.
-/// Where the surface of the moment before is known, and the silhouettes show little that it has
-/// not, the last levels start from it and the others are not done.
+/// Where the surface of the moment before is known, silhouettes bound space, and enough of it lies
+/// in them (FollowOptions), the last levels start from it and the others are not done.
 /// With a `checkpoint`, levels that an interrupted run of the same job finished are not done again;
 /// the caller removes the file. Throws Cancelled, UsageError for options, and what hull_at throws.
 SparseVolume refine_surface(gpu::Context& context, const RefineScene& scene,

@@ -103,6 +103,9 @@ TEST_F(EarlierResultsTest, GainsAreThoseOfTheRigByName) {
 
   report_["photometric"]["views"][0]["gain"][1] = -1;
   EXPECT_THROW(gains_of(rig(), {view_called("a")}), Error);
+  report_["photometric"]["views"][0]["gain"][1] = 1;
+  report_["photometric"]["lenses"][0]["vignetting"] = 1.5;
+  EXPECT_THROW(gains_of(rig(), {view_called("a")}), Error);
   report_["photometric"].erase("views");
   EXPECT_THROW(gains_of(rig(), {view_called("a")}), Error);
 }
@@ -119,6 +122,17 @@ TEST_F(EarlierResultsTest, DigestsTellRigsApart) {
   EXPECT_EQ(digest_of(rig()), usual);
   report_["cameras"][1]["centre"][0] = 0.5000001;
   EXPECT_NE(digest_of(rig()), usual);
+}
+
+TEST_F(EarlierResultsTest, CamerasOfARigHoldUnlessARefinementIsAskedFor) {
+  ReconstructOptions options;
+  EXPECT_FALSE(options.takes_rig_cameras());
+  options.follow = "before";
+  EXPECT_TRUE(options.takes_rig_cameras());
+  options.refine_cameras = RefineCameras::kOff;
+  EXPECT_TRUE(options.takes_rig_cameras());
+  options.refine_cameras = RefineCameras::kAuto;
+  EXPECT_FALSE(options.takes_rig_cameras());
 }
 
 TEST_F(EarlierResultsTest, WhatIsNotThereIsNamed) {

@@ -164,6 +164,13 @@ TEST_F(RefineSurface, AMomentThatIsElsewhereIsNotFollowed) {
   EXPECT_EQ(volume.distance, alone.distance);
 }
 
+TEST_F(RefineSurface, WithoutMasksNoMomentIsFollowed) {
+  const SparseVolume before = moved_bowl(scene_.grid(4), glm::dvec3(0));
+  before_ = &before;
+  run(4, false);
+  EXPECT_FALSE(report_.followed);
+}
+
 TEST_F(RefineSurface, WithoutMasks) {
   const SparseVolume box = scene_.hull(scene_.grid(5), false);
   const SparseVolume volume = run(5, false);
@@ -225,6 +232,8 @@ TEST_F(RefineSurface, BadOptionsAreNamed) {
       [](RefineOptions& o) { o.fine_offsets = 2; },
       [](RefineOptions& o) { o.coarse_offsets = 65; },
       [](RefineOptions& o) { o.step = 0; },
+      [](RefineOptions& o) { o.follow.levels = 0; },
+      [](RefineOptions& o) { o.follow.least_inside = 1.1; },
       [](RefineOptions& o) { o.aggregations = -1; },
       [](RefineOptions& o) { o.noise_sigma = 0; },
       [&](RefineOptions& o) { o.noise_sigma = nan; },

@@ -116,7 +116,9 @@ Surface carve(const SurfaceJob& job, SparseVolume) {
   out.findings = findings_of(counts);
   if (job.before && !counts.followed)
     job.progress.note(concat(job.options.follow.string(),
-                             ": too much lies elsewhere now, so the surface was found anew"));
+                             job.bounded
+                                 ? ": too much lies elsewhere now, so the surface was found anew"
+                                 : ": without masks the surface is found anew"));
   check_found(job, out.volume, counts);
   return out;
 }
