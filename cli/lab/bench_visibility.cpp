@@ -173,6 +173,7 @@ void run_visibility(VisibilityArguments a) {
     a.options.resolutions = {128};
     a.options.width = 80, a.options.height = 60;
     a.options.silhouettes = 40;
+    a.options.volume_bricks = 8;
     a.options.repeats = 1;
   }
   a.options.validate();

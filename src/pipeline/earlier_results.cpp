@@ -72,7 +72,9 @@ void take(const Camera& found, PreparedView& view) {
 EarlierResults read_earlier(const ReconstructOptions& options) {
   EarlierResults out;
   if (!options.rig_folder().empty()) out.rig = read_rig(options.rig_folder());
-  if (!options.follow.empty()) out.surface = read_vdb_surface(options.follow / "volume.vdb");
+  if (!options.follow.empty())
+    out.before = {read_vdb_surface(options.follow / "volume.vdb"),
+                  read_report(options.follow).followed};
   return out;
 }
 

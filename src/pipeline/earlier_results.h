@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "core/camera.h"
-#include "core/grid.h"
 #include "core/prepared_view.h"
 #include "core/progress.h"
 #include "pipeline/findings.h"
 #include "pipeline/reconstruct_options.h"
+#include "refine/follow.h"
 #include "views/photometric.h"
 
 namespace photohull::pipeline {
@@ -30,10 +30,10 @@ struct ResultRig {
 
 struct EarlierResults {
   std::optional<ResultRig> rig;
-  std::optional<SparseVolume> surface;  ///< of the moment before
+  std::optional<refine::MomentBefore> before;
 
   const ResultRig* given_rig() const { return rig ? &*rig : nullptr; }
-  const SparseVolume* given_surface() const { return surface ? &*surface : nullptr; }
+  const refine::MomentBefore* given_moment() const { return before ? &*before : nullptr; }
 };
 
 /// What the options ask for. Throws Error where a folder does not hold it.

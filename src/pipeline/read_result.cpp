@@ -148,9 +148,12 @@ fs::path report_of(const fs::path& folder) {
 
 ResultReport read_report(const fs::path& folder) {
   const ReportFile report(report_of(folder));
-  const auto photometric = report.root().find("photometric");
-  return {read_look(report),
-          photometric == report.root().end() ? std::string() : photometric->dump()};
+  const json& root = report.root();
+  const auto photometric = root.find("photometric"), followed = root.find("followed");
+  if (followed != root.end() && !followed->is_boolean())
+    report.fail("\"followed\" is neither true nor false");
+  return {read_look(report), photometric == root.end() ? std::string() : photometric->dump(),
+          followed != root.end() && followed->get<bool>()};
 }
 
 ResultModel read_result(const fs::path& folder) {

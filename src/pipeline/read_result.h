@@ -24,6 +24,7 @@ struct ResultModel {
 struct ResultReport {
   LookFindings look;
   std::string photometric;  ///< JSON (pipeline/photometric.h); empty: it was not asked for
+  bool followed = false;    ///< RefineFindings::followed
 };
 ResultReport read_report(const std::filesystem::path& folder);
 

@@ -157,7 +157,7 @@ class Carver {
             subject_,      *run_.context,
             hull_,         images_.get(),
             bounded_,      run_.progress,
-            larger_.get(), run_.earlier.given_surface()};
+            larger_.get(), run_.earlier.given_moment()};
   }
 
   SparseVolume carve_surface() {
@@ -192,7 +192,7 @@ class Carver {
       surface = work();
     }
     larger_.reset();
-    run_.earlier.surface.reset();
+    run_.earlier.before.reset();
     hull_.release_textures();
     run_.report.surface = std::move(surface.findings);
     return std::move(surface.volume);

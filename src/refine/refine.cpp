@@ -224,15 +224,20 @@ SparseVolume refine_surface(gpu::Context& context, const RefineScene& scene,
   std::vector<GridSpec> grids =
       grids_to(scene.finest, scene.cameras, job.is_bounded(), options.levels);
   RefineReport counts;
-  const std::size_t last = std::min(grids.size(), std::size_t(options.follow.levels));
-  if (scene.before && job.is_bounded() &&
-      resembles(*scene.before, scene.hull_at(*(grids.end() - long(last))), options.follow)) {
-    grids.erase(grids.begin(), grids.end() - long(last));
-    counts.followed = true;
+  const SparseVolume* before = nullptr;
+  if (scene.before && job.is_bounded()) {
+    const auto from = [&](int levels) {
+      return grids.end() - std::min(std::ptrdiff_t(grids.size()), std::ptrdiff_t(levels));
+    };
+    const SparseVolume hull = scene.hull_at(*from(options.follow.levels));
+    if (const int levels = levels_from(*scene.before, hull, options.follow); levels > 0) {
+      before = &scene.before->surface;
+      grids.erase(grids.begin(), from(levels));
+    }
   }
+  counts.followed = before != nullptr;
   SparseVolume volume =
-      SurfaceRefiner(job, std::move(grids), counts.followed ? scene.before : nullptr, progress)
-          .run(checkpoint, counts);
+      SurfaceRefiner(job, std::move(grids), before, progress).run(checkpoint, counts);
   if (report) *report = std::move(counts);
   return volume;
 }

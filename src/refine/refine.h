@@ -176,9 +176,7 @@ struct RefineScene {
   std::span<const Camera> cameras;
   /// The same views' photographs, larger, for levels whose voxels ask for them; null: none.
   projtex::OutOfCorePhotographs* larger = nullptr;
-  /// The surface a moment ago, on any grid, of what may have moved by some voxels since; null: it
-  /// is not known.
-  const SparseVolume* before = nullptr;
+  const MomentBefore* before = nullptr;  ///< null: it is not known
 };
 
 /// The surface that the photographs agree on, on the finest grid, from the hull inwards. A level

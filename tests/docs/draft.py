@@ -14,6 +14,7 @@ DRAFT = {
     "scan": {"--resolution": "24", "--texture": "256"},
     "synthesize": {"--size": "96x72", "--views": "12"},
     "refine-cameras": {"--views": "0-5"},
+    "evaluate --truth": {"--samples": "2000"},
     "render --turntable": {"--frames": "4", "--size": "160x120"},
     "chart": {"--dry-run": None},
     "stress": {"--dry-run": None},
@@ -70,8 +71,9 @@ def drafted(text: str) -> tuple[dict[str, str], list[str]]:
     for option, value in FITTING.items():
         if option in words:
             set_option(words, option, value)
-    if command == "render" and "--turntable" in words:
-        name = "render --turntable"
+    for option in ("render --turntable", "evaluate --truth"):
+        if option.split()[0] == command and option.split()[1] in words:
+            name = option
     sheet = command == "synthesize" and ("on_sheet" in text or "on_turntable" in text)
     for option, value in (SHEET if sheet else DRAFT.get(name, {})).items():
         if not (option == "--resolution" and "--voxel-size" in words):

@@ -37,7 +37,7 @@ class RefineSurface : public testing::Test {
   Progress progress_;
   RefineReport report_;
   projtex::OutOfCorePhotographs* larger_ = nullptr;
-  const SparseVolume* before_ = nullptr;
+  const MomentBefore* before_ = nullptr;
 };
 
 TEST_F(RefineSurface, WhatIsSettledStaysCoarseAndIsNotMatchedAgain) {
@@ -145,7 +145,7 @@ TEST_F(RefineSurface, FollowsTheMomentBefore) {
   options_.levels = 3;
   const double alone = test::mean_error(run(8));
   EXPECT_FALSE(report_.followed);
-  const SparseVolume before = moved_bowl(scene_.grid(8), {2, -1.5, 1});
+  const MomentBefore before{moved_bowl(scene_.grid(8), {2, -1.5, 1})};
   before_ = &before;
   const double followed = test::mean_error(run(8));
   EXPECT_TRUE(report_.followed);
@@ -153,10 +153,21 @@ TEST_F(RefineSurface, FollowsTheMomentBefore) {
   EXPECT_LT(followed, 1.1 * alone);
 }
 
+TEST_F(RefineSurface, AMomentThatFollowedLeavesTheLastLevelAlone) {
+  options_.levels = 3;
+  const MomentBefore before{moved_bowl(scene_.grid(8), {0.5, -0.4, 0.3}), true};
+  const double alone = test::mean_error(run(8));
+  before_ = &before;
+  const double followed = test::mean_error(run(8));
+  EXPECT_TRUE(report_.followed);
+  EXPECT_EQ(report_.levels.size(), 1u);
+  EXPECT_LT(followed, 1.1 * alone);
+}
+
 TEST_F(RefineSurface, AMomentThatIsElsewhereIsNotFollowed) {
   options_.levels = 3;
   const SparseVolume alone = run(6);
-  const SparseVolume before = moved_bowl(scene_.grid(6), glm::dvec3(18, 0, 0));
+  const MomentBefore before{moved_bowl(scene_.grid(6), glm::dvec3(18, 0, 0))};
   before_ = &before;
   const SparseVolume volume = run(6);
   EXPECT_FALSE(report_.followed);
@@ -165,7 +176,7 @@ TEST_F(RefineSurface, AMomentThatIsElsewhereIsNotFollowed) {
 }
 
 TEST_F(RefineSurface, WithoutMasksNoMomentIsFollowed) {
-  const SparseVolume before = moved_bowl(scene_.grid(4), glm::dvec3(0));
+  const MomentBefore before{moved_bowl(scene_.grid(4), glm::dvec3(0))};
   before_ = &before;
   run(4, false);
   EXPECT_FALSE(report_.followed);

@@ -190,6 +190,8 @@ void describe(Described& to, StudyOptions& o) {
   to.number("height", &o.height, from_to(16, 4096), "pixels", "height of the receivers' picture");
   to.number("silhouettes", &o.silhouettes, from_to(10, 100000), "",
             "places on silhouettes that are compared");
+  to.number("volume_bricks", &o.volume_bricks, from_to(4, 128), "bricks",
+            "side of the volume that is drawn in two ways");
 }
 
 void StudyOptions::validate() const {

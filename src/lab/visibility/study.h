@@ -21,6 +21,7 @@ struct StudyOptions {
   std::vector<std::string> techniques;  ///< empty: all named ones
   int width = 400, height = 300;        ///< pixels of the receivers' picture
   int silhouettes = 300;                ///< places on silhouettes
+  int volume_bricks = 32;               ///< along the side of the volume that is drawn
   int repeats = 2;                      ///< of which the quickest counts
   unsigned seed = 1;
 

@@ -12,22 +12,20 @@ namespace {
 using glm::dvec3;
 using glm::ivec3;
 
-constexpr int kBricks = 32;
-
 /// A gyroid within a ball: many layers deep, whole bricks inside and outside.
-SparseVolume gyroid_ball() {
+SparseVolume gyroid_ball(int bricks) {
   SparseVolume volume;
-  const int n = kBricks * kBrickEdge;
-  volume.grid = {dvec3(-1), 2.0 / n, ivec3(kBricks)};
+  const int n = bricks * kBrickEdge;
+  volume.grid = {dvec3(-1), 2.0 / n, ivec3(bricks)};
   const auto value = [&](const ivec3& voxel) {
     const dvec3 p = volume.grid.world(voxel), q = 9.0 * p;
     const double gyroid = std::sin(q.x) * std::cos(q.y) + std::sin(q.y) * std::cos(q.z) +
                           std::sin(q.z) * std::cos(q.x);
     return std::max(gyroid, glm::length(p) - 0.95);
   };
-  for (int z = 0; z < kBricks; ++z)
-    for (int y = 0; y < kBricks; ++y)
-      for (int x = 0; x < kBricks; ++x) {
+  for (int z = 0; z < bricks; ++z)
+    for (int y = 0; y < bricks; ++y)
+      for (int x = 0; x < bricks; ++x) {
         std::vector<float> brick(kBrickVoxels);
         int inside = 0;
         for (int i = 0; i < kBrickVoxels; ++i) {
@@ -72,7 +70,7 @@ std::vector<Sample> face_samples(const TriMesh& faces, const Camera& viewpoint) 
 
 std::vector<VolumeCell> study_volumes(gpu::Context& context, const StudyOptions& options,
                                       Progress& progress) {
-  const SparseVolume volume = gyroid_ball();
+  const SparseVolume volume = gyroid_ball(options.volume_bricks);
   const Geometry geometry = Geometry::of_volume(volume);
   const Camera viewpoint = frame_sphere({2.2, -1.6, 1.4}, {0, 0, 0}, 1.0, 1024, 1024);
   const std::vector<Sample> samples = face_samples(voxel_faces(volume), viewpoint);

@@ -16,6 +16,7 @@
 #include "pipeline/tuning.h"
 #include "projtex/image_set.h"
 #include "projtex/out_of_core.h"
+#include "refine/follow.h"
 
 namespace photohull::pipeline {
 
@@ -31,7 +32,7 @@ struct SurfaceJob {
   bool bounded = true;  ///< do silhouettes bound the surface?
   Progress& progress;
   projtex::OutOfCorePhotographs* larger = nullptr;  ///< to match the surface in; may be null
-  const SparseVolume* before = nullptr;             ///< the surface a moment ago; may be null
+  const refine::MomentBefore* before = nullptr;     ///< the surface a moment ago; may be null
 };
 
 struct Surface {
