@@ -33,11 +33,7 @@ WAYS = {
     "of_4": ("chains of 4", 4, []),
     "of_8": ("chains of 8", 8, []),
     "two": ("of 8, always the last two levels", 8, ["follow.again_levels=2"]),
-    "last": ("of 8, always the last level alone", 8, ["follow.levels=1"]),
-    "fit": ("fit", 8, ["follow.again_fit_passes=1"]),
-    "vote": ("vote", 8, ["follow.again_voting=1"]),
-    "both": ("both", 8, ["follow.again_voting=1","follow.again_fit_passes=1"]),
-    "unvoted": ("of 8, without votes", 8, ["voting=0"]),
+    "last": ("of 8, always the last level alone", 8, ["follow.levels=1", "follow.again_least_near=0"]),
     "always": ("of 8, whatever has moved", 8, ["follow.least_inside=0"]),
     "hardly": ("of 8, where hardly anything has moved", 8, ["follow.least_inside=0.9"]),
 }

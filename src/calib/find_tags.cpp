@@ -111,6 +111,13 @@ void add_saddles(const cv::Mat& linear, const Sheet& sheet, BoardView& board) {
 
 }  // namespace
 
+double SheetView::edge_width() const {
+  if (edges.empty()) return 0;
+  std::vector<double> widths;
+  for (const EdgeWidth& edge : edges) widths.push_back(edge.width);
+  return median(widths);
+}
+
 SheetView find_tags(const ColourImage& image, const Sheet& sheet, const std::string& name) {
   SheetView view;
   view.board = {name, image.width, image.height, {}, {}, 0};
@@ -120,20 +127,19 @@ SheetView find_tags(const ColourImage& image, const Sheet& sheet, const std::str
     std::vector<int> ids;
     detect(grey, sheet, corners, ids);
     const int cells = int(tag_cells(sheet.dictionary, sheet.tags[0].id).size());
-    std::vector<double> widths;
     for (const auto& [id, quad] : sort_out(sheet, corners, ids, view)) {
       const auto measured = measure_tag(linear, as_quad(quad), cells);
       if (!measured) continue;
       const auto tag = std::find_if(sheet.tags.begin(), sheet.tags.end(),
                                     [&, id = id](const SheetTag& t) { return t.id == id; });
       view.tags.push_back(id);
-      widths.push_back(measured->edge_width);
+      const auto& c = measured->corners;
+      view.edges.push_back({0.25 * (c[0] + c[1] + c[2] + c[3]), measured->edge_width});
       for (std::size_t i = 0; i < 4; ++i) {
         view.board.points.push_back(sheet.at(tag->corners[i]));
         view.board.pixels.push_back(measured->corners[i]);
       }
     }
-    if (!widths.empty()) view.edge_width = median(widths);
     add_saddles(linear, sheet, view.board);
     if (ids.empty()) {
       cv::Mat flipped;

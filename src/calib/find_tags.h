@@ -9,6 +9,13 @@
 
 namespace photohull {
 
+/// Pixels over which a photograph's edges rise from a fifth to four fifths, near a place of it.
+struct EdgeWidth {
+  glm::dvec2 at{0.0};  ///< pixels
+  double width = 0;
+};
+using PhotoEdges = std::vector<std::vector<EdgeWidth>>;  ///< of each photograph
+
 /// What a photograph shows of a sheet. Points come four to a tag, in the order of its corners, and
 /// after them the saddle points one by one, in millimetres of the sheet's frame: their z is 0, but
 /// for a strip around a cylinder.
@@ -18,8 +25,10 @@ struct SheetView {
   int foreign = 0;        ///< tags of the dictionary that the sheet does not have
   int twice = 0;          ///< tags of the sheet that were seen in two places, and count nowhere
   bool mirrored = false;  ///< no tag, but there are some in the mirrored photograph
-  /// Pixels over which the tags' edges rise from a fifth to four fifths, in the median; 0: no tags.
-  double edge_width = 0;
+  std::vector<EdgeWidth> edges;  ///< of the same tags, at their middles
+
+  /// The median of `edges`, pixels; 0: no tags.
+  double edge_width() const;
 
   std::size_t tag_points() const { return 4 * tags.size(); }
 };

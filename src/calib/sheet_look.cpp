@@ -159,15 +159,57 @@ void add_pixel(const SheetPicture& picture, const SheetLight& light,
   look.agreed.push_back(!beside && agreed ? 255 : 0);
 }
 
+/// The blur of every pixel (CV_32F): the mean of all places' by their nearness, squared.
+cv::Mat blur_field(std::span<const LocalBlur> blur, const cv::Size& size) {
+  constexpr int kCoarse = 16;  // pixels, between which it is interpolated
+  const double near = std::pow(0.05 * std::hypot(size.width, size.height), 2);
+  cv::Mat coarse(size.height / kCoarse + 2, size.width / kCoarse + 2, CV_32F), field;
+  for (int y = 0; y < coarse.rows; ++y)
+    for (int x = 0; x < coarse.cols; ++x) {
+      double sum = 0, weights = 0;
+      for (const LocalBlur& b : blur) {
+        const glm::dvec2 away = b.at - (double(kCoarse) * (glm::dvec2(x, y) + 0.5) - 0.5);
+        const double weight = 1 / (near + glm::dot(away, away));
+        sum += weight * b.deviation, weights += weight;
+      }
+      coarse.at<float>(y, x) = float(sum / weights);
+    }
+  cv::resize(coarse, field, {}, kCoarse, kCoarse, cv::INTER_LINEAR);
+  return field(cv::Rect({}, size)).clone();
+}
+
+/// Blurs an image (CV_32F) by Gaussians with these deviations, between `least` and `most`.
+void blur_by(const cv::Mat& field, double least, double most, cv::Mat& image) {
+  constexpr double kApart = 0.3;  // pixels, between deviations whose images are mixed
+  const int steps = std::max(1, int(std::ceil((most - least) / kApart)));
+  cv::Mat out(image.size(), CV_32F, cv::Scalar(0)), blurred;
+  for (int i = 0; i <= steps; ++i) {
+    const double deviation = least + (most - least) * i / steps;
+    if (deviation > 0)
+      cv::GaussianBlur(image, blurred, {}, deviation);
+    else
+      blurred = image;
+    const cv::Mat share = 1 - cv::min(cv::abs(field - deviation) * (steps / (most - least)), 1);
+    out += share.mul(blurred);
+  }
+  out.copyTo(image);
+}
+
 /// Blurs what is seen of the page; pixels beside it reach into it by twice the blur. The light
 /// comes from photographs and is as blurred as they are.
-void blur_look(double blur, SheetLook& look) {
+void blur_look(std::span<const LocalBlur> blur, SheetLook& look) {
+  constexpr double kSame = 0.05;  // pixels
+  const auto [least, most] = std::ranges::minmax(blur, {}, &LocalBlur::deviation);
+  if (!(most.deviation > 0)) return;
   cv::Mat light(look.height, look.width, CV_32F, look.light.data());
   const cv::Mat beside = light < 0;
   light.setTo(1, beside);
-  cv::GaussianBlur(light, light, {}, blur);
+  if (most.deviation - least.deviation < kSame)
+    cv::GaussianBlur(light, light, {}, most.deviation);
+  else
+    blur_by(blur_field(blur, light.size()), least.deviation, most.deviation, light);
   cv::Mat near;
-  const int reach = 2 * int(std::ceil(2 * blur)) + 1;
+  const int reach = 2 * int(std::ceil(2 * most.deviation)) + 1;
   cv::dilate(beside, near, cv::getStructuringElement(cv::MORPH_RECT, {reach, reach}));
   light.setTo(-1, near);
   look.mixed = reach + 1;
@@ -175,14 +217,19 @@ void blur_look(double blur, SheetLook& look) {
 
 }  // namespace
 
-double blur_of_edges(double edge_width) {
+std::vector<LocalBlur> blur_of_edges(std::span<const EdgeWidth> edges, double scale) {
   constexpr double kBox = 1 / 12.0;  // variance of a pixel's area
-  const double sigma = edge_width / 1.68;
-  return std::sqrt(std::max(0.0, sigma * sigma - kBox));
+  std::vector<LocalBlur> out;
+  for (const EdgeWidth& edge : edges) {
+    const double sigma = scale * edge.width / 1.68;
+    out.push_back({scale * edge.at, std::sqrt(std::max(0.0, sigma * sigma - kBox))});
+  }
+  return out;
 }
 
 SheetLook look_at_sheet(const PoseResult& result, std::size_t photo, const Sheet& sheet,
-                        const SheetPicture& picture, double blur, const SheetLight& light) {
+                        const SheetPicture& picture, std::span<const LocalBlur> blur,
+                        const SheetLight& light) {
   PHOTOHULL_CHECK(result.photos[photo].posed);
   const Sight sight(result, photo, sheet);
   SheetLook look;
@@ -200,7 +247,7 @@ SheetLook look_at_sheet(const PoseResult& result, std::size_t photo, const Sheet
     }
     above = std::move(below);
   }
-  if (blur > 0) blur_look(blur, look);
+  if (!blur.empty()) blur_look(blur, look);
   return look;
 }
 

@@ -30,7 +30,7 @@ std::vector<std::string> mask_names(const std::vector<fs::path>& images) {
 }  // namespace
 
 std::vector<fs::path> write_sheet_masks(const fs::path& folder, const std::vector<fs::path>& images,
-                                        const std::vector<double>& edge_widths, const Sheet& sheet,
+                                        const PhotoEdges& edges, const Sheet& sheet,
                                         const TurntableFinding& turntable,
                                         const SheetScenery& scenery, PoseResult& result,
                                         Progress& progress) {
@@ -45,7 +45,7 @@ std::vector<fs::path> write_sheet_masks(const fs::path& folder, const std::vecto
     progress.update(double(i) / double(images.size()));
     if (!result.photos[i].posed) continue;
     SheetLook look =
-        look_at_sheet(result, i, sheet, picture, blur_of_edges(edge_widths[i]), scenery.light);
+        look_at_sheet(result, i, sheet, picture, blur_of_edges(edges[i]), scenery.light);
     scenery.narrow(i, look);
     turntable.note_hull(i, look);
     SheetMask found = mask_from_sheet(io::read_image(images[i]), look, turntable.behind(i));

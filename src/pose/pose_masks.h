@@ -17,7 +17,7 @@ namespace photohull::pose {
 /// what is behind the sheet, too; others with the light on the sheet, if the scenery has it.
 std::vector<std::filesystem::path> write_sheet_masks(
     const std::filesystem::path& folder, const std::vector<std::filesystem::path>& images,
-    const std::vector<double>& edge_widths, const Sheet& sheet, const TurntableFinding& turntable,
+    const PhotoEdges& edges, const Sheet& sheet, const TurntableFinding& turntable,
     const SheetScenery& scenery, PoseResult& result, Progress& progress);
 
 }  // namespace photohull::pose

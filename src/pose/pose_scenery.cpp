@@ -45,10 +45,10 @@ bool sees_bare_page(const SheetLook& look) {
 class Exploration {
  public:
   Exploration(const std::vector<std::filesystem::path>& images,
-              const std::vector<double>& edge_widths, const Sheet& sheet, const PoseResult& result,
+              const std::vector<PosePhoto>& photos, const Sheet& sheet, const PoseResult& result,
               Progress& progress)
       : images_(images),
-        edge_widths_(edge_widths),
+        photos_(photos),
         sheet_(sheet),
         result_(result),
         progress_(progress),
@@ -109,7 +109,7 @@ class Exploration {
       if (!shadow.empty() &&
           !value_at(shadow, int(std::lround(pixel.x)), int(std::lround(pixel.y)), size.x, size.y))
         return false;
-      return sights[k].possible(place);
+      return sights[k].possible(place) || is_covered(posed_[k], place);
     };
     photos.eye = [&](std::size_t k) { return sights[k].eye; };
     photos.print = [&](const glm::dvec2& place) { return picture_.at(place); };
@@ -119,6 +119,18 @@ class Exploration {
     ++steps_;
   }
 
+  /// Is the place on a tag that the photograph does not show, or near it?
+  bool is_covered(std::size_t photo, const glm::dvec2& place) const {
+    constexpr double kReach = 1;  // of a tag's diagonal, from its middle
+    const std::vector<int>& shown = photos_[photo].view.tags;
+    return std::ranges::any_of(sheet_.tags, [&](const SheetTag& tag) {
+      const double reach = kReach * glm::distance(tag.corners[0], tag.corners[2]);
+      const glm::dvec2 middle = 0.5 * (tag.corners[0] + tag.corners[2]);
+      return glm::distance(middle, place) < reach &&
+             std::ranges::find(shown, tag.id) == shown.end();
+    });
+  }
+
   std::vector<Mask> small_masks(double scale) {
     std::vector<Mask> masks(images_.size());
     for (std::size_t k = 0; k < posed_.size(); ++k) {
@@ -126,7 +138,7 @@ class Exploration {
       step(k);
       const ColourImage image = io::read_image(images_[i], scale);
       SheetLook look = look_at_sheet(scaled(i, image.width, image.height), i, sheet_, picture_,
-                                     blur_of_edges(scale * edge_widths_[i]), out_.light);
+                                     blur_of_edges(photos_[i].view.edges, scale), out_.light);
       out_.narrow(i, look);
       masks[i] = mask_from_sheet(image, look).mask;
       for (std::uint8_t& c : masks[i].coverage) c = c >= kMaybe ? 255 : 0;
@@ -137,7 +149,7 @@ class Exploration {
   }
 
   const std::vector<std::filesystem::path>& images_;
-  const std::vector<double>& edge_widths_;
+  const std::vector<PosePhoto>& photos_;
   const Sheet& sheet_;
   const PoseResult& result_;
   Progress& progress_;
@@ -172,9 +184,9 @@ void SheetScenery::narrow(std::size_t photo, SheetLook& look) const {
 }
 
 SheetScenery explore_sheet(const std::vector<std::filesystem::path>& images,
-                           const std::vector<double>& edge_widths, const Sheet& sheet,
+                           const std::vector<PosePhoto>& photos, const Sheet& sheet,
                            const PoseResult& result, Progress& progress) {
-  return Exploration(images, edge_widths, sheet, result, progress).run();
+  return Exploration(images, photos, sheet, result, progress).run();
 }
 
 }  // namespace photohull::pose

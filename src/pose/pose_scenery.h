@@ -31,9 +31,10 @@ struct SheetScenery {
 
 /// In rounds: masks of small pictures, by the light that is known so far, give the shadows, beside
 /// which more of the sheet is known to be bare. Photographs are read again each time.
-/// `edge_widths`: pixels, of the tags in each photograph.
+/// `photos`: what each shows of the sheet. Where a tag should be and is not found, something may
+/// lie on the sheet, in that photograph alone, which says nothing of the light.
 SheetScenery explore_sheet(const std::vector<std::filesystem::path>& images,
-                           const std::vector<double>& edge_widths, const Sheet& sheet,
+                           const std::vector<PosePhoto>& photos, const Sheet& sheet,
                            const PoseResult& result, Progress& progress);
 
 }  // namespace photohull::pose

@@ -41,7 +41,7 @@ ReadPhotos find_all_tags(const PoseJob& job, const Sheet& sheet, Progress& progr
       read.took_focal |= lens.given;
       read.looks.back().exposure = lens.exposure;
       photo.view = find_tags(io::read_image(job.images[i]), sheet, job.names[i]);
-      if (photo.view.edge_width > 0) read.looks.back().sharpness = 1 / photo.view.edge_width;
+      if (photo.view.edge_width() > 0) read.looks.back().sharpness = 1 / photo.view.edge_width();
     } catch (const MemoryError&) {
       throw;
     } catch (const UsageError&) {
@@ -98,11 +98,11 @@ SheetPose pose_on_sheet(const PoseJob& job, Progress& progress) {
   SheetPose pose{pose_photographs(read.photos, sheet, job.sheet), {}, "", {}};
   for (std::size_t i = 0; i < job.images.size(); ++i)
     if (!read.unreadable[i].empty()) pose.result.photos[i].reason = read.unreadable[i];
-  std::vector<double> widths;
-  for (const PosePhoto& photo : read.photos) widths.push_back(photo.view.edge_width);
+  PhotoEdges edges;
+  for (const PosePhoto& photo : read.photos) edges.push_back(photo.view.edges);
   if (sheet.is_flat()) {
     progress.stage("background", 0.15);
-    pose.turntable = look_for_turntable(job, sheet, pose.result, widths, progress);
+    pose.turntable = look_for_turntable(job, sheet, pose.result, edges, progress);
   } else {
     pose.turntable.motion.reason = "a strip does not tell where the background behind it begins";
   }
@@ -112,10 +112,10 @@ SheetPose pose_on_sheet(const PoseJob& job, Progress& progress) {
     SheetScenery scenery;
     if (!pose.turntable.found()) {  // there shadows do not stay where they are on the sheet
       progress.stage("light", 0.4);
-      scenery = explore_sheet(job.images, widths, sheet, pose.result, progress);
+      scenery = explore_sheet(job.images, read.photos, sheet, pose.result, progress);
     }
     progress.stage("masks", 0.4);
-    masks = write_sheet_masks(job.out / "masks", job.images, widths, sheet, pose.turntable, scenery,
+    masks = write_sheet_masks(job.out / "masks", job.images, edges, sheet, pose.turntable, scenery,
                               pose.result, progress);
   }
   if (const std::string warning = unused_focal(job, read.took_focal); !warning.empty())

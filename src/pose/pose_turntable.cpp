@@ -23,12 +23,12 @@ constexpr int kRounds = 2;
 class TurntableSearch {
  public:
   TurntableSearch(const PoseJob& job, const Sheet& sheet, const PoseResult& result,
-                  const std::vector<double>& edge_widths, Progress& progress)
+                  const PhotoEdges& edges, Progress& progress)
       : job_(job),
         sheet_(sheet),
         result_(result),
         scaled_(result),
-        edge_widths_(edge_widths),
+        edges_(edges),
         progress_(progress),
         picture_(sheet_picture(sheet, kTexelsPerMm)) {}
 
@@ -53,7 +53,7 @@ class TurntableSearch {
   }
 
  private:
-  SheetLook look_at(std::size_t photo, int width, int height, double blur) {
+  SheetLook look_at(std::size_t photo, int width, int height, std::span<const LocalBlur> blur) {
     const auto c = std::size_t(result_.photos[photo].camera);
     scaled_.cameras[c].intrinsics = scaled_to(result_.cameras[c].intrinsics, width, height);
     return look_at_sheet(scaled_, photo, sheet_, picture_, blur);
@@ -72,7 +72,7 @@ class TurntableSearch {
         return io::read_image(job_.images[station.photos[i]], scale);
       };
       photos.look = [&](std::size_t i, int width, int height) {
-        SheetLook look = look_at(station.photos[i], width, height, 0);
+        SheetLook look = look_at(station.photos[i], width, height, {});
         keep_to(out_.shadows[station.photos[i]], width, height, look.possible);
         return look;
       };
@@ -93,8 +93,7 @@ class TurntableSearch {
       progress_.check_cancelled();
       if (out_.station_of(i) < 0) continue;
       const ColourImage image = io::read_image(job_.images[i], scale);
-      const SheetLook look =
-          look_at(i, image.width, image.height, blur_of_edges(scale * edge_widths_[i]));
+      const SheetLook look = look_at(i, image.width, image.height, blur_of_edges(edges_[i], scale));
       masks[i] = mask_from_sheet(image, look, out_.behind(i)).mask;
     }
     return masks;
@@ -104,7 +103,7 @@ class TurntableSearch {
   const Sheet& sheet_;
   const PoseResult& result_;
   PoseResult scaled_;  ///< whose cameras have the pictures' sizes
-  const std::vector<double>& edge_widths_;
+  const PhotoEdges& edges_;
   Progress& progress_;
   SheetPicture picture_;
   TurntableFinding out_;
@@ -165,9 +164,9 @@ void TurntableFinding::keep_to_shadow(std::size_t photo, Mask& mask) const {
 }
 
 TurntableFinding look_for_turntable(const PoseJob& job, const Sheet& sheet,
-                                    const PoseResult& result,
-                                    const std::vector<double>& edge_widths, Progress& progress) {
-  return TurntableSearch(job, sheet, result, edge_widths, progress).run();
+                                    const PoseResult& result, const PhotoEdges& edges,
+                                    Progress& progress) {
+  return TurntableSearch(job, sheet, result, edges, progress).run();
 }
 
 }  // namespace photohull::pose

@@ -38,9 +38,9 @@ struct TurntableFinding {
 /// Looks at the photographs again where their cameras fit a turntable. Where the job makes masks,
 /// the backgrounds' light is found, first by the photographs in which the box does not cover it,
 /// then by those in which the shadow of the object's hull does not, from masks of smaller pictures.
-/// `edge_widths`: pixels, of the tags in each photograph.
+/// `edges`: of the tags in each photograph.
 TurntableFinding look_for_turntable(const PoseJob& job, const Sheet& sheet,
-                                    const PoseResult& result,
-                                    const std::vector<double>& edge_widths, Progress& progress);
+                                    const PoseResult& result, const PhotoEdges& edges,
+                                    Progress& progress);
 
 }  // namespace photohull::pose
