@@ -121,7 +121,7 @@ class Exploration {
 
   /// Is the place on a tag that the photograph does not show, or near it?
   bool is_covered(std::size_t photo, const glm::dvec2& place) const {
-    constexpr double kReach = 1;  // of a tag's diagonal, from its middle
+    constexpr double kReach = 0.75;  // of a tag's diagonal, from its middle
     const std::vector<int>& shown = photos_[photo].view.tags;
     return std::ranges::any_of(sheet_.tags, [&](const SheetTag& tag) {
       const double reach = kReach * glm::distance(tag.corners[0], tag.corners[2]);
