@@ -153,11 +153,9 @@ class Carver {
 
  private:
   SurfaceJob job() {
-    return {run_.options,  run_.photographs,
-            subject_,      *run_.context,
-            hull_,         images_.get(),
-            bounded_,      run_.progress,
-            larger_.get(), run_.earlier.given_moment()};
+    return {
+        run_.options,  run_.photographs, subject_,      *run_.context, hull_,
+        images_.get(), bounded_,         run_.progress, larger_.get(), run_.earlier.given_moment()};
   }
 
   SparseVolume carve_surface() {
