@@ -87,6 +87,13 @@ void BatchArguments::add_to(CLI::App& command) {
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   command
+      .add_option("--tiles", tiles,
+                  "cut each scene's surface into so many tiles, which processes that find no scene "
+                  "of their own match for those that have one (refine); 0: a scene is one "
+                  "process's")
+      ->check(CLI::Range(0, 10000))
+      ->capture_default_str();
+  command
       .add_option("--out", out,
                   "folder for the results, in a folder each; made when it does not exist")
       ->required();
@@ -131,8 +138,13 @@ void add_plan_folder(CLI::App& command, std::string& job) {
   command.add_option("JOB", job, "folder of a plan or batch, which all machines see")->required();
 }
 
-void keep_plan(const std::vector<BatchPiece>& pieces, bool sequence, const batch::Store& store) {
-  batch::Plan plan{batch::new_plan_id(), std::filesystem::current_path(), sequence, {}};
+void keep_plan(const std::vector<BatchPiece>& pieces, const BatchArguments& arguments,
+               const batch::Store& store) {
+  batch::Plan plan{batch::new_plan_id(),
+                   std::filesystem::current_path(),
+                   !arguments.frames.empty(),
+                   arguments.tiles,
+                   {}};
   for (const BatchPiece& piece : pieces)
     plan.pieces.push_back({piece.name, words_of(piece), {}, {}});
   store.set_plan(plan);

@@ -19,7 +19,7 @@ struct BatchArguments {
   io::LoadSceneOptions load;
   std::vector<std::string> scenes;
   std::string list, frames, out;
-  int chain = 1;
+  int chain = 1, tiles = 0;
 
   void add_to(CLI::App& command);
   /// One for each scene and frame, their options checked. Throws UsageError and Error.
@@ -30,7 +30,8 @@ struct BatchArguments {
 void add_plan_folder(CLI::App& command, std::string& job);
 
 /// Keeps in the store what is to be made, for `run`, `status`, `merge` and `submit`.
-void keep_plan(const std::vector<BatchPiece>& pieces, bool sequence, const batch::Store& store);
+void keep_plan(const std::vector<BatchPiece>& pieces, const BatchArguments& arguments,
+               const batch::Store& store);
 
 /// The pieces of a plan. Their paths are relative to its folder, where the process has to be.
 /// Throws as BatchArguments::pieces does.

@@ -6,11 +6,13 @@
 #include <map>
 #include <new>
 #include <numeric>
+#include <optional>
 #include <thread>
 
 #include "cli/front/exit_code.h"
 #include "core/error.h"
 #include "page/make_batch_page.h"
+#include "pipeline/helper.h"
 #include "pipeline/stage_clock.h"
 #include "pipeline/stage_weights.h"
 #include "pipeline/write_results.h"
@@ -26,7 +28,8 @@ using Clock = std::chrono::steady_clock;
 /// The table is written this often, and rarer where that takes long: many processes that share a
 /// file system would else do little but look for each other's results.
 constexpr std::chrono::seconds kTableEvery(5);
-constexpr std::chrono::seconds kAskAgain(1);  ///< whether others have finished
+constexpr std::chrono::milliseconds kAskAgain(1000);  ///< whether others have finished
+constexpr std::chrono::milliseconds kAskSoon(50);     ///< whether they can be helped
 constexpr int kTableShare = 50;  ///< of the time goes into tables at most: one in so many
 
 /// A piece's share of the batch's progress; says whose warnings they are.
@@ -44,6 +47,7 @@ class PieceProgress : public Progress {
   void note(const std::string& message) override { whole_.note(name_ + ": " + message); }
   /// What its stages did not use.
   void finish() {
+    if (left_ <= 0) return;
     whole_.stage(name_, left_);
     whole_.update(1);
   }
@@ -145,9 +149,11 @@ class Batch {
     for (bool first = true; again && !left.empty(); first = false) {
       const std::vector<std::size_t> open = make_some(left, first);
       if (enough()) return;
-      const bool waiting = std::ranges::any_of(
-          open, [&](std::size_t i) { return state(pieces_[i]) == Input::kInOtherHands; });
-      if (waiting && open.size() == left.size()) wait();
+      const bool waiting = std::ranges::any_of(open, [&](std::size_t i) {
+        const Input input = state(pieces_[i]);
+        return input == Input::kInOtherHands || (input == Input::kThere && options_.tiles > 0);
+      });
+      if (waiting && open.size() == left.size() && !help(open)) wait();
       again = first || waiting;
       left = open;
     }
@@ -169,8 +175,34 @@ class Batch {
     return open;
   }
 
+  /// Does what others can be helped with. False: there is nothing.
+  bool help(const std::vector<std::size_t>& others) {
+    if (options_.tiles == 0) return false;
+    const std::size_t before = helped_;
+    for (const std::size_t i : others) {
+      const BatchPiece& piece = pieces_[i];
+      if (!helper_ || helping_ != piece.name) {
+        helping_ = piece.name;
+        helper_.emplace(store_.tiles(piece.name), piece.job.device, piece.job.threads);
+      }
+      while (help_once()) progress_.check_cancelled();
+    }
+    return helped_ > before;
+  }
+
+  bool help_once() {
+    try {
+      if (!helper_->help()) return false;
+    } catch (const Error& problem) {
+      progress_.warn(concat(helping_, ": cannot help, for ", problem.what()));
+      return false;
+    }
+    if (helped_++ == 0) progress_.note("helping others with their tiles");
+    return true;
+  }
+
   void wait() {
-    std::this_thread::sleep_for(kAskAgain);
+    std::this_thread::sleep_for(options_.tiles > 0 ? kAskSoon : kAskAgain);
     progress_.check_cancelled();
   }
 
@@ -279,9 +311,10 @@ class Batch {
   void reconstruct(const BatchPiece& piece, PieceProgress& progress, Outcome& out) {
     io::LoadSceneOptions load = piece.load;
     load.most_views = io::kEnoughViews;
-    const pipeline::Report report =
-        pipeline::reconstruct_to_folder(piece.job, pipeline::load_photographs(piece.scene, load),
-                                        store_.results(piece.name), progress);
+    pipeline::ReconstructOptions job = piece.job;
+    if (options_.tiles > 0) job.tiles = {store_.tiles(piece.name), options_.tiles};
+    const pipeline::Report report = pipeline::reconstruct_to_folder(
+        job, pipeline::load_photographs(piece.scene, load), store_.results(piece.name), progress);
     const assess::Verdict& verdict = report.verdict.verdict;
     out.verdict = assess::to_string(verdict.level);
     if (!verdict.reasons.empty()) out.message = verdict.reasons.front();
@@ -315,6 +348,9 @@ class Batch {
   TerminalProgress progress_;
   std::vector<batch::Row> rows_;
   Clock::time_point next_table_ = Clock::now() + kTableEvery;
+  std::string helping_;  // the piece that helper_ is for
+  std::optional<pipeline::Helper> helper_;
+  std::size_t helped_ = 0;  // tiles
   int made_ = 0, kept_ = 0, elsewhere_ = 0, early_ = 0;
 };
 

@@ -20,7 +20,9 @@ struct BatchOptions {
   bool json = false;      ///< a line of JSON on standard output for each piece
   bool retry = false;     ///< make anew what had no result before, though nothing has changed
   bool sequence = false;  ///< volumes by the names that sequences have: volume.0007.vdb
-  int most = 0;           ///< end after so many that were free and not made; 0: go through all
+  int tiles =
+      0;         ///< that a piece's surface is cut into, for processes without one to help; 0: none
+  int most = 0;  ///< end after so many that were free and not made; 0: go through all
   /// Id of the plan: what was made by it is kept without a look at its photographs. Empty: all are
   /// looked at.
   std::string plan;

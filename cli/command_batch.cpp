@@ -15,8 +15,9 @@ struct BatchCommand {
 void run_command(BatchCommand& a) {
   const std::vector<BatchPiece> pieces = a.scenes.pieces();
   a.batch.sequence = !a.scenes.frames.empty();
+  a.batch.tiles = a.scenes.tiles;
   const batch::Store store(a.scenes.out);
-  keep_plan(pieces, a.batch.sequence, store);
+  keep_plan(pieces, a.scenes, store);
   run_batch(pieces, store, a.batch);
 }
 

@@ -12,7 +12,7 @@ namespace {
 void run_plan(const BatchArguments& a) {
   const std::vector<BatchPiece> pieces = a.pieces();
   const batch::Store store(a.out);
-  keep_plan(pieces, !a.frames.empty(), store);
+  keep_plan(pieces, a, store);
   const std::string job = shell_word(a.out);
   std::printf("%zu %s to make\n", pieces.size(), pieces.size() == 1 ? "scene" : "scenes");
   std::printf("  photohull run %s                  # here\n", job.c_str());
@@ -32,7 +32,8 @@ void add_plan(CLI::App& app) {
       "up. 'photohull batch' plans and makes at once.\n\n"
       "Examples:\n"
       "  photohull plan --list plants.txt --out /shared/plants\n"
-      "  photohull plan rig.json --images \"frames/{frame}\" --frames 0000-0299 --out out/dance");
+      "  photohull plan rig.json --images \"frames/{frame}\" --frames 0000-0299 --out out/dance\n"
+      "  photohull plan statue.json --tiles 64 --out /shared/statue");
   c->callback([a] { run_plan(*a); });
 }
 

@@ -41,6 +41,7 @@ void run_run(RunArguments& a) {
   }
   a.batch.plan = plan.id;
   a.batch.sequence = plan.sequence;
+  a.batch.tiles = plan.tiles;
   a.batch.most = a.next ? 1 : 0;
   a.batch.table = a.pieces.empty() && !a.next;
   if (!a.pieces.empty()) {
@@ -71,7 +72,9 @@ void add_run(CLI::App& app) {
   c->footer(
       "Makes what 'photohull plan' wrote down and nobody has made. Any number of processes may do "
       "it at once, on one machine or on several that share the folder: each takes scenes that no "
-      "other has, and one that is killed loses no more than the scene that it was at.\n\n"
+      "other has, and one that is killed loses no more than the scene that it was at. Of a plan "
+      "with "
+      "tiles, processes that find no scene help those that have one.\n\n"
       "Examples:\n"
       "  photohull run /shared/plants\n"
       "  photohull run /shared/plants --pieces 3-7\n"

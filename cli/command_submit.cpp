@@ -33,17 +33,18 @@ void describe(Described& to, SubmitArguments& a) {
   to.choice("with", &a.engine, batch::kEngines,
             "what starts the processes: this machine, GNU parallel, MPI's mpirun, or Slurm");
   to.number("workers", &a.workers, from_to(0, 10000), "", "processes").zero =
-      "one, or with a cluster one for each scene, at most 64";
+      "one, or with a cluster one for each scene or each four tiles of one, at most 64";
   to.number("threads", &a.threads, from_to(0, 1024), "", "processor threads of each process").zero =
       "all cores";
   to.text("engine_options", &a.engine_options,
           "words for the engine, such as '--partition=short --time=60'");
 }
 
-int workers_of(const SubmitArguments& a, std::size_t pieces) {
-  constexpr std::size_t kMost = 64;
+int workers_of(const SubmitArguments& a, const batch::Plan& plan) {
+  constexpr std::size_t kMost = 64, kTiles = 4;  // tiles a worker, so that none waits for long
   if (a.workers > 0) return a.workers;
-  return a.engine == batch::Engine::kLocal ? 1 : int(std::min(pieces, kMost));
+  const std::size_t each = std::max<std::size_t>(1, std::size_t(plan.tiles) / kTiles);
+  return a.engine == batch::Engine::kLocal ? 1 : int(std::min(plan.pieces.size() * each, kMost));
 }
 
 void run_submit(const SubmitArguments& a) {
@@ -52,10 +53,9 @@ void run_submit(const SubmitArguments& a) {
   if (!a.dry_run && !needed.empty() && !is_on_path(needed))
     throw Error(concat("--with ", to_string(a.engine), " needs the program '", needed,
                        "', which is not on the PATH; install it, or choose another by --with"));
-  const std::string script =
-      batch::script_of({a.engine, program_beside("photohull"), store.folder(),
-                        workers_of(a, store.plan().pieces.size()),
-                        a.threads > 0 ? concat("--threads ", a.threads) : "", a.engine_options});
+  const std::string script = batch::script_of(
+      {a.engine, program_beside("photohull"), store.folder(), workers_of(a, store.plan()),
+       a.threads > 0 ? concat("--threads ", a.threads) : "", a.engine_options});
   if (a.dry_run) {
     std::fputs(script.c_str(), stdout);
     return;

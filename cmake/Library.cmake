@@ -5,7 +5,7 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-set(PHOTOHULL_LIBRARY_MODULES core raycast gpu io io_mesh photo masks views cameras projtex visibility carving volume
+set(PHOTOHULL_LIBRARY_MODULES core share raycast gpu io io_mesh photo masks views cameras projtex visibility carving volume
   mesh texture eval assess sheet calib synth render refine page pipeline pose)
 set(modules)
 set(objects)

@@ -143,7 +143,7 @@ void run_sampling(const BenchArguments& a) {
   progress.stage("samplers", 9);
   results.cells = projtex::study_samplers(*context, results.options, progress);
   progress.stage("sweeps", 1);
-  results.rates = projtex::measure_sweeps(*context, progress);
+  results.rates = projtex::measure_sweeps(*context, results.options.repeats, progress);
   progress.finish();
   print_table(results);
   const std::string text = to_json(results).dump(1) + "\n";

@@ -26,6 +26,7 @@ std::string to_json(const Plan& plan) {
   return json{{"id", plan.id},
               {"folder", plan.folder.string()},
               {"sequence", plan.sequence},
+              {"tiles", plan.tiles},
               {"pieces", pieces}}
              .dump(1, ' ', false, json::error_handler_t::replace) +
          "\n";
@@ -38,6 +39,7 @@ Plan plan_from_json(const std::string& text, const std::filesystem::path& file) 
     all.at("id").get_to(plan.id);
     plan.folder = all.at("folder").get<std::string>();
     all.at("sequence").get_to(plan.sequence);
+    plan.tiles = all.value("tiles", 0);
     for (const json& one : all.at("pieces")) {
       Piece piece;
       one.at("name").get_to(piece.name);

@@ -15,6 +15,7 @@ struct Plan {
   std::filesystem::path folder;  ///< absolute: where relative paths of the pieces' words begin
   /// Are the pieces frames, whose volumes get names as sequences have them (volume.0007.vdb)?
   bool sequence = false;
+  int tiles = 0;              ///< that each piece's surface is cut into for others; 0: none
   std::vector<Piece> pieces;  ///< whose words say all: no option holds for all of them besides
 };
 

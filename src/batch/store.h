@@ -41,6 +41,8 @@ class Store {
   /// The file index.html, as a whole.
   void write_page(const std::string& page) const;
   std::filesystem::path page() const { return folder_ / "index.html"; }
+  /// Where the piece's process lays what others can help it with.
+  std::filesystem::path tiles(const std::string& name) const { return kept(name) / "tiles"; }
   /// Makes the piece's file `from` (such as volume.vdb) the batch's file `to` as well: the same
   /// file by another name, or a copy where the file system has no such names. Throws Error where it
   /// can do neither.

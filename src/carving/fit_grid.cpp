@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kMargin = 3.0;  // voxels around the box: room for the narrow band
 constexpr double kRounding = 1e-12;
-constexpr double kMaxBricks = 64.0 * 1024 * 1024;  // a table of 256 MiB; 4096^3 voxels fit
+constexpr double kMaxBricks = 520.0 * 520 * 520;  // tables of 536 MiB; 4096^3 voxels fit
 constexpr double kBytesPerSurfaceBrick = 12e3;     // rough: distances, mesh, VDB copy
 
 /// Along each axis, for so many voxels. Throws as fit_grid does.

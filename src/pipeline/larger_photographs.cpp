@@ -13,6 +13,7 @@
 #include "photo/noise.h"
 #include "pipeline/place_lattice.h"
 #include "projtex/gpu_views.h"
+#include "projtex/photograph_cache.h"
 #include "views/crop.h"
 #include "views/photometric_samples.h"
 #include "views/prepare_views.h"
@@ -110,7 +111,8 @@ class LargerPhotographs : public projtex::OutOfCorePhotographs {
     most_ = std::max(kFewest, int(std::min(room, double(entries_.size()))));
     noise_sigma_ = std::max(
         options.noise ? *options.noise / 255 * largest_scale() : measured_noise(), kRoundingNoise);
-    make_room();  // now, for a device that has no such textures must not tell at the last level
+    // Now, for a device that has no such textures must not tell at the last level.
+    cache_.emplace(cameras_, std::min(most_, int(cameras_.size())), encoding_);
   }
 
   std::span<const Camera> cameras() const override { return cameras_; }
@@ -118,48 +120,18 @@ class LargerPhotographs : public projtex::OutOfCorePhotographs {
   double noise_sigma() const override { return noise_sigma_; }
 
   const projtex::HeldPhotographs& hold(std::span<const int> numbers) override {
-    PHOTOHULL_CHECK_OP(int(numbers.size()), <=, most_);
-    ++turn_;
-    std::vector<int> missing;
-    for (const int n : numbers) {
-      const int layer = held_->layers[std::size_t(n)];
-      if (layer < 0)
-        missing.push_back(n);
-      else
-        used_[std::size_t(layer)] = turn_;
-    }
+    const std::vector<int> missing = cache_->missing(numbers);
     for (std::size_t first = 0; first < missing.size(); first += kDecodedAtOnce) {
       progress_.check_cancelled();
       const auto some =
           std::span(missing).subspan(first, std::min(kDecodedAtOnce, missing.size() - first));
       const std::vector<PreparedView> views = read_all(some);
-      for (std::size_t k = 0; k < views.size(); ++k) put(some[k], views[k]);
+      for (std::size_t k = 0; k < views.size(); ++k) cache_->put(some[k], views[k]);
     }
-    return *held_;
+    return cache_->held();
   }
 
  private:
-  void make_room() {
-    // As large as for all photographs: what is sampled does not depend on which are held.
-    const int layers = std::min(most_, int(cameras_.size()));
-    held_ = projtex::HeldPhotographs{
-        projtex::ImageSet(projtex::array_size(cameras_), layers, encoding_),
-        std::vector<Camera>(std::size_t(layers), cameras_.front()),
-        std::vector<int>(cameras_.size(), -1)};
-    used_.assign(std::size_t(layers), 0);
-  }
-
-  /// In place of the one that was not asked for the longest.
-  void put(int number, const PreparedView& view) {
-    const auto oldest = std::ranges::min_element(used_);
-    const int layer = int(oldest - used_.begin());
-    *oldest = turn_;
-    std::ranges::replace(held_->layers, layer, -1);
-    held_->layers[std::size_t(number)] = layer;
-    held_->cameras[std::size_t(layer)] = view.camera;
-    held_->images.put(layer, view);
-  }
-
   Entry entry_of(const PreparedView& view) const {
     Entry out;
     out.source = view.source;
@@ -254,9 +226,7 @@ class LargerPhotographs : public projtex::OutOfCorePhotographs {
   double noise_sigma_ = 0;
   std::optional<ScratchFile> scratch_;
   std::int64_t slot_ = 0;  // bytes of a photograph there, at most
-  std::optional<projtex::HeldPhotographs> held_;
-  std::vector<std::int64_t> used_;  // by layer: the turn in which it was asked for
-  std::int64_t turn_ = 0;
+  std::optional<projtex::PhotographCache> cache_;
 };
 
 }  // namespace

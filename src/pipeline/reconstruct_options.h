@@ -60,6 +60,13 @@ struct TextureChoice {
   double detail = 1;  ///< fine differences of colour are multiplied by it
 };
 
+/// How other processes help with a refinement. It does not affect results and is not described.
+struct SharedTiles {
+  std::filesystem::path
+      folder;     ///< that all of them see; it is removed when the job has ended well
+  int count = 0;  ///< tiles that the surface is cut into at most; 0: nobody helps
+};
+
 /// What each is, with its unit and legal values, describe() tells.
 struct ReconstructOptions {
   BoxOptions box;
@@ -102,6 +109,7 @@ struct ReconstructOptions {
   /// on from there, and masks and refined cameras are kept for the next job with the same
   /// photographs; empty: none. It does not affect results and is not described.
   std::filesystem::path checkpoint;
+  SharedTiles tiles;
 
   /// Throws UsageError naming the option.
   void validate() const;

@@ -39,6 +39,13 @@ std::vector<std::uint8_t> pad(const std::uint8_t* pixels, const ColourImage& ima
   return out;
 }
 
+/// The pixels, as many as the camera has.
+const ColourImage& image_of(const PreparedView& view) {
+  PHOTOHULL_CHECK(view.image.width == view.camera.intrinsics.width);
+  PHOTOHULL_CHECK(view.image.height == view.camera.intrinsics.height);
+  return view.image;
+}
+
 double usable_sharpness(const PreparedView& view) {
   return std::min(view.sharpness / kUnblurred, 1.0);
 }
@@ -54,7 +61,7 @@ Encoding encoding_of(std::span<const PreparedView> views) {
 ImageSet::ImageSet(std::span<const PreparedView> views)
     : ImageSet(array_size(cameras_of(views)), int(views.size()), encoding_of(views)) {
   for (std::size_t i = 0; i < views.size(); ++i) {
-    upload(views[i], int(i), texture_);
+    upload(image_of(views[i]), int(i), texture_);
     sharpness_[i] = usable_sharpness(views[i]);
   }
   texture_.generate_mipmaps();
@@ -67,12 +74,16 @@ ImageSet::ImageSet(const glm::ivec2& size, int layers, ColourImage::Encoding enc
 }
 
 void ImageSet::put(int layer, const PreparedView& view) {
+  put(layer, image_of(view), usable_sharpness(view));
+}
+
+void ImageSet::put(int layer, const ColourImage& image, double sharpness) {
   // On its own: the mip levels of all the others would be made as well.
   if (one_.layers() == 0) one_ = room({texture_.width(), texture_.height()}, 1);
-  upload(view, 0, one_);
+  upload(image, 0, one_);
   one_.generate_mipmaps();
   texture_.copy_layer(one_, layer);
-  sharpness_[std::size_t(layer)] = usable_sharpness(view);
+  sharpness_[std::size_t(layer)] = sharpness;
 }
 
 gpu::TextureArray ImageSet::room(const glm::ivec2& size, int layers) const {
@@ -81,10 +92,7 @@ gpu::TextureArray ImageSet::room(const glm::ivec2& size, int layers) const {
           size.x, size.y, layers, 0};
 }
 
-void ImageSet::upload(const PreparedView& view, int layer, gpu::TextureArray& to) const {
-  const ColourImage& image = view.image;
-  PHOTOHULL_CHECK(image.width == view.camera.intrinsics.width);
-  PHOTOHULL_CHECK(image.height == view.camera.intrinsics.height);
+void ImageSet::upload(const ColourImage& image, int layer, gpu::TextureArray& to) const {
   const glm::ivec2 size(to.width(), to.height());
   const bool half = encoding_ == Encoding::kLinearHalf;
   std::vector<std::uint8_t> converted, padded;
@@ -100,6 +108,13 @@ void ImageSet::upload(const PreparedView& view, int layer, gpu::TextureArray& to
   to.upload(layer, size.x, size.y, pixels);
 }
 
+ColourImage ImageSet::read(int layer, const glm::ivec2& size) const {
+  ColourImage out{size.x, size.y, encoding_, false, {}};
+  out.bytes.resize(std::size_t(size.x) * std::size_t(size.y) * out.bytes_per_pixel());
+  texture_.read_layer(layer, size.x, size.y, out.bytes.size(), out.bytes.data());
+  return out;
+}
+
 void ImageSet::lend(std::span<PreparedView> views) const {
   for (PreparedView& view : views)
     if (!view.image.has_alpha && view.image.encoding == encoding_)
@@ -110,10 +125,7 @@ void ImageSet::give_back(std::span<PreparedView> views) const {
   PHOTOHULL_CHECK_OP(int(views.size()), ==, layers());
   for (std::size_t i = 0; i < views.size(); ++i) {
     ColourImage& image = views[i].image;
-    if (!image.bytes.empty()) continue;
-    image.bytes.resize(std::size_t(image.width) * std::size_t(image.height) *
-                       image.bytes_per_pixel());
-    texture_.read_layer(int(i), image.width, image.height, image.bytes.size(), image.bytes.data());
+    if (image.bytes.empty()) image.bytes = read(int(i), {image.width, image.height}).bytes;
   }
 }
 

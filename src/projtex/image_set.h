@@ -20,6 +20,10 @@ class ImageSet {
   /// Room for images of up to `size` pixels, which put() fills one by one.
   ImageSet(const glm::ivec2& size, int layers, ColourImage::Encoding encoding);
   void put(int layer, const PreparedView& view);
+  /// `sharpness` as sharpness() has it.
+  void put(int layer, const ColourImage& image, double sharpness);
+  /// Pixels of a layer's photograph, which has so many, in the encoding of the set.
+  ColourImage read(int layer, const glm::ivec2& size) const;
 
   /// Frees the pixels of views that the device has as they are, as long as they are not needed on
   /// the host; but those with alpha, which says what a photograph shows.
@@ -29,6 +33,7 @@ class ImageSet {
 
   const gpu::TextureArray& texture() const { return texture_; }
   int layers() const { return texture_.layers(); }
+  ColourImage::Encoding encoding() const { return encoding_; }
   /// Of every view, PreparedView::sharpness relative to 0.9, at most 1: below, it has less fine
   /// detail than views of the same without blur have, whose surface and light make some percent of
   /// difference.
@@ -36,7 +41,7 @@ class ImageSet {
 
  private:
   gpu::TextureArray room(const glm::ivec2& size, int layers) const;
-  void upload(const PreparedView& view, int layer, gpu::TextureArray& to) const;
+  void upload(const ColourImage& image, int layer, gpu::TextureArray& to) const;
 
   gpu::TextureArray texture_;
   gpu::TextureArray one_;  // what put() fills before it is copied

@@ -7,9 +7,9 @@
 #include "refine/fit_patches.h"
 #include "refine/hull_prior.h"
 #include "refine/kernels/choose_views.h"
-#include "refine/kernels/fit_patches.h"
 #include "refine/seat.h"
 #include "refine/surface.h"
+#include "refine/tile_tasks.h"
 #include "refine/trust.h"
 #include "volume/distance_from_mesh.h"
 #include "volume/extract_mesh.h"
@@ -48,7 +48,7 @@ class FitPass {
       if (is_settled(before[k]) && before[k] != Settled::kFlat) choices_[k].views.clear();
     Matches matches = vertex_textures(job, grid_, mesh_, choices_);
     texture_ = std::move(matches.texture);
-    fits_ = fit_patches(job.context, surfels(), job.matching(grid_), choices_, options_.fit);
+    fits_ = fit_in_tiles(job, surfels(), choices_);
     samples_ = matches.samples + samples_of(choices_, options_.fit);
     held_ = held_out(fits_);
   }

@@ -14,6 +14,7 @@
 #include "refine/matching_photographs.h"
 #include "refine/refine.h"
 #include "refine/settle.h"
+#include "refine/shared_work.h"
 #include "refine/silhouette_cones.h"
 #include "refine/view_choice.h"
 
@@ -29,8 +30,11 @@ struct RefineJob {
   /// Of the same views, larger, for voxels that those do not suffice for; null: there are none.
   projtex::OutOfCorePhotographs* larger = nullptr;
 
+  SharedWork* shared = nullptr;  ///< by way of which other processes may help; null: none does
+
   /// What surfels of the grid are matched in.
   MatchingPhotographs matching(const GridSpec& grid) const;
+  bool matches_larger(const GridSpec& grid) const;
   /// Of the largest photographs.
   std::span<const Camera> finest_cameras() const {
     return larger ? larger->cameras() : photographs.cameras;

@@ -6,10 +6,12 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 
 #include "core/viewing_depth.h"
 #include "refine/ray_partners.h"
 #include "refine/ray_search.h"
+#include "refine/ray_tasks.h"
 
 namespace photohull::refine {
 namespace {
@@ -95,14 +97,6 @@ class RayMapper {
                                   options.nearest_partner, options.tiles)),
         search_(context, photographs.images, cameras_, photographs.noise_sigma, options) {}
 
-  /// View by view, so that memory is that of one view's rays.
-  std::vector<RayMap> run() {
-    std::vector<RayMap> maps;
-    for (std::size_t v = 0; v < cameras_.size(); ++v) maps.push_back(map_of(v));
-    return maps;
-  }
-
- private:
   RayMap map_of(std::size_t v) const {
     RayMap map = empty_map(v);
     std::vector<Ray> rays = make_rays(v, map);
@@ -119,6 +113,7 @@ class RayMapper {
     return map;
   }
 
+ private:
   RayMap empty_map(std::size_t v) const {
     const auto& c = cameras_[v];
     const double depth = viewing_depth(c.projection, c.centre, c.width, c.height, grid_box());
@@ -301,19 +296,40 @@ class RayMapper {
   RaySearch search_;
 };
 
+/// View by view, so that memory is that of one view's rays.
+std::vector<RayMap> map_views(gpu::Context& context, const SparseVolume& hull,
+                              const SparseVolume* surface, const projtex::Photographs& photographs,
+                              const VoteOptions& options, SharedWork* shared) {
+  const std::size_t views = photographs.cameras.size();
+  const ViewMapper map_of = ray_mapper(context, hull, surface, photographs, options);
+  if (shared && shared->is_open())
+    return map_in_tasks(*shared, context.device().renderer, {hull, surface, options}, views,
+                        map_of);
+  std::vector<RayMap> maps;
+  for (std::size_t v = 0; v < views; ++v) maps.push_back(map_of(v));
+  return maps;
+}
+
 }  // namespace
 
+ViewMapper ray_mapper(gpu::Context& context, const SparseVolume& hull, const SparseVolume* surface,
+                      const projtex::Photographs& photographs, const VoteOptions& options) {
+  const auto mapper =
+      std::make_shared<const RayMapper>(context, hull, surface, photographs, options);
+  return [mapper](std::size_t view) { return mapper->map_of(view); };
+}
+
 std::vector<RayMap> match_rays(gpu::Context& context, const SparseVolume& hull,
-                               const projtex::Photographs& photographs,
-                               const VoteOptions& options) {
-  return RayMapper(context, hull, nullptr, photographs, options).run();
+                               const projtex::Photographs& photographs, const VoteOptions& options,
+                               SharedWork* shared) {
+  return map_views(context, hull, nullptr, photographs, options, shared);
 }
 
 std::vector<RayMap> match_rays_again(gpu::Context& context, const SparseVolume& hull,
                                      const SparseVolume& surface,
                                      const projtex::Photographs& photographs,
-                                     const VoteOptions& options) {
-  return RayMapper(context, hull, &surface, photographs, options).run();
+                                     const VoteOptions& options, SharedWork* shared) {
+  return map_views(context, hull, &surface, photographs, options, shared);
 }
 
 }  // namespace photohull::refine

@@ -1,6 +1,8 @@
 // Private to module refine: coarse depth maps of the views.
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "core/grid.h"
@@ -9,6 +11,8 @@
 #include "refine/vote.h"
 
 namespace photohull::refine {
+
+class SharedWork;
 
 /// Rays of one view on a lattice of pixels, each with what it found.
 struct RayMap {
@@ -20,9 +24,17 @@ struct RayMap {
   std::vector<glm::vec3> through;  ///< where rays passed that found what lies behind it, voxels
 };
 
+/// Makes the map of the view with a number. What it was made of outlives it.
+using ViewMapper = std::function<RayMap(std::size_t)>;
+/// `surface`: null where none is known.
+ViewMapper ray_mapper(gpu::Context& context, const SparseVolume& hull, const SparseVolume* surface,
+                      const projtex::Photographs& photographs, const VoteOptions& options);
+
 /// For every view, the depths at which its rays through the hull agree best with views near it.
+/// `shared`: by way of which others may help; null: nobody does.
 std::vector<RayMap> match_rays(gpu::Context& context, const SparseVolume& hull,
-                               const projtex::Photographs& photographs, const VoteOptions& options);
+                               const projtex::Photographs& photographs, const VoteOptions& options,
+                               SharedWork* shared = nullptr);
 
 /// The same where a `surface` on the same grid is known: depths of the surface where it explains
 /// what the photographs show, and of what is found elsewhere along the ray where it does not. Rays
@@ -30,6 +42,6 @@ std::vector<RayMap> match_rays(gpu::Context& context, const SparseVolume& hull,
 std::vector<RayMap> match_rays_again(gpu::Context& context, const SparseVolume& hull,
                                      const SparseVolume& surface,
                                      const projtex::Photographs& photographs,
-                                     const VoteOptions& options);
+                                     const VoteOptions& options, SharedWork* shared = nullptr);
 
 }  // namespace photohull::refine

@@ -101,6 +101,7 @@ class SurfaceRefiner {
     const auto start = std::chrono::steady_clock::now();
     LevelReport counts;
     counts.voxel_size = grids_[level].voxel_size;
+    if (job_.shared) job_.shared->begin_level(int(level));
     BoundingHull bounding(job_.hull_at(grids_[level]));
     begin(level, bounding.volume(), counts);
     // From here on the hull of space that nothing bounds is only what the surface may meet.
@@ -219,7 +220,8 @@ SparseVolume refine_surface(gpu::Context& context, const RefineScene& scene,
                 {scene.images, scene.cameras, options.noise_sigma},
                 options,
                 scene.finest.voxel_size,
-                scene.larger};
+                scene.larger,
+                scene.shared};
   job.options.match = fit_angles(scene.cameras, scene.finest.bounds().center(), options.match);
   std::vector<GridSpec> grids =
       grids_to(scene.finest, scene.cameras, job.is_bounded(), options.levels);

@@ -31,6 +31,8 @@
 
 namespace photohull::refine {
 
+class SharedWork;
+
 /// How rays vote where no silhouettes bound space.
 struct OpenVoteOptions {
   int tiles = 6;
@@ -177,6 +179,7 @@ struct RefineScene {
   /// The same views' photographs, larger, for levels whose voxels ask for them; null: none.
   projtex::OutOfCorePhotographs* larger = nullptr;
   const MomentBefore* before = nullptr;  ///< null: it is not known
+  SharedWork* shared = nullptr;          ///< by way of which other processes help; null: none does
 };
 
 /// The surface that the photographs agree on, on the finest grid, from the hull inwards. A level

@@ -23,17 +23,19 @@ SparseVolume first_guess(const RefineJob& job, const SparseVolume& hull) {
   const RefineOptions& options = job.options;
   if (!options.voting) return bounded(hull, hull);
   if (!job.is_bounded() && options.label.iterations > 0)
-    return bounded(
-        label_by_votes(job.context, hull, job.photographs, vote_options(job, false), options.label),
-        hull);
-  return bounded(vote_free_space(job.context, hull, job.photographs, options.vote), hull);
+    return bounded(label_by_votes(job.context, hull, job.photographs, vote_options(job, false),
+                                  options.label, job.shared),
+                   hull);
+  return bounded(vote_free_space(job.context, hull, job.photographs, options.vote, job.shared),
+                 hull);
 }
 
 void revise_by_votes(const RefineJob& job, const SparseVolume& hull, bool last,
                      SparseVolume& volume, LevelReport& counts) {
   VoteOptions options = vote_options(job, last);
   if (last) options.again_spacing = options.last_spacing;
-  const Revision revision = vote_again(job.context, volume, hull, job.photographs, options);
+  const Revision revision =
+      vote_again(job.context, volume, hull, job.photographs, options, job.shared);
   counts.restored += std::int64_t(revision.added);
   counts.freed += std::int64_t(revision.freed);
 }

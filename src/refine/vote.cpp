@@ -247,25 +247,29 @@ class Voter {
 }  // namespace
 
 SparseVolume vote_free_space(gpu::Context& context, const SparseVolume& hull,
-                             const projtex::Photographs& photographs, const VoteOptions& options) {
-  return Voter(hull, photographs.cameras, match_rays(context, hull, photographs, options), options)
+                             const projtex::Photographs& photographs, const VoteOptions& options,
+                             SharedWork* shared) {
+  return Voter(hull, photographs.cameras, match_rays(context, hull, photographs, options, shared),
+               options)
       .fuse();
 }
 
 SparseVolume label_by_votes(gpu::Context& context, const SparseVolume& hull,
                             const projtex::Photographs& photographs, const VoteOptions& options,
-                            const LabelOptions& label) {
-  return Voter(hull, photographs.cameras, match_rays(context, hull, photographs, options), options)
+                            const LabelOptions& label, SharedWork* shared) {
+  return Voter(hull, photographs.cameras, match_rays(context, hull, photographs, options, shared),
+               options)
       .label(context, label);
 }
 
 Revision vote_again(gpu::Context& context, SparseVolume& volume, const SparseVolume& hull,
-                    const projtex::Photographs& photographs, VoteOptions options) {
+                    const projtex::Photographs& photographs, VoteOptions options,
+                    SharedWork* shared) {
   options.ray_spacing = options.again_spacing;
   options.least_score = options.again_score;
   options.least_weight = options.again_weight;
   return Voter(hull, photographs.cameras,
-               match_rays_again(context, hull, volume, photographs, options), options)
+               match_rays_again(context, hull, volume, photographs, options, shared), options)
       .revise(volume);
 }
 

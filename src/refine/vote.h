@@ -11,6 +11,8 @@
 
 namespace photohull::refine {
 
+class SharedWork;
+
 struct VoteOptions {
   double ray_spacing = 1, again_spacing = 1.5, last_spacing = 2.5, again_score = 0.7;
   double tap_spacing = 0.7, best_pairs = 0.5, least_score = 0.5;
@@ -68,9 +70,11 @@ inline void describe(Described& to, VoteOptions& o) {
 /// distances along them (voxels, not below the hull's). Only the signs and the distances near zero
 /// are meaningful, and a stray ray may leave pockets in the body that no path joins to the outside
 /// (fill_cavities). The photographs' noise is > 0. All bricks that are not outside are stored.
-/// Throws Error when the device cannot hold a batch.
+/// Throws Error when the device cannot hold a batch. Here and below, `shared` is by way of which
+/// others may help; null: nobody does.
 SparseVolume vote_free_space(gpu::Context& context, const SparseVolume& hull,
-                             const projtex::Photographs& photographs, const VoteOptions& options);
+                             const projtex::Photographs& photographs, const VoteOptions& options,
+                             SharedWork* shared = nullptr);
 
 /// Space that no silhouette bounds: free before the depths that the views' rays find, solid in a
 /// thin shell behind them, and elsewhere as the smallest surface has it (label_space), so that what
@@ -78,7 +82,7 @@ SparseVolume vote_free_space(gpu::Context& context, const SparseVolume& hull,
 /// them. Throws as that does.
 SparseVolume label_by_votes(gpu::Context& context, const SparseVolume& hull,
                             const projtex::Photographs& photographs, const VoteOptions& options,
-                            const LabelOptions& label);
+                            const LabelOptions& label, SharedWork* shared = nullptr);
 
 struct Revision {
   std::size_t added = 0, freed = 0;  ///< voxels
@@ -89,6 +93,7 @@ struct Revision {
 /// and bodies that only coarser voxels could not look past go. Rays that the surface explains vote
 /// too. `volume` is on the hull's grid.
 Revision vote_again(gpu::Context& context, SparseVolume& volume, const SparseVolume& hull,
-                    const projtex::Photographs& photographs, VoteOptions options);
+                    const projtex::Photographs& photographs, VoteOptions options,
+                    SharedWork* shared = nullptr);
 
 }  // namespace photohull::refine

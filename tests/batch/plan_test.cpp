@@ -18,12 +18,14 @@ TEST(Plan, ComesBackAsItWas) {
   const Plan plan{"1-2",
                   "/data/night 3",
                   true,
+                  16,
                   {{"0007", {"rig.json", "--images=frames/0007", "--tune=a=1"}, "7", "x"},
                    {"0008", {"it's \"one\"\n"}, "8", "y"}}};
   const Plan back = plan_from_json(to_json(plan), "/out/plan.json");
   EXPECT_EQ(back.id, plan.id);
   EXPECT_EQ(back.folder, plan.folder);
   EXPECT_TRUE(back.sequence);
+  EXPECT_EQ(back.tiles, 16);
   ASSERT_EQ(back.pieces.size(), 2u);
   EXPECT_EQ(back.pieces[0].name, "0007");
   EXPECT_EQ(back.pieces[0].words, plan.pieces[0].words);
@@ -32,7 +34,7 @@ TEST(Plan, ComesBackAsItWas) {
 }
 
 TEST(Plan, OtherTextsAreNone) {
-  const std::string whole = to_json({"1", "/a", false, {{"b", {"c"}, {}, {}}}});
+  const std::string whole = to_json({"1", "/a", false, 0, {{"b", {"c"}, {}, {}}}});
   for (const std::string& text :
        {std::string(), std::string("[]"), std::string("{\"folder\": \"/a\"}"),
         whole.substr(0, whole.size() / 2), std::string(10000, '[')})
@@ -43,7 +45,8 @@ TEST(Plan, OtherTextsAreNone) {
       EXPECT_THAT(e.what(), HasSubstr("/out/plan.json"));
     }
   // A name that would leave the folder.
-  EXPECT_THROW(plan_from_json(to_json({"1", "/a", false, {{"../b", {"c"}, {}, {}}}}), "p"), Error);
+  EXPECT_THROW(plan_from_json(to_json({"1", "/a", false, 0, {{"../b", {"c"}, {}, {}}}}), "p"),
+               Error);
 }
 
 TEST(Plan, IdsDiffer) { EXPECT_NE(new_plan_id(), new_plan_id()); }

@@ -6,8 +6,10 @@
 #include <atomic>
 #include <cstdlib>
 #include <fstream>
+#include <functional>
 #include <future>
 #include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -175,6 +177,84 @@ TEST_F(PlanCommand, FaultsAreToldBeforeTheWork) {
   const Finished dry = succeed({"submit", path("job"), "--with", "slurm", "--dry-run"});
   EXPECT_THAT(dry.out, AllOf(HasSubstr("sbatch"), HasSubstr("--array=1-2"), HasSubstr("merge")));
   EXPECT_FALSE(fs::exists(folder_ / "job/submit.sh"));
+}
+
+/// One scene whose surface several processes match.
+class TilesOfAPlan : public PlanCommand {
+ protected:
+  static constexpr int kProcesses = 3;
+
+  void plan_tiles() const {
+    fs::remove_all(folder_ / "job");
+    succeed({"plan", scene(), "--masks", path("cutouts"), "--resolution", "64", "--tiles", "12",
+             "--report-page", "off", "--out", path("job")});
+  }
+  /// What the processes said; `work` goes on meanwhile.
+  std::string run_together(const std::function<void()>& work = [] {}) const {
+    std::vector<std::future<Finished>> running;
+    for (int i = 0; i < kProcesses; ++i)
+      running.push_back(std::async(std::launch::async, [this] {
+        return run_program({test::program(), "run", path("job"), "--threads", "1"});
+      }));
+    work();
+    std::string said;
+    for (auto& process : running) said += process.get().err;
+    return said;
+  }
+  std::map<std::string, std::string> files(const fs::path& results) const {
+    std::map<std::string, std::string> out;
+    for (const char* name : {"mesh.ply", "preview.png"}) out[name] = read_bytes(results / name);
+    return out;
+  }
+  std::map<std::string, std::string> alone() const {
+    succeed({"reconstruct", scene(), "--masks", path("cutouts"), "--resolution", "64",
+             "--report-page", "off", "--out", path("alone")});
+    return files(folder_ / "alone");
+  }
+  fs::path kept() const { return folder_ / "job/.photohull-batch" / folder_.filename(); }
+  fs::path results() const { return folder_ / "job" / folder_.filename(); }
+};
+
+TEST_F(TilesOfAPlan, ProcessesWithoutASceneMatchThoseOfAnother) {
+  const auto expected = alone();
+  std::string said;
+  for (int i = 0; i < 5 && said.find("helping others") == std::string::npos; ++i) {
+    plan_tiles();  // again where the first process was done before the others had begun
+    said = run_together();
+    EXPECT_EQ(files(results()), expected);
+  }
+  EXPECT_THAT(said, HasSubstr("helping others with their tiles"));
+  EXPECT_EQ(status("job")["complete"], true);
+  EXPECT_FALSE(fs::exists(kept() / "tiles")) << "files are left";
+}
+
+TEST_F(TilesOfAPlan, AProcessThatIsKilledChangesNothing) {
+  const auto expected = alone();
+  plan_tiles();
+  int killed = 0;
+  run_together([&] {
+    for (int i = 0; i < 1000 && killed == 0; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      if (fs::exists(kept() / "tiles")) killed += kill_a_worker(path("job"));
+    }
+  });
+  EXPECT_EQ(killed, 1);
+  succeed({"run", path("job")});  // the one that had the scene may have been the one
+  EXPECT_EQ(files(results()), expected);
+  EXPECT_FALSE(fs::exists(kept() / "tiles")) << "files are left";
+}
+
+TEST_F(TilesOfAPlan, AFolderForTilesThatCannotBeMadeIsAnError) {
+  const auto expected = alone();
+  plan_tiles();
+  fs::create_directories(kept());
+  write_bytes(kept() / "tiles", "no folder");
+  const Finished without = run_photohull({"run", path("job")});
+  EXPECT_EQ(without.code, 1);
+  EXPECT_THAT(without.err, HasSubstr("tiles cannot be made"));
+  fs::remove(kept() / "tiles");
+  succeed({"run", path("job"), "--retry"});
+  EXPECT_EQ(files(results()), expected);
 }
 
 TEST_F(PlanCommand, LocalProcessesMakeItThoughOneIsKilled) { submit_and_compare("local", {}); }

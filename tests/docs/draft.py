@@ -18,7 +18,7 @@ DRAFT = {
     "render --turntable": {"--frames": "4", "--size": "160x120"},
     "chart": {"--dry-run": None},
     "stress": {"--dry-run": None},
-    "bench sampling": {"--squares": "16"} | BENCH_FILES,
+    "bench sampling": {"--squares": "16", "--repeats": "1"} | BENCH_FILES,
     "bench visibility": {"--quick": None, "--repeats": "1"} | BENCH_FILES,
 }
 # Tags want more pixels.

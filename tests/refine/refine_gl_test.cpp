@@ -2,15 +2,22 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <functional>
 #include <limits>
 #include <optional>
+#include <thread>
+#include <utility>
+#include <vector>
 
 #include "bowl_scene.h"
 #include "core/error.h"
+#include "refine/shared_work.h"
+#include "refine/tile_helper.h"
 #include "refine/view_choice.h"
 #include "support/analytic_volumes.h"
 #include "support/gl_context.h"
+#include "support/scratch_folder.h"
 #include "volume/extract_mesh.h"
 
 namespace photohull::refine {
@@ -26,10 +33,11 @@ class RefineSurface : public testing::Test {
   SparseVolume run(int edge, bool masks = true) {
     gpu::Context& context = test::gl_context();
     const auto hull_at = [&](const GridSpec& grid) { return scene_.hull(grid, masks); };
-    return refine_surface(context,
-                          {scene_.grid(edge), hull_at, scene_.silhouettes(masks),
-                           projtex::ImageSet(scene_.views), scene_.cameras, larger_, before_},
-                          options_, progress_, &report_);
+    return refine_surface(
+        context,
+        {scene_.grid(edge), hull_at, scene_.silhouettes(masks), projtex::ImageSet(scene_.views),
+         scene_.cameras, larger_, before_, shared_},
+        options_, progress_, &report_);
   }
 
   const test::BowlScene& scene_ = test::bowl_scene();
@@ -38,6 +46,7 @@ class RefineSurface : public testing::Test {
   RefineReport report_;
   projtex::OutOfCorePhotographs* larger_ = nullptr;
   const MomentBefore* before_ = nullptr;
+  SharedWork* shared_ = nullptr;
 };
 
 TEST_F(RefineSurface, WhatIsSettledStaysCoarseAndIsNotMatchedAgain) {
@@ -129,6 +138,82 @@ TEST_F(RefineSurface, HoldingAFewPhotographsAtATimeChangesNothing) {
   EXPECT_GT(few.times(), 3 * int(scene_.views.size()) / ViewChoice::kMostViews);
   EXPECT_EQ(all.table, some.table);
   EXPECT_EQ(all.distance, some.distance);
+}
+
+/// Several processes at one surface. Helpers have a device of their own, as other processes have.
+class SharedSurface : public RefineSurface {
+ protected:
+  static constexpr int kEdge = 6;
+
+  /// As many tiles as are asked for, with helpers; how many tasks these did is in helped_.
+  SparseVolume run_shared(int tiles, int helpers, bool masks = true) {
+    ScratchFolder scratch;
+    SharedWork shared(scratch.path(), "job", tiles, progress_);
+    const projtex::ImageSet images(scene_.views);
+    const projtex::Photographs photographs{images, scene_.cameras, options_.noise_sigma};
+    const FileSizeLimit full(most_bytes_);
+    shared.publish(photographs, larger_);
+    shared_ = &shared;
+    std::atomic<bool> ended = false;
+    std::vector<std::thread> threads;
+    for (int i = 0; i < helpers; ++i)
+      threads.emplace_back([&] {
+        const auto context = gpu::Context::create("auto");
+        TileHelper helper(*context, scratch.path());
+        while (!ended)
+          if (helper.help())
+            ++helped_;
+          else
+            std::this_thread::yield();
+      });
+    SparseVolume volume = run(kEdge, masks);
+    ended = true;
+    for (std::thread& thread : threads) thread.join();
+    shared_ = nullptr;
+    return volume;
+  }
+
+  std::atomic<int> helped_ = 0;
+  rlim_t most_bytes_ = RLIM_INFINITY;  // of a file
+};
+
+TEST_F(SharedSurface, IsThatOfOneProcessHoweverItIsCut) {
+  const SparseVolume alone = run(kEdge);
+  const std::vector<LevelReport> levels = report_.levels;
+  for (const auto& [tiles, helpers] : {std::pair{2, 0}, {3, 1}, {50, 2}}) {
+    const SparseVolume together = run_shared(tiles, helpers);
+    EXPECT_EQ(alone.table, together.table) << tiles;
+    EXPECT_EQ(alone.distance, together.distance) << tiles;
+    EXPECT_EQ(report_.levels[0].samples, levels[0].samples) << tiles;
+    EXPECT_EQ(report_.levels[1].samples, levels[1].samples) << tiles;
+    EXPECT_EQ(helped_ > 0, helpers > 0);
+  }
+}
+
+TEST_F(SharedSurface, WithoutMasksItIsTheSame) {
+  const SparseVolume alone = run(kEdge, false);
+  const SparseVolume together = run_shared(9, 1, false);
+  EXPECT_GT(helped_, 0);
+  EXPECT_EQ(alone.table, together.table);
+  EXPECT_EQ(alone.distance, together.distance);
+}
+
+TEST_F(SharedSurface, OnAFullDiskItIsTheSame) {
+  const SparseVolume alone = run(kEdge);
+  most_bytes_ = 1000;
+  const SparseVolume together = run_shared(9, 1);
+  EXPECT_EQ(helped_, 0);
+  EXPECT_EQ(alone.distance, together.distance);
+}
+
+TEST_F(SharedSurface, HelpersHoldAsFewPhotographsAsTheirOwner) {
+  const SparseVolume alone = run(kEdge);
+  FewPhotographs few(scene_, ViewChoice::kMostViews, options_.noise_sigma);
+  larger_ = &few;
+  const SparseVolume together = run_shared(9, 1);
+  EXPECT_GT(helped_, 0);
+  EXPECT_EQ(alone.table, together.table);
+  EXPECT_EQ(alone.distance, together.distance);
 }
 
 /// The bowl, moved by an offset in voxels, on a lattice of its own.

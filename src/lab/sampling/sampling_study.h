@@ -17,6 +17,7 @@ struct StudyOptions {
   std::vector<double> ratios{1, 2, 4, 8, 16};  ///< of a footprint's long axis to its short one
   std::vector<int> supersamples{1, 2, 4, 8};
   int squares = 256;  ///< in each of two images, white noise and zones up to the Nyquist frequency
+  int repeats = 7;    ///< that timings are taken, of which the quickest counts
   unsigned seed = 1;
 
   void validate() const;  ///< throws UsageError
@@ -52,6 +53,6 @@ struct SweepRate {
 
 /// The sweep's kernels with every sampler at voxels of a pixel, and beside bare loops of texture
 /// fetches.
-std::vector<SweepRate> measure_sweeps(gpu::Context& context, Progress& progress);
+std::vector<SweepRate> measure_sweeps(gpu::Context& context, int repeats, Progress& progress);
 
 }  // namespace photohull::projtex

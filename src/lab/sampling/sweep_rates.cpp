@@ -18,7 +18,6 @@ namespace {
 constexpr int kViews = shaders::kMaxLayerViews;
 constexpr int kBricks = 22;  // bricks along each side of the layer
 constexpr int kWidth = 640, kHeight = 512;
-constexpr int kRepeats = 7;
 constexpr int kRawTaps = 8, kRawThreads = 1 << 17;
 
 /// Cameras that look along z at a layer whose voxels span `pixels`.
@@ -27,8 +26,9 @@ struct Layer {
   std::vector<GridCamera> cameras;
   gpu::Buffer items, selected, samples, uniforms;
   std::size_t values = 0;
+  int repeats;  // that timings are taken, of which the quickest counts
 
-  explicit Layer(double pixels) {
+  Layer(double pixels, int repeated) : repeats(repeated) {
     std::mt19937 random(1);
     const GridSpec grid{{0, 0, 0}, 1.0, {kBricks, kBricks, 1}};
     for (int i = 0; i < kViews; ++i) {
@@ -76,7 +76,7 @@ struct Layer {
               const Bind& bind) const {
     const gpu::Buffer view_buffer = views_for(size);
     double best = 1e30;
-    for (int repeat = 0; repeat < kRepeats; ++repeat)
+    for (int repeat = 0; repeat < repeats; ++repeat)
       best = std::min(best, seconds_of(context, [&] {
                         bind();
                         uniforms.bind_uniform(shaders::kSweepParametersBinding);
@@ -92,7 +92,7 @@ struct Layer {
 
 /// Nanoseconds a fetch of a bare loop, at one level for all or at a level of its own each.
 template <typename Bind>
-double time_raw(gpu::Context& context, float lod, float lod_step, const Bind& bind) {
+double time_raw(gpu::Context& context, int repeats, float lod, float lod_step, const Bind& bind) {
   const auto program = gpu::Program::compute(context, "bench_fetch.comp.glsl");
   const gpu::Buffer sums(std::size_t(kRawThreads) * 16);
   program->set("taps", kRawTaps);
@@ -101,7 +101,7 @@ double time_raw(gpu::Context& context, float lod, float lod_step, const Bind& bi
   program->set("lod_step", lod_step);
   program->set("step_and_size", glm::vec4(1, 0, kWidth, kHeight));
   double best = 1e30;
-  for (int repeat = 0; repeat < kRepeats; ++repeat)
+  for (int repeat = 0; repeat < repeats; ++repeat)
     best = std::min(best, seconds_of(context, [&] {
                       bind();
                       sums.bind_storage(shaders::kFetchSumsBinding);
@@ -112,14 +112,14 @@ double time_raw(gpu::Context& context, float lod, float lod_step, const Bind& bi
 
 }  // namespace
 
-std::vector<SweepRate> measure_sweeps(gpu::Context& context, Progress& progress) {
+std::vector<SweepRate> measure_sweeps(gpu::Context& context, int repeats, Progress& progress) {
   std::vector<SweepRate> rates;
-  const Layer layer(1.0);
+  const Layer layer(1.0, repeats);
   {
     const ImageSet images(layer.views);
     const auto bind = [&] { images.texture().bind(shaders::kImagesUnit); };
     const glm::ivec2 size(kWidth, kHeight);
-    const double raw = time_raw(context, 0, 0, bind);
+    const double raw = time_raw(context, repeats, 0, 0, bind);
     rates.push_back({"bare fetches, 8-bit, one level", 1, raw, 1});
     for (const int n : {1, 2}) {
       const auto program = gpu::Program::compute(context, "projtex_project_layer.comp.glsl",
@@ -131,7 +131,7 @@ std::vector<SweepRate> measure_sweeps(gpu::Context& context, Progress& progress)
   }
   // Footprints between two levels, where trilinear filtering reads both.
   const double between = std::exp2(0.4);
-  const Layer coarse(between), coarser(2 * between);
+  const Layer coarse(between, repeats), coarser(2 * between, repeats);
   for (const Sampler sampler : kSamplers) {
     progress.check_cancelled();
     try {
@@ -141,13 +141,14 @@ std::vector<SweepRate> measure_sweeps(gpu::Context& context, Progress& progress)
       rates.push_back(
           {to_string(sampler), 1, layer.time(context, *program, images.size(), bind), 0});
       if (sampler == Sampler::kBilinear)
-        rates.back().share_of_raw = time_raw(context, 0, 0, bind) / rates.back().nanoseconds;
+        rates.back().share_of_raw =
+            time_raw(context, repeats, 0, 0, bind) / rates.back().nanoseconds;
       if (sampler == Sampler::kBilinear || sampler == Sampler::kAnisotropic)
         rates.push_back(
             {to_string(sampler), between, coarse.time(context, *program, images.size(), bind), 0});
       if (sampler == Sampler::kTrilinear) {
-        const double uniform = time_raw(context, 0.4f, 0, bind);
-        const double raw = time_raw(context, 0.4f, 1e-3f, bind);
+        const double uniform = time_raw(context, repeats, 0.4f, 0, bind);
+        const double raw = time_raw(context, repeats, 0.4f, 1e-3f, bind);
         const double ns = coarse.time(context, *program, images.size(), bind);
         rates.push_back({"bare fetches, half float, one pair of levels for all", between, uniform,
                          raw / uniform});

@@ -12,9 +12,10 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 
-constexpr int kGrid = 600;       // rays along a side that look for silhouettes
-constexpr int kDepthSteps = 48;  // depths at which a ray may leave what the eye sees
-constexpr double kHalfLine = 4;  // texels
+constexpr int kMostRays = 600;    // along a side, that look for silhouettes
+constexpr int kRaysPerPlace = 2;  // along a side, for each place on a silhouette that is wanted
+constexpr int kDepthSteps = 48;   // depths at which a ray may leave what the eye sees
+constexpr double kHalfLine = 4;   // texels
 constexpr int kLineSamples = 65;
 
 Camera at_size(Camera camera, int width, int height) {
@@ -82,13 +83,14 @@ VisibilityErrors errors_of(const std::vector<float>& found,
 Silhouettes::Silhouettes(const RayScene& rays, const Camera& viewpoint, const Box& bounds,
                          const Camera& eye, int count, unsigned seed)
     : rays_(rays), viewpoint_(viewpoint) {
-  const double step = double(viewpoint.intrinsics.width) / kGrid;
+  const int grid = std::min(kMostRays, kRaysPerPlace * count);
+  const double step = double(viewpoint.intrinsics.width) / grid;
   const double middle = viewpoint.to_camera(bounds.center()).z, reach = 0.5 * bounds.diagonal();
-  std::vector<double> depths(std::size_t(kGrid) * kGrid, 0.0);
+  std::vector<double> depths(std::size_t(grid) * std::size_t(grid), 0.0);
   std::vector<Ray> lines;
   const dvec3 origin = viewpoint.center();
   for (std::size_t i = 0; i < depths.size(); ++i) {
-    const dvec2 pixel((double(i % kGrid) + 0.5) * step, (double(i / kGrid) + 0.5) * step);
+    const dvec2 pixel((double(i % grid) + 0.5) * step, (double(i / grid) + 0.5) * step);
     for (int k = kDepthSteps; k >= 0 && depths[i] == 0; --k) {
       const double depth = middle - reach + 2 * reach * k / kDepthSteps;
       const dvec3 p = at_depth(viewpoint, pixel, depth);
@@ -100,9 +102,9 @@ Silhouettes::Silhouettes(const RayScene& rays, const Camera& viewpoint, const Bo
   std::vector<std::uint8_t> blocked(lines.size());
   rays.occluded(lines, blocked);
   for (std::size_t i = 0; i + 1 < depths.size(); ++i) {
-    if (int(i % kGrid) + 1 == kGrid || depths[i] == 0 || depths[i + 1] == 0) continue;
+    if (int(i % grid) + 1 == grid || depths[i] == 0 || depths[i + 1] == 0) continue;
     if (blocked[i] == blocked[i + 1]) continue;
-    places_.push_back({{(double(i % kGrid) + 0.5) * step, (double(i / kGrid) + 0.5) * step},
+    places_.push_back({{(double(i % grid) + 0.5) * step, (double(i / grid) + 0.5) * step},
                        std::min(depths[i], depths[i + 1])});
   }
   std::mt19937_64 random(seed);

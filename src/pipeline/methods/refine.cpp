@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "carving/fit_grid.h"
 #include "core/error.h"
@@ -15,6 +16,7 @@
 #include "pipeline/methods/method.h"
 #include "pipeline/stage_weights.h"
 #include "projtex/gpu_views.h"
+#include "refine/shared_work.h"
 
 namespace photohull::pipeline {
 namespace {
@@ -88,13 +90,27 @@ void check_found(const SurfaceJob& job, const SparseVolume& volume,
                "rest is the hull's guess"));
 }
 
+std::string identity_of(const SurfaceJob& job) {
+  return job_identity(job.options, job.photographs, job.subject, job.context.device().renderer);
+}
+
 /// Levels that an interrupted run of the same job has done are taken from its checkpoint.
 std::optional<refine::CheckpointFile> checkpoint_of(const SurfaceJob& job) {
   if (job.options.checkpoint.empty()) return std::nullopt;
   const std::filesystem::path file = checkpoint_file(job.options.checkpoint);
   if (job.options.fresh) remove_checkpoint(job.options.checkpoint);
-  return refine::CheckpointFile{
-      file, job_identity(job.options, job.photographs, job.subject, job.context.device().renderer)};
+  return refine::CheckpointFile{file, identity_of(job)};
+}
+
+/// What other processes help with; null: nothing.
+std::unique_ptr<refine::SharedWork> shared_work_of(const SurfaceJob& job,
+                                                   const projtex::Photographs& photographs) {
+  const SharedTiles& tiles = job.options.tiles;
+  if (tiles.count < 2) return nullptr;
+  auto out = std::make_unique<refine::SharedWork>(tiles.folder, identity_of(job), tiles.count,
+                                                  job.progress);
+  out->publish(photographs, job.larger);
+  return out;
 }
 
 Surface carve(const SurfaceJob& job, SparseVolume) {
@@ -109,10 +125,13 @@ Surface carve(const SurfaceJob& job, SparseVolume) {
     if (grid.voxel_size == job.subject.grid.voxel_size) job.hull.release_textures();
     return hull;
   };
-  out.volume = refine::refine_surface(
-      job.context,
-      {job.subject.grid, hull_at, silhouettes, *job.images, cameras, job.larger, job.before},
-      parameters_of(job).refine, job.progress, &counts, checkpoint ? &*checkpoint : nullptr);
+  const refine::RefineOptions options = parameters_of(job).refine;
+  const auto shared = shared_work_of(job, {*job.images, cameras, options.noise_sigma});
+  out.volume =
+      refine::refine_surface(job.context,
+                             {job.subject.grid, hull_at, silhouettes, *job.images, cameras,
+                              job.larger, job.before, shared.get()},
+                             options, job.progress, &counts, checkpoint ? &*checkpoint : nullptr);
   out.findings = findings_of(counts);
   if (job.before && !counts.followed)
     job.progress.note(concat(job.options.follow.string(),

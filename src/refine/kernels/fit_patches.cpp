@@ -87,29 +87,45 @@ class Fitter {
 
 }  // namespace
 
+SurfelShapes shapes_of(const MeshSurfels& surfels, const FitOptions& options) {
+  std::vector<glm::vec3> positions = positions_in_voxels(surfels.grid, surfels.mesh);
+  std::vector<glm::vec3> bends =
+      curvatures(surfels.graph, positions, surfels.mesh.normals, options.most_bend);
+  return {std::move(positions), surfels.mesh.normals, std::move(bends)};
+}
+
+std::vector<PatchFit> unfitted(std::span<const glm::vec3> normals) {
+  std::vector<PatchFit> out(normals.size());
+  for (std::size_t i = 0; i < out.size(); ++i) out[i].normal = normals[i];
+  return out;
+}
+
 std::vector<PatchFit> fit_patches(gpu::Context& context, const MeshSurfels& surfels,
                                   const MatchingPhotographs& photographs,
                                   std::span<const ViewChoice> choices, const FitOptions& options) {
-  const TriMesh& mesh = surfels.mesh;
-  PHOTOHULL_CHECK_OP(choices.size(), ==, mesh.positions.size());
-  const std::vector<glm::vec3> positions = positions_in_voxels(surfels.grid, mesh);
-  const std::vector<glm::vec3> bends =
-      curvatures(surfels.graph, positions, mesh.normals, options.most_bend);
-  std::vector<PatchFit> out(positions.size());
-  for (std::size_t i = 0; i < out.size(); ++i) out[i].normal = mesh.normals[i];
+  return fit_surfels(context, surfels.grid, shapes_of(surfels, options), photographs, choices,
+                     options);
+}
+
+std::vector<PatchFit> fit_surfels(gpu::Context& context, const GridSpec& grid,
+                                  const SurfelShapes& surfels,
+                                  const MatchingPhotographs& photographs,
+                                  std::span<const ViewChoice> choices, const FitOptions& options) {
+  PHOTOHULL_CHECK_OP(choices.size(), ==, surfels.positions.size());
+  std::vector<PatchFit> out = unfitted(surfels.normals);
   const std::size_t batch = gpu::batch_size(sizeof(shaders::MatchChoice), kBatch);
   photographs.for_each(
       choices, [&](const projtex::Photographs& held, std::span<const std::uint32_t> fitted,
                    const HeldNumbers& numbers) {
-        const Fitter fitter(context, held, surfels.grid, options);
+        const Fitter fitter(context, held, grid, options);
         for (std::size_t first = 0; first < fitted.size(); first += batch) {
           const auto part = fitted.subspan(first, std::min(batch, fitted.size() - first));
           std::vector<render::SurfacePoint> points;
           std::vector<glm::vec3> bent;
           std::vector<ViewChoice> views;
           for (const std::uint32_t i : part) {
-            points.push_back({positions[i], mesh.normals[i]});
-            bent.push_back(bends[i]);
+            points.push_back({surfels.positions[i], surfels.normals[i]});
+            bent.push_back(surfels.bends[i]);
             views.push_back(numbers.of(choices[i]));
           }
           const std::vector<PatchFit> fits = fitter.fit(points, bent, to_device(views));
