@@ -27,7 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--scene", type=Path, default=DATASETS / "armadillo", help="(default: the shared armadillo)")
     parser.add_argument("--resolutions", type=listed, default=["256", "512"], help="voxels along the longest side")
     parser.add_argument("--tiles", type=int, default=32)
-    parser.add_argument("--repeat", type=int, default=3, help="runs of each, of which the median counts")
+    parser.add_argument("--repeat", type=int, default=2, help="runs of each, of which the median counts")
     parser.add_argument("--out", type=Path, help="file for the figures")
 
 
