@@ -27,7 +27,7 @@ constexpr float kHue = 0.12f;                       // relative
 constexpr float kDarkest = 0.4f, kLightest = 1.5f;  // of the usual root
 constexpr std::size_t kFewestFree = 100;
 constexpr double kEven = 2;           // mm around a place that are lit alike, away from all edges
-constexpr double kMostMoving = 0.01;  // of what is seen where the object cannot be
+constexpr double kMostMoving = 0.02;  // of what is seen where the object cannot be
 constexpr double kNear = 0.75, kAcrossInk = 4;  // mm: half of the windows that tell what is between
 constexpr float kLeastBare = 0.05f;             // share of such a window on which photographs agree
 constexpr float kMostAgree = 0.8f;              // share of its bare paper on which they must

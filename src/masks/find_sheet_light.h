@@ -35,8 +35,8 @@ struct SheetPhotographs {
 /// group is half as large, and it has the paper's hue: the object looks different from different
 /// sides, and a shadow that stands still does not. Between such points it is continued smoothly.
 /// Exposures may differ, and fall off towards the images' corners. Light is steady where no more
-/// than a percent of what is seen where the object cannot be is darker than that. Empty where less
-/// than a hundred places are seen beside the object.
+/// than two percent of what is seen where the object cannot be are darker than that. Empty where
+/// less than a hundred places are seen beside the object.
 SheetLight find_sheet_light(const SheetPhotographs& photographs);
 
 }  // namespace photohull

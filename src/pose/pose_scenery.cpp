@@ -42,6 +42,15 @@ bool sees_bare_page(const SheetLook& look) {
   return double(bare) > kEnough * double(look.light.size());
 }
 
+/// Where something may lie on the sheet, the object is only where all photographs have room for it,
+/// and elsewhere no photographs agree on the light.
+void leave_out_covers(const Mask& covered, SheetLook& look) {
+  std::size_t i = 0;
+  for (int y = 0; y < look.height; ++y)
+    for (int x = 0; x < look.width; ++x, ++i)
+      if (look.hull[i] == 0 && value_at(covered, x, y, look.width, look.height)) look.agreed[i] = look.possible[i] = 0;
+}
+
 class Exploration {
  public:
   Exploration(const std::vector<std::filesystem::path>& images,
@@ -59,6 +68,8 @@ class Exploration {
 
   SheetScenery run() {
     out_.shadows.resize(images_.size());
+    out_.covered.resize(images_.size());
+    for (const std::size_t i : posed_) out_.covered[i] = covered(i);
     for (int round = 0; round < kRounds; ++round) {
       find_light(scale_to(kSmall), kCoarse);
       out_.shadows = shadows_of_hull(result_, small_masks(scale_to(kSmall)));
@@ -117,6 +128,29 @@ class Exploration {
     photos.lower_left = sheet_.lower_left, photos.page = sheet_.page;
     out_.light = find_sheet_light(photos);
     ++steps_;
+  }
+
+  /// Where a photograph may show what covers tags; empty where it shows all of them. The picture of
+  /// a sheet whose light is known near such tags alone tells.
+  Mask covered(std::size_t photo) const {
+    constexpr double kTexels = 0.5;  // a millimetre
+    if (photos_[photo].view.tags.size() >= sheet_.tags.size()) return {};
+    SheetLight near;
+    near.texels_per_mm = kTexels, near.lower_left = sheet_.lower_left;
+    near.width = int(std::ceil(kTexels * sheet_.page.x));
+    near.height = int(std::ceil(kTexels * sheet_.page.y));
+    near.paper.assign(std::size_t(near.width) * std::size_t(near.height), glm::vec3(1));
+    for (int y = 0; y < near.height; ++y)
+      for (int x = 0; x < near.width; ++x) {
+        const glm::dvec2 place =
+            near.lower_left + glm::dvec2(x + 0.5, near.height - y - 0.5) / kTexels;
+        near.agreed.push_back(is_covered(photo, place) ? 255 : 0);
+      }
+    const Intrinsics& k = result_.cameras[std::size_t(result_.photos[photo].camera)].intrinsics;
+    const double scale = scale_to(kSmall);
+    const int width = scaled_length(k.width, scale), height = scaled_length(k.height, scale);
+    SheetLook look = look_at_sheet(scaled(photo, width, height), photo, sheet_, picture_, {}, near);
+    return {width, height, std::move(look.agreed)};
   }
 
   /// Is the place on a tag that the photograph does not show, or near it?
@@ -181,6 +215,8 @@ void SheetScenery::narrow(std::size_t photo, SheetLook& look) const {
   const bool beside_page = sees_bare_page(look);
   for (std::size_t i = 0; i < look.possible.size(); ++i)
     if (!(beside_page && look.light[i] >= 0) && look.hull[i] == 0) look.possible[i] = 0;
+  if (!look.agreed.empty() && !covered.empty() && !covered[photo].empty())
+    leave_out_covers(covered[photo], look);
 }
 
 SheetScenery explore_sheet(const std::vector<std::filesystem::path>& images,

@@ -23,9 +23,13 @@ struct SheetScenery {
   /// Of each photograph: where it can show the object (shadows_of_hull); scaled copies of the
   /// photographs' sizes, or empty.
   std::vector<Mask> shadows;
+  /// Of each photograph: 255 near tags that it should show and does not, for something may lie
+  /// there; scaled copies, or empty.
+  std::vector<Mask> covered;
 
   /// Beside the page the object can be in its shadow alone; on the page, too, where hardly any of
-  /// it would be known to be bare otherwise.
+  /// it would be known to be bare otherwise. Where something else may lie on the sheet,
+  /// the object can be in its shadow alone, too, and light is not known.
   void narrow(std::size_t photo, SheetLook& look) const;
 };
 

@@ -40,6 +40,22 @@ TEST(SheetScenery, OnThePageItsHullIsNoted) {
   EXPECT_EQ(page.hull, kHull);
 }
 
+TEST(SheetScenery, WhatMayCoverTheSheetIsNoObjectBesideItsShadow) {
+  const SheetScenery scenery{{}, {shadow()}, {{4, 1, {255, 255, 0, 0}}}};
+  SheetLook page = look(1);
+  page.possible[15] = 0;  // bare page is seen
+  std::vector<std::uint8_t> possible = page.possible;
+  scenery.narrow(0, page);
+  EXPECT_EQ(page.possible, possible) << "no light is known";
+
+  page.agreed.assign(kHull.size(), 255);
+  std::vector<std::uint8_t> agreed = page.agreed;
+  for (const std::size_t i : {0, 1, 8, 9}) possible[i] = agreed[i] = 0;
+  scenery.narrow(0, page);
+  EXPECT_EQ(page.possible, possible);
+  EXPECT_EQ(page.agreed, agreed);
+}
+
 TEST(SheetScenery, WithoutShadowsNothingIsKnown) {
   SheetLook page = look(1);
   SheetScenery{}.narrow(0, page);

@@ -206,6 +206,33 @@ TEST_F(SharedSurface, OnAFullDiskItIsTheSame) {
   EXPECT_EQ(alone.distance, together.distance);
 }
 
+TEST_F(SharedSurface, ADeviceThatRoundsDifferentlyDoesNotHelp) {
+  const ScratchFolder scratch;
+  std::string task;
+  ListWriter writer(task);
+  TaskHead{"job", "another renderer", TaskKind::kMatch, 0}.write(writer);
+  write_text(scratch / "job.0-0-match-0.task", task);
+  TileHelper helper(test::gl_context(), scratch.path());
+  try {
+    helper.help();
+    ADD_FAILURE();
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("begun on another renderer"), std::string::npos);
+  }
+}
+
+TEST_F(SharedSurface, DamagedTasksAreErrors) {
+  const ScratchFolder scratch;
+  write_text(scratch / "job.0-0-match-0.task", "no task");
+  TileHelper helper(test::gl_context(), scratch.path());
+  EXPECT_THROW(helper.help(), Error);
+  std::string task;
+  ListWriter writer(task);
+  TaskHead{"job", test::gl_context().device().renderer, TaskKind::kFit, 1}.write(writer);
+  write_text(scratch / "job.0-0-match-0.task", task);
+  EXPECT_THROW(helper.help(), Error) << "there are no such photographs";
+}
+
 TEST_F(SharedSurface, HelpersHoldAsFewPhotographsAsTheirOwner) {
   const SparseVolume alone = run(kEdge);
   FewPhotographs few(scene_, ViewChoice::kMostViews, options_.noise_sigma);
