@@ -14,7 +14,7 @@ namespace {
 constexpr double kMargin = 3.0;  // voxels around the box: room for the narrow band
 constexpr double kRounding = 1e-12;
 constexpr double kMaxBricks = 520.0 * 520 * 520;  // tables of 536 MiB; 4096^3 voxels fit
-constexpr double kBytesPerSurfaceBrick = 12e3;     // rough: distances, mesh, VDB copy
+constexpr double kBytesPerSurfaceBrick = 12e3;    // rough: distances, mesh, VDB copy
 
 /// Along each axis, for so many voxels. Throws as fit_grid does.
 glm::ivec3 bricks_for(const glm::dvec3& voxels, double voxel_size) {

@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kFewestSurfels = std::size_t(1) << 12;  // of a tile
+constexpr std::size_t kFewestSurfels = std::size_t(1) << 10;  // of a tile
 
 }  // namespace
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <functional>
 #include <limits>
@@ -12,8 +13,11 @@
 
 #include "bowl_scene.h"
 #include "core/error.h"
+#include "refine/job.h"
+#include "refine/kernels/choose_views.h"
 #include "refine/shared_work.h"
 #include "refine/tile_helper.h"
+#include "refine/tile_tasks.h"
 #include "refine/view_choice.h"
 #include "support/analytic_volumes.h"
 #include "support/gl_context.h"
@@ -187,6 +191,54 @@ TEST_F(SharedSurface, IsThatOfOneProcessHoweverItIsCut) {
     EXPECT_EQ(report_.levels[0].samples, levels[0].samples) << tiles;
     EXPECT_EQ(report_.levels[1].samples, levels[1].samples) << tiles;
     EXPECT_EQ(helped_ > 0, helpers > 0);
+  }
+}
+
+TEST_F(SharedSurface, TilesAreMatchedAndFittedAsTheWhole) {
+  const ScratchFolder scratch;
+  SharedWork shared(scratch.path(), "job", 5, progress_);
+  gpu::Context& context = test::gl_context();
+  const projtex::ImageSet images(scene_.views);
+  const std::vector<carving::Silhouette> silhouettes = scene_.silhouettes();
+  const GridSpec grid = scene_.grid(kEdge);
+  const HullAt hull_at = [&](const GridSpec& of) { return scene_.hull(of); };
+  RefineJob job{context,
+                hull_at,
+                {scene_.cameras, silhouettes},
+                {images, scene_.cameras, options_.noise_sigma},
+                options_,
+                grid.voxel_size};
+  const TriMesh mesh = extract_mesh(scene_.hull(grid));
+  const VertexGraph graph = make_graph(mesh);
+  const std::vector<glm::vec3> positions = voxel_positions(grid, mesh);
+  const MeshSurfels surfels{grid, mesh, graph, positions};
+  const std::vector<glm::vec3> bends = curvatures(graph, positions, mesh.normals, 1);
+  std::vector<ViewChoice> choices =
+      choose_views(job.context, grid, mesh, job.photographs, options_.match);
+  choices[1].views.clear();
+  const OffsetRange range{-1, 0.5, 5};
+  const Matches matches = match_vertices(job, grid, mesh, bends, choices, range);
+  const Matches textures = vertex_textures(job, grid, mesh, choices);
+  const std::vector<PatchFit> fits = fit_in_tiles(job, surfels, choices);
+  EXPECT_GT(std::ranges::count_if(matches.texture, [](float t) { return t < 0.99f; }), 100);
+
+  job.shared = &shared;
+  ASSERT_GE(shared.tiles_of(comparable(choices).size()), 3u);
+  const Matches tiled = match_vertices(job, grid, mesh, bends, choices, range);
+  EXPECT_EQ(tiled.scores, matches.scores);
+  EXPECT_EQ(tiled.texture, matches.texture);
+  EXPECT_EQ(tiled.samples, matches.samples);
+  EXPECT_EQ(tiled.range.count, range.count);
+  const Matches tiled_textures = vertex_textures(job, grid, mesh, choices);
+  EXPECT_EQ(tiled_textures.texture, textures.texture);
+  EXPECT_EQ(tiled_textures.samples, textures.samples);
+  const std::vector<PatchFit> tiled_fits = fit_in_tiles(job, surfels, choices);
+  ASSERT_EQ(tiled_fits.size(), fits.size());
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    ASSERT_EQ(tiled_fits[i].normal, fits[i].normal) << i;
+    ASSERT_EQ(tiled_fits[i].offset, fits[i].offset) << i;
+    ASSERT_EQ(tiled_fits[i].information, fits[i].information) << i;
+    ASSERT_EQ(tiled_fits[i].held_after, fits[i].held_after) << i;
   }
 }
 
