@@ -5,12 +5,13 @@
 A plan of 16 hulls of one rendered scene is submitted to each engine, with three processes. At random moments one of the
 processes, or two at once, are killed (SIGKILL); the seed is the run's number. The same command submits it once more where
 it did not end well. What is there at the end is compared with an undisturbed batch, byte by byte, without reports, which
-tell the time. Slurm runs on this machine alone, by tests/cli/with_slurm.sh; OpenMPI's mpirun, GNU parallel and Slurm have
+tell the time. Where FILE is there, the study goes on from the runs that it has, which must be of the same program. Slurm runs on this machine alone, by tests/cli/with_slurm.sh; OpenMPI's mpirun, GNU parallel and Slurm have
 to be installed.
 
 The table is in docs/measurements/benchmarks.md. With --processes, another one has the wall time of the same plan by one
 process with two threads, and by 2 and 4 processes with one thread each, on a machine that does nothing else."""
 import argparse
+import json
 import os
 import random
 import shutil
@@ -91,21 +92,28 @@ def submit(photohull: Photohull, engine: str, job: Path, folder: Path) -> int:
     return subprocess.run(list(map(str, words)), env=os.environ | MPI, capture_output=True, check=False).returncode
 
 
-def disturbed_runs(photohull: Photohull, engine: str, scene: Path, folder: Path, runs: int, calm: dict[str, bytes]) -> dict:
-    kills, again, wrong = [], 0, 0
-    for seed in range(runs):
-        job = plan(photohull, scene, folder / engine)
-        ended = threading.Event()
-        killer = threading.Thread(target=disturb, args=(job, seed, ended, kills))
-        killer.start()
-        submit(photohull, engine, job, folder)
-        ended.set()
-        killer.join()
-        if not photohull.json("status", job)["complete"]:
-            again += 1
-            submit(photohull, engine, job, folder)
-        wrong += results(job) != calm
-    return {"engine": engine, "runs": runs, "kills": len(kills), "again": again, "different": wrong}
+def disturbed_run(photohull: Photohull, scene: Path, folder: Path, calm: dict[str, bytes], row: dict) -> None:
+    """One more run of an engine, added to what its row counts; the seed is its number."""
+    kills: list[int] = []
+    job = plan(photohull, scene, folder / row["engine"])
+    ended = threading.Event()
+    killer = threading.Thread(target=disturb, args=(job, row["runs"], ended, kills))
+    killer.start()
+    submit(photohull, row["engine"], job, folder)
+    ended.set()
+    killer.join()
+    if not photohull.json("status", job)["complete"]:
+        row["again"] += 1
+        submit(photohull, row["engine"], job, folder)
+    row["different"] += results(job) != calm
+    row["kills"] += len(kills)
+    row["runs"] += 1
+
+
+def rows_so_far(options: argparse.Namespace) -> list[dict]:
+    known = json.loads(options.out.read_text(encoding="utf-8")) if options.out and options.out.is_file() else []
+    return [next((row for row in known if row["engine"] == engine), {"engine": engine, "runs": 0, "kills": 0, "again": 0, "different": 0})
+            for engine in options.engines]
 
 
 def processes(photohull: Photohull, scene: Path, folder: Path, count: int, threads: int) -> float:
@@ -139,6 +147,9 @@ def run(options: argparse.Namespace) -> None:
             show_processes(photohull, scene, folder, options.processes)
         photohull.call("run", plan(photohull, scene, folder / "calm"))
         calm = results(folder / "calm")
-        rows = [disturbed_runs(photohull, engine, scene, folder, options.runs, calm) for engine in options.engines]
+        rows = rows_so_far(options)
+        for row in rows:
+            while row["runs"] < options.runs:
+                disturbed_run(photohull, scene, folder, calm, row)
+                keep_json(options.out, rows)
     print(page.table_of(page.data("benchmarks")["kills"], rows))
-    keep_json(options.out, rows)
