@@ -161,7 +161,7 @@ TEST_F(BadScene, DamagedTransforms) {
 }
 
 TEST_F(BadScene, AbsurdResolutionSaysTheMemory) {
-  for (const char* resolution : {"100000", "2147483647", "3900"}) {
+  for (const char* resolution : {"100000", "2147483647", "4300"}) {
     RunOptions quick;
     quick.timeout_seconds = 20;
     fail(1, reconstruct({"--resolution", resolution}), {"MiB", "--resolution"}, quick);
