@@ -48,7 +48,8 @@ void leave_out_covers(const Mask& covered, SheetLook& look) {
   std::size_t i = 0;
   for (int y = 0; y < look.height; ++y)
     for (int x = 0; x < look.width; ++x, ++i)
-      if (look.hull[i] == 0 && value_at(covered, x, y, look.width, look.height)) look.agreed[i] = look.possible[i] = 0;
+      if (look.hull[i] == 0 && value_at(covered, x, y, look.width, look.height))
+        look.agreed[i] = look.possible[i] = 0;
 }
 
 class Exploration {
