@@ -104,7 +104,11 @@ bool TaskFolder::help(const Perform& perform) const {
     const std::string stem = entry.path().stem().string();
     if (is_there(file(stem, kResult))) continue;
     const auto held = FileLock::if_free(file(stem, kLock));
-    if (!held || !is_there(entry.path()) || is_there(file(stem, kResult))) continue;
+    if (!held || is_there(file(stem, kResult))) continue;
+    if (!is_there(entry.path())) {  // done since: the lock may be a file that was made anew
+      remove(stem);
+      continue;
+    }
     std::string task;
     try {
       task = read_whole_file(entry.path());
