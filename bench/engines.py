@@ -5,8 +5,9 @@
 A plan of 16 hulls of one rendered scene is submitted to each engine, with three processes. At random moments one of the
 processes, or two at once, are killed (SIGKILL); the seed is the run's number. The same command submits it once more where
 it did not end well. What is there at the end is compared with an undisturbed batch, byte by byte, without reports, which
-tell the time. Where FILE is there, the study goes on from the runs that it has, which must be of the same program. Slurm runs on this machine alone, by tests/cli/with_slurm.sh; OpenMPI's mpirun, GNU parallel and Slurm have
-to be installed.
+tell the time. As seeds are the same for all engines, so are the numbers of kills where runs last long enough. Where FILE
+is there, the study goes on from the runs that it has, which must be of the same program. Slurm runs on this machine
+alone, by tests/cli/with_slurm.sh; OpenMPI's mpirun, GNU parallel and Slurm have to be installed.
 
 The table is in docs/measurements/benchmarks.md. With --processes, another one has the wall time of the same plan by one
 process with two threads, and by 2 and 4 processes with one thread each, on a machine that does nothing else."""

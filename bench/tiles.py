@@ -1,6 +1,6 @@
 """What processes that help with one scene's tiles save: time, memory, and whether the result is the same.
 
-    python3 -m bench tiles [--scene FOLDER] [--resolutions 256,512] [--tiles 32] [--repeat 3] [--out FILE]
+    python3 -m bench tiles [--scene FOLDER] [--resolutions 256,512] [--tiles 32] [--repeat 2] [--out FILE]
 
 A plan of one scene with tiles is made by one process, by two and by four, each with one thread, on a machine that does
 nothing else and has as many cores. The table is in docs/measurements/benchmarks.md: wall time beside that of one process

@@ -7,6 +7,7 @@
 #include <new>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <thread>
 
 #include "cli/front/exit_code.h"
@@ -181,24 +182,35 @@ class Batch {
     const std::size_t before = helped_;
     for (const std::size_t i : others) {
       const BatchPiece& piece = pieces_[i];
-      if (!helper_ || helping_ != piece.name) {
-        helping_ = piece.name;
-        helper_.emplace(store_.tiles(piece.name), piece.job.device, piece.job.threads);
+      if (beyond_help_.contains(piece.name)) continue;
+      try {
+        while (help_once(piece)) progress_.check_cancelled();
+      } catch (const Error& problem) {
+        progress_.warn(concat(piece.name, ": cannot help, for ", problem.what()));
+        beyond_help_.insert(piece.name);
+        drop_helper();
       }
-      while (help_once()) progress_.check_cancelled();
     }
     return helped_ > before;
   }
 
-  bool help_once() {
-    try {
-      if (!helper_->help()) return false;
-    } catch (const Error& problem) {
-      progress_.warn(concat(helping_, ": cannot help, for ", problem.what()));
-      return false;
+  bool help_once(const BatchPiece& piece) {
+    const std::filesystem::path folder = store_.tiles(piece.name);
+    if (!pipeline::can_be_helped(folder)) return false;
+    if (helping_ != piece.name) {
+      drop_helper();
+      helper_.emplace(folder, piece.job.device, piece.job.threads);
+      helping_ = piece.name;
     }
+    if (!helper_->help()) return false;
     if (helped_++ == 0) progress_.note("helping others with their tiles");
     return true;
+  }
+
+  /// Its device and photographs go: a thread has one device at a time.
+  void drop_helper() {
+    helper_.reset();
+    helping_.clear();
   }
 
   void wait() {
@@ -252,6 +264,7 @@ class Batch {
     }
     const auto held = store_.hold(piece.name);
     if (!held) return false;
+    drop_helper();
     const Outcome outcome = make(with_what_is_there(piece, progress), progress);
     if (options_.sequence && outcome.has_result())
       store_.publish(piece.name, "volume.vdb", "volume." + piece.name + ".vdb");
@@ -287,6 +300,7 @@ class Batch {
       out.exit_code = exit_code(ErrorKind::kMemory);
       out.message = "there is not enough memory";
     }
+    store_.remove_tiles(piece.name);
     if (!out.has_result()) progress.warn(out.message);
     const std::chrono::duration<double> elapsed = Clock::now() - start;
     out.wall_seconds = elapsed.count();
@@ -350,7 +364,8 @@ class Batch {
   Clock::time_point next_table_ = Clock::now() + kTableEvery;
   std::string helping_;  // the piece that helper_ is for
   std::optional<pipeline::Helper> helper_;
-  std::size_t helped_ = 0;  // tiles
+  std::set<std::string> beyond_help_;  // pieces that this process cannot help with
+  std::size_t helped_ = 0;             // tiles
   int made_ = 0, kept_ = 0, elsewhere_ = 0, early_ = 0;
 };
 

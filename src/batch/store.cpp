@@ -71,6 +71,11 @@ void Store::set_outcome(const std::string& name, const Outcome& outcome) const {
   write_atomically(kept(name) / kOutcome, to_json(name, outcome) + "\n");
 }
 
+void Store::remove_tiles(const std::string& name) const {
+  std::error_code ignored;
+  fs::remove_all(tiles(name), ignored);
+}
+
 void Store::write_table(const std::string& contents) const { write_atomically(table(), contents); }
 
 void Store::write_page(const std::string& contents) const { write_atomically(page(), contents); }

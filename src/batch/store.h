@@ -43,6 +43,8 @@ class Store {
   std::filesystem::path page() const { return folder_ / "index.html"; }
   /// Where the piece's process lays what others can help it with.
   std::filesystem::path tiles(const std::string& name) const { return kept(name) / "tiles"; }
+  /// Whatever became of the piece. What a helper has just open there stays.
+  void remove_tiles(const std::string& name) const;
   /// Makes the piece's file `from` (such as volume.vdb) the batch's file `to` as well: the same
   /// file by another name, or a copy where the file system has no such names. Throws Error where it
   /// can do neither.

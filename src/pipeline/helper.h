@@ -7,22 +7,22 @@
 
 namespace photohull::pipeline {
 
-/// Helps with one job, whose ReconstructOptions::tiles name the folder.
+/// Has the job whose ReconstructOptions::tiles name the folder tiles that nobody has done yet?
+bool can_be_helped(const std::filesystem::path& folder);
+
+/// Helps with one job, on a device of its own: a thread has one at a time.
 class Helper {
  public:
-  Helper(std::filesystem::path folder, std::string device, int threads);
+  /// Throws Error where there is no such device.
+  Helper(const std::filesystem::path& folder, const std::string& device, int threads);
   ~Helper();
 
-  /// Does a tile that nobody is at. False: there is none. Throws Error where this process cannot
-  /// do what the job needs, as refine::TileHelper does and where there is no such device.
+  /// Does a tile that nobody is at. False: there is none. Throws as refine::TileHelper does.
   bool help();
 
  private:
   struct Work;
-  std::filesystem::path folder_;
-  std::string device_;
-  int threads_;
-  std::unique_ptr<Work> work_;  // made when there is something to do
+  std::unique_ptr<Work> work_;
 };
 
 }  // namespace photohull::pipeline

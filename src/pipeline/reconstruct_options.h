@@ -62,9 +62,8 @@ struct TextureChoice {
 
 /// How other processes help with a refinement. It does not affect results and is not described.
 struct SharedTiles {
-  std::filesystem::path
-      folder;     ///< that all of them see; it is removed when the job has ended well
-  int count = 0;  ///< tiles that the surface is cut into at most; 0: nobody helps
+  std::filesystem::path folder;  ///< that all of them see; the caller removes it
+  int count = 0;                 ///< tiles that the surface is cut into at most; 0: nobody helps
 };
 
 /// What each is, with its unit and legal values, describe() tells.

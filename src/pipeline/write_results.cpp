@@ -156,10 +156,6 @@ Report reconstruct_to_folder(const ReconstructOptions& options, const Photograph
   const Report report = write_rest(reconstructor.run(photographs, progress, take_volume),
                                    {options.exports, options.mesh_files}, files, progress);
   remove_checkpoint(folder);
-  if (options.tiles.count > 0) {
-    std::error_code ignored;  // what a helper has open there stays
-    std::filesystem::remove_all(options.tiles.folder, ignored);
-  }
   return report;
 }
 

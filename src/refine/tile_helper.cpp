@@ -78,11 +78,7 @@ class TileHelper::Work {
   std::optional<Searched> searched_;
 };
 
-bool has_tiles(const fs::path& folder) {
-  std::error_code ignored;
-  const fs::directory_iterator files(folder, ignored);
-  return !ignored && files != fs::directory_iterator();
-}
+bool has_tiles(const fs::path& folder) { return share::has_tasks(folder); }
 
 TileHelper::TileHelper(gpu::Context& context, const fs::path& folder)
     : work_(std::make_unique<Work>(context, folder)) {}

@@ -8,7 +8,7 @@
 
 namespace photohull::refine {
 
-/// Is there a job in the folder that can be helped with?
+/// Are there tasks in the folder that nobody has done yet?
 bool has_tiles(const std::filesystem::path& folder);
 
 /// Does tasks of one job (SharedWork) in its folder.

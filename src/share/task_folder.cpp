@@ -29,7 +29,23 @@ bool is_there(const fs::path& file) {
   return fs::is_regular_file(file, ignored);
 }
 
+/// Calls use(task's file) until it returns true, for those without a result. Did it?
+template <typename Use>
+bool any_open(const fs::path& folder, const Use& use) {
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    const fs::path& task = entry.path();
+    if (task.extension() != kTask || is_there(fs::path(task).replace_extension(kResult))) continue;
+    if (use(task)) return true;
+  }
+  return false;
+}
+
 }  // namespace
+
+bool has_tasks(const fs::path& folder) {
+  return any_open(folder, [](const fs::path&) { return true; });
+}
 
 TaskFolder::TaskFolder(fs::path folder) : folder_(std::move(folder)) {
   std::error_code failure;
@@ -98,32 +114,22 @@ void TaskFolder::remove(const std::string& stem) const {
 }
 
 bool TaskFolder::help(const Perform& perform) const {
-  std::error_code ignored;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder_, ignored)) {
-    if (entry.path().extension() != kTask) continue;
-    const std::string stem = entry.path().stem().string();
-    if (is_there(file(stem, kResult))) continue;
+  return any_open(folder_, [&](const fs::path& asked) {
+    const std::string stem = asked.stem().string();
     const auto held = FileLock::if_free(file(stem, kLock));
-    if (!held || is_there(file(stem, kResult))) continue;
-    if (!is_there(entry.path())) {  // done since: the lock may be a file that was made anew
+    if (!held || is_there(file(stem, kResult))) return false;
+    if (!is_there(asked)) {  // done since: the lock may be a file that was made anew
       remove(stem);
-      continue;
-    }
-    std::string task;
-    try {
-      task = read_whole_file(entry.path());
-    } catch (const Error&) {  // gone since
-      continue;
+      return false;
     }
     try {
-      write_atomically(file(stem, kResult), perform(task));
+      write_atomically(file(stem, kResult), perform(read_whole_file(asked)));
     } catch (const Error&) {
-      if (is_there(entry.path())) throw;
-      continue;  // done since by who had no lock: what it needs may be gone
+      if (is_there(asked)) throw;
+      return false;  // done since by who had no lock: what it needs may be gone
     }
     return true;
-  }
-  return false;
+  });
 }
 
 }  // namespace photohull::share

@@ -22,6 +22,9 @@ struct Tasks {
   std::function<void(std::size_t, const std::string&)> take;
 };
 
+/// Are there tasks in a folder, which need not exist, that have no result yet?
+bool has_tasks(const std::filesystem::path& folder);
+
 /// The folder, for the process that has tasks and for those that help it. A task is a file; who
 /// does it holds a lock beside it, which the system lets go of with the process (core/file_lock.h),
 /// and who helped leaves the result in a third file.

@@ -65,6 +65,7 @@ TEST_F(TaskFolderTest, WhoIsAloneDoesAll) {
   expect_all();
   EXPECT_EQ(done, 20);
   EXPECT_FALSE(folder_.help(perform)) << "nothing is left";
+  EXPECT_FALSE(has_tasks(folder_.folder()));
   EXPECT_TRUE(progress_.texts.empty());
 }
 
@@ -150,6 +151,16 @@ TEST_F(TaskFolderTest, OnAFullDiskAProcessDoesAllByItself) {
   write("step-0.task", "<0>");
   const FileSizeLimit full(2);
   EXPECT_THROW(folder_.help(twice), Error);
+}
+
+TEST_F(TaskFolderTest, TasksAreOpenUntilTheyHaveAResult) {
+  EXPECT_FALSE(has_tasks(scratch_ / "nowhere"));
+  write("job.photographs", "no task");
+  EXPECT_FALSE(has_tasks(folder_.folder()));
+  write("step-0.task", "<0>");
+  EXPECT_TRUE(has_tasks(folder_.folder()));
+  EXPECT_TRUE(folder_.help(twice));
+  EXPECT_FALSE(has_tasks(folder_.folder()));
 }
 
 TEST_F(TaskFolderTest, WhatATaskNeedsMayBeGoneWhenItIs) {

@@ -211,8 +211,8 @@ void describe(Described& to, StudyOptions& o) {
   to.number("squares", &o.squares, from_to(16, 100000), "",
             "squares a footprint in each of two images");
   to.number("repeats", &o.repeats, from_to(1, 1000), "",
-            "times that each timing is taken; the quickest counts, and with 1 short ones are not "
-            "taken anew on more squares either");
+            "times that the sweeps' timings are taken, and the samplers' up to twice; the quickest "
+            "counts, and with 1 short ones are not taken anew on more squares either");
 }
 
 void StudyOptions::validate() const {

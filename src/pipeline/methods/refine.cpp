@@ -90,24 +90,23 @@ void check_found(const SurfaceJob& job, const SparseVolume& volume,
                "rest is the hull's guess"));
 }
 
-std::string identity_of(const SurfaceJob& job) {
-  return job_identity(job.options, job.photographs, job.subject, job.context.device().renderer);
-}
-
 /// Levels that an interrupted run of the same job has done are taken from its checkpoint.
 std::optional<refine::CheckpointFile> checkpoint_of(const SurfaceJob& job) {
   if (job.options.checkpoint.empty()) return std::nullopt;
   const std::filesystem::path file = checkpoint_file(job.options.checkpoint);
   if (job.options.fresh) remove_checkpoint(job.options.checkpoint);
-  return refine::CheckpointFile{file, identity_of(job)};
+  return refine::CheckpointFile{
+      file, job_identity(job.options, job.photographs, job.subject, job.context.device().renderer)};
 }
 
-/// What other processes help with; null: nothing.
-std::unique_ptr<refine::SharedWork> shared_work_of(const SurfaceJob& job,
-                                                   const projtex::Photographs& photographs) {
+/// What other processes help with; null: nothing. Only jobs that can go on from where they were are
+/// shared, for helpers know a job as its checkpoint does.
+std::unique_ptr<refine::SharedWork> shared_work_of(
+    const SurfaceJob& job, const projtex::Photographs& photographs,
+    const std::optional<refine::CheckpointFile>& checkpoint) {
   const SharedTiles& tiles = job.options.tiles;
-  if (tiles.count < 2) return nullptr;
-  auto out = std::make_unique<refine::SharedWork>(tiles.folder, identity_of(job), tiles.count,
+  if (tiles.count < 2 || !checkpoint) return nullptr;
+  auto out = std::make_unique<refine::SharedWork>(tiles.folder, checkpoint->job, tiles.count,
                                                   job.progress);
   out->publish(photographs, job.larger);
   return out;
@@ -126,7 +125,7 @@ Surface carve(const SurfaceJob& job, SparseVolume) {
     return hull;
   };
   const refine::RefineOptions options = parameters_of(job).refine;
-  const auto shared = shared_work_of(job, {*job.images, cameras, options.noise_sigma});
+  const auto shared = shared_work_of(job, {*job.images, cameras, options.noise_sigma}, checkpoint);
   out.volume =
       refine::refine_surface(job.context,
                              {job.subject.grid, hull_at, silhouettes, *job.images, cameras,
