@@ -1,5 +1,6 @@
 #include "batch_arguments.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "cli/front/parse_faults.h"
@@ -69,6 +70,47 @@ std::vector<std::string> words_of(BatchPiece piece) {
   return words;
 }
 
+/// The same voxels, doubled so many times.
+void make_coarser(int times, pipeline::ReconstructOptions& job) {
+  if (job.resolution) *job.resolution = std::max((*job.resolution + (1 << times) - 1) >> times, 2);
+  if (job.voxel_size) *job.voxel_size *= 1 << times;
+}
+
+/// A scene's whole, its parts, and what joins them. Throws UsageError where the voxels' size is not
+/// given, or other options do not go with parts.
+std::vector<BatchPiece> in_parts(const BatchPiece& scene, int count, const std::string& out) {
+  if (!scene.job.resolution && !scene.job.voxel_size)
+    throw UsageError(concat("--parts: give --resolution or --voxel-size, for the whole of ",
+                            scene.name, " is made on coarser voxels"));
+  std::vector<BatchPiece> pieces{scene};
+  BatchPiece& whole = pieces.back();
+  whole.name += ".whole";
+  make_coarser(scene.job.finer, whole.job);
+  BatchPiece joined = scene;
+  joined.joins.push_back(whole.name);
+  BatchPiece part = scene;
+  part.job.resolution.reset();
+  part.job.voxel_size.reset();
+  part.job.follow = std::filesystem::path(out) / whole.name;
+  const std::size_t digits = std::to_string(count).size();
+  for (int number = 1; number <= count; ++number) {
+    const std::string text = std::to_string(number);
+    part.name = scene.name + ".part" + std::string(digits - text.size(), '0') + text;
+    part.job.part = {number, count};
+    part.job.validate();
+    joined.joins.push_back(part.name);
+    pieces.push_back(part);
+  }
+  pieces.push_back(std::move(joined));
+  return pieces;
+}
+
+void check_names(const std::vector<BatchPiece>& pieces) {
+  std::vector<batch::Piece> named;
+  for (const BatchPiece& piece : pieces) named.push_back({piece.name, {}, {}, piece.scene});
+  batch::check_pieces(named);
+}
+
 }  // namespace
 
 void BatchArguments::add_to(CLI::App& command) {
@@ -94,6 +136,13 @@ void BatchArguments::add_to(CLI::App& command) {
       ->check(CLI::Range(0, 10000))
       ->capture_default_str();
   command
+      .add_option("--parts", parts,
+                  "make each scene whole on coarser voxels (--finer), then so many parts of it on "
+                  "those asked for, each by itself, and join them: for models larger than memory; "
+                  "0: whole at once")
+      ->check(CLI::Range(0, pipeline::PartNumber::kMost))
+      ->capture_default_str();
+  command
       .add_option("--out", out,
                   "folder for the results, in a folder each; made when it does not exist")
       ->required();
@@ -117,6 +166,8 @@ std::vector<BatchPiece> BatchArguments::pieces() const {
                        ": give the first and the last, such as 0-299 or 0000-0299");
     given = batch::pieces_of_frames(given, *range);
   }
+  if (parts > 0 && !frames.empty())
+    throw UsageError("--parts and --frames exclude each other: frames are made whole");
   if (frames.empty() && chain > 1)
     throw UsageError(concat("--chain ", chain, " is for frames: give --frames"));
   check_pieces(given);
@@ -129,8 +180,14 @@ std::vector<BatchPiece> BatchArguments::pieces() const {
     if (before[i].follow && job.effective_method() == pipeline::Method::kRefine)
       piece.job.follow = std::filesystem::path(out) / *before[i].follow;
     if (before[i].rig) piece.job.rig = std::filesystem::path(out) / *before[i].rig;
-    pieces.push_back(parse_piece(one, std::move(piece), out));
+    piece = parse_piece(one, std::move(piece), out);
+    if (parts == 0) {
+      pieces.push_back(std::move(piece));
+      continue;
+    }
+    for (BatchPiece& each : in_parts(piece, parts, out)) pieces.push_back(std::move(each));
   }
+  check_names(pieces);
   return pieces;
 }
 
@@ -146,14 +203,14 @@ void keep_plan(const std::vector<BatchPiece>& pieces, const BatchArguments& argu
                    arguments.tiles,
                    {}};
   for (const BatchPiece& piece : pieces)
-    plan.pieces.push_back({piece.name, words_of(piece), {}, {}});
+    plan.pieces.push_back({piece.name, words_of(piece), {}, {}, 0, piece.joins});
   store.set_plan(plan);
 }
 
 std::vector<BatchPiece> planned_pieces(const batch::Plan& plan, const std::string& out) {
   std::vector<BatchPiece> pieces;
   for (const batch::Piece& piece : plan.pieces)
-    pieces.push_back(parse_piece(piece, {piece.name, {}, {}, {}}, out));
+    pieces.push_back(parse_piece(piece, {piece.name, {}, {}, {}, piece.joins}, out));
   return pieces;
 }
 

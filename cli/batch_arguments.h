@@ -19,7 +19,7 @@ struct BatchArguments {
   io::LoadSceneOptions load;
   std::vector<std::string> scenes;
   std::string list, frames, out;
-  int chain = 1, tiles = 0;
+  int chain = 1, tiles = 0, parts = 0;
 
   void add_to(CLI::App& command);
   /// One for each scene and frame, their options checked. Throws UsageError and Error.

@@ -12,8 +12,10 @@
 
 #include "cli/front/exit_code.h"
 #include "core/error.h"
+#include "kept_steps.h"
 #include "page/make_batch_page.h"
 #include "pipeline/helper.h"
+#include "pipeline/join_parts.h"
 #include "pipeline/stage_clock.h"
 #include "pipeline/stage_weights.h"
 #include "pipeline/write_results.h"
@@ -23,6 +25,7 @@
 namespace photohull::cli {
 namespace {
 
+namespace fs = std::filesystem;
 using batch::Outcome;
 using Clock = std::chrono::steady_clock;
 
@@ -222,12 +225,14 @@ class Batch {
   enum class Input { kThere, kInOtherHands, kMissing };
 
   Input state(const BatchPiece& piece) const {
-    for (const std::filesystem::path& folder : {piece.job.follow, piece.job.rig}) {
-      const auto name = store_.piece_of(folder);
-      if (!name || outcome_of(*name)) continue;
-      const bool mine = std::ranges::any_of(
-          pieces_, [&](const BatchPiece& other) { return other.name == *name; });
-      return mine || !store_.hold(*name) ? Input::kInOtherHands : Input::kMissing;
+    std::vector<std::string> names = piece.joins;
+    for (const fs::path& folder : {piece.job.follow, piece.job.rig})
+      if (auto name = store_.piece_of(folder)) names.push_back(*std::move(name));
+    for (const std::string& name : names) {
+      if (outcome_of(name)) continue;
+      const bool mine =
+          std::ranges::any_of(pieces_, [&](const BatchPiece& other) { return other.name == name; });
+      return mine || !store_.hold(name) ? Input::kInOtherHands : Input::kMissing;
     }
     return Input::kThere;
   }
@@ -246,6 +251,9 @@ class Batch {
     for (std::filesystem::path* folder : {&piece.job.follow, &piece.job.rig}) {
       const auto name = store_.piece_of(*folder);
       if (!name || outcome_of(*name)->has_result()) continue;
+      if (piece.job.part)
+        throw Error(
+            concat(*name, " has no result, of which this is a part: ", outcome_of(*name)->message));
       progress.note(*name + " has no result to go by");
       folder->clear();
     }
@@ -265,7 +273,7 @@ class Batch {
     const auto held = store_.hold(piece.name);
     if (!held) return false;
     drop_helper();
-    const Outcome outcome = make(with_what_is_there(piece, progress), progress);
+    const Outcome outcome = make(piece, progress);
     if (options_.sequence && outcome.has_result())
       store_.publish(piece.name, "volume.vdb", "volume." + piece.name + ".vdb");
     rows_[i].outcome = outcome;
@@ -275,22 +283,26 @@ class Batch {
   }
 
   /// As it was made before, or now.
-  Outcome make(const BatchPiece& piece, PieceProgress& progress) {
+  Outcome make(const BatchPiece& given, PieceProgress& progress) {
     const auto start = Clock::now();
     const double cpu = pipeline::process_cpu_seconds();
     pipeline::forget_peak_memory();
     Outcome out;
-    out.scene = piece.scene;
+    out.scene = given.scene;
     out.plan = options_.plan;
     try {
-      out.identity = model_identity(piece.job, piece.load, piece.scene, store_.results(piece.name));
+      const BatchPiece piece = with_what_is_there(given, progress);
+      out.identity = identity_of(piece);
       if (auto before = store_.outcome(piece.name); before && is_kept(piece, *before, out)) {
         ++kept_;
         before->plan = options_.plan;
         store_.set_outcome(piece.name, *before);
         return *before;
       }
-      reconstruct(piece, progress, out);
+      if (piece.joins.empty())
+        reconstruct(piece, progress, out);
+      else
+        join(piece, progress, out);
     } catch (const Cancelled&) {
       throw;
     } catch (const Error& e) {
@@ -300,13 +312,13 @@ class Batch {
       out.exit_code = exit_code(ErrorKind::kMemory);
       out.message = "there is not enough memory";
     }
-    store_.remove_tiles(piece.name);
+    store_.remove_tiles(given.name);
     if (!out.has_result()) progress.warn(out.message);
     const std::chrono::duration<double> elapsed = Clock::now() - start;
     out.wall_seconds = elapsed.count();
     out.cpu_seconds = pipeline::process_cpu_seconds() - cpu;
     out.peak_memory_bytes = pipeline::process_peak_memory();
-    store_.set_outcome(piece.name, out);
+    store_.set_outcome(given.name, out);
     ++made_;
     return out;
   }
@@ -322,6 +334,42 @@ class Batch {
     return before.has_result() ? has_results(store_.results(piece.name)) : !options_.retry;
   }
 
+  std::string identity_of(const BatchPiece& piece) const {
+    if (piece.joins.empty())
+      return model_identity(piece.job, piece.load, piece.scene, store_.results(piece.name));
+    StepIdentity identity;
+    for (const fs::path& part : folders_of(piece.joins)) identity.add_file(part / "report.json");
+    return identity.digest();
+  }
+
+  std::vector<fs::path> folders_of(const std::vector<std::string>& names) const {
+    std::vector<fs::path> out;
+    for (const std::string& name : names) out.push_back(store_.results(name));
+    return out;
+  }
+
+  void join(const BatchPiece& piece, PieceProgress& progress, Outcome& out) {
+    for (const std::string& name : piece.joins)
+      if (const auto part = outcome_of(name); !part || !part->has_result())
+        throw Error(concat(name, " has no result, without which the parts cannot be joined",
+                           part ? ": " + part->message : std::string()));
+    progress.stage("join", 1);
+    const std::vector<fs::path> all = folders_of(piece.joins);
+    const pipeline::JoinedParts joined =
+        pipeline::join_parts(all.front(), {all.begin() + 1, all.end()}, store_.results(piece.name),
+                             piece.job.max_memory, progress);
+    take_verdict(joined.verdict.verdict, out);
+    out.views = joined.views;
+    out.voxel_size = joined.voxel_size;
+    out.triangles = joined.triangles;
+  }
+
+  static void take_verdict(const assess::Verdict& verdict, Outcome& out) {
+    out.verdict = assess::to_string(verdict.level);
+    if (!verdict.reasons.empty()) out.message = verdict.reasons.front();
+    if (verdict.level == assess::Level::kFailed) out.exit_code = exit_code(ErrorKind::kDoubted);
+  }
+
   void reconstruct(const BatchPiece& piece, PieceProgress& progress, Outcome& out) {
     io::LoadSceneOptions load = piece.load;
     load.most_views = io::kEnoughViews;
@@ -329,10 +377,7 @@ class Batch {
     if (options_.tiles > 0) job.tiles = {store_.tiles(piece.name), options_.tiles};
     const pipeline::Report report = pipeline::reconstruct_to_folder(
         job, pipeline::load_photographs(piece.scene, load), store_.results(piece.name), progress);
-    const assess::Verdict& verdict = report.verdict.verdict;
-    out.verdict = assess::to_string(verdict.level);
-    if (!verdict.reasons.empty()) out.message = verdict.reasons.front();
-    if (verdict.level == assess::Level::kFailed) out.exit_code = exit_code(ErrorKind::kDoubted);
+    take_verdict(report.verdict.verdict, out);
     out.views = int(report.photographs.views);
     out.voxel_size = report.grid.voxel_size;
     out.triangles = report.mesh.triangles;
@@ -352,7 +397,7 @@ class Batch {
       text += concat("; other processes were at work at ", elsewhere_,
                      ", run this again for the table of all");
     if (early_ > 0)
-      text += concat("; ", early_, " follow frames that are not made yet and were not asked for");
+      text += concat("; ", early_, " go by others that are not made yet and were not asked for");
     return text;
   }
 

@@ -14,6 +14,7 @@ struct BatchPiece {
   std::string name, scene;
   pipeline::ReconstructOptions job;
   io::LoadSceneOptions load;
+  std::vector<std::string> joins{};  ///< as batch::Piece has them
 };
 
 struct BatchOptions {

@@ -15,6 +15,9 @@ struct Piece {
   std::string frame;               ///< its number as text; empty: it is no frame
   std::string from;                ///< where it was asked for: "plants.txt line 3", "SCENE"
   std::size_t sequence = 0;        ///< a number that frames of one sequence have in common
+  /// Names of the pieces whose results this one joins, the whole first and then its parts; empty:
+  /// it is a reconstruction of its own.
+  std::vector<std::string> joins{};
 };
 
 /// Numbers of frames, inclusive.

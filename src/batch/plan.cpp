@@ -22,7 +22,7 @@ std::string new_plan_id() {
 std::string to_json(const Plan& plan) {
   json pieces = json::array();
   for (const Piece& piece : plan.pieces)
-    pieces.push_back({{"name", piece.name}, {"words", piece.words}});
+    pieces.push_back({{"name", piece.name}, {"words", piece.words}, {"joins", piece.joins}});
   return json{{"id", plan.id},
               {"folder", plan.folder.string()},
               {"sequence", plan.sequence},
@@ -44,6 +44,7 @@ Plan plan_from_json(const std::string& text, const std::filesystem::path& file) 
       Piece piece;
       one.at("name").get_to(piece.name);
       one.at("words").get_to(piece.words);
+      piece.joins = one.value("joins", piece.joins);
       piece.from = concat(file.string(), ", piece ", piece.name);
       plan.pieces.push_back(std::move(piece));
     }

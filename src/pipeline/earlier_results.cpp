@@ -72,9 +72,15 @@ void take(const Camera& found, PreparedView& view) {
 EarlierResults read_earlier(const ReconstructOptions& options) {
   EarlierResults out;
   if (!options.rig_folder().empty()) out.rig = read_rig(options.rig_folder());
-  if (!options.follow.empty())
-    out.before = {read_vdb_surface(options.follow / "volume.vdb"),
-                  read_report(options.follow).followed};
+  if (options.follow.empty()) return out;
+  ResultReport report = read_report(options.follow);
+  SparseVolume volume = read_vdb_surface(options.follow / "volume.vdb");
+  if (options.part) {
+    out.part = cut_part(volume, report.box, *options.part, options.finer);
+    out.verdict = std::move(report.verdict);
+  } else {
+    out.before = {std::move(volume), report.followed};
+  }
   return out;
 }
 

@@ -10,6 +10,7 @@
 #include "core/prepared_view.h"
 #include "core/progress.h"
 #include "pipeline/findings.h"
+#include "pipeline/part.h"
 #include "pipeline/reconstruct_options.h"
 #include "refine/follow.h"
 #include "views/photometric.h"
@@ -31,6 +32,8 @@ struct ResultRig {
 struct EarlierResults {
   std::optional<ResultRig> rig;
   std::optional<refine::MomentBefore> before;
+  std::optional<Part> part;  ///< of the whole
+  VerdictFindings verdict;   ///< of the whole
 
   const ResultRig* given_rig() const { return rig ? &*rig : nullptr; }
   const refine::MomentBefore* given_moment() const { return before ? &*before : nullptr; }

@@ -41,10 +41,10 @@ SeenVertices seen_vertices(const std::vector<render::PooledEvidence>& evidence) 
 }
 
 SparseVolume remove_dust(const SurfaceJob& job, SparseVolume volume) {
+  const std::vector<Camera> cameras = projtex::cameras_of(job.subject.views);
+  const std::vector<carving::Silhouette> silhouettes = silhouettes_of(job.subject.views);
   remove_small_components(volume, kDebrisFraction, [&](auto pieces) {
-    return refine::are_asked_for(job.context, volume, pieces,
-                                 projtex::cameras_of(job.subject.views),
-                                 silhouettes_of(job.subject.views), {});
+    return refine::are_asked_for(job.context, volume, pieces, {cameras, silhouettes}, {});
   });
   return volume;
 }
@@ -66,9 +66,10 @@ ColouredSurface colour_surface(const SurfaceJob& job, TriMesh mesh) {
   const render::Shaping shaping = method_of(job.options).by_silhouettes
                                       ? render::Shaping::kSilhouettes
                                       : render::Shaping::kPhotographs;
-  BakeReport baked =
-      bake_colour(job.context, job.subject.grid, {*job.images, cameras, job.subject.noise_sigma},
-                  shaping, mesh, job.progress);
+  BakeReport baked = bake_colour(
+      job.context, job.subject.grid,
+      {*job.images, cameras, job.subject.noise_sigma, job.beside},
+      shaping, mesh, job.progress);
   const auto unseen = std::count(mesh.confidence.begin(), mesh.confidence.end(), 0.0f);
   const double share = double(unseen) / double(mesh.confidence.size());
   if (share > 0.5)

@@ -110,6 +110,29 @@ LookFindings read_look(const ReportFile& report) {
   return look;
 }
 
+Box read_box(const ReportFile& report) {
+  const json& root = report.root();
+  if (!root.contains("box")) report.fail("it has no \"box\"");
+  const Box box{report.vector(root["box"], "min"), report.vector(root["box"], "max")};
+  if (!glm::all(glm::lessThan(box.min, box.max))) report.fail("\"box\" holds nothing");
+  return box;
+}
+
+VerdictFindings read_verdict(const ReportFile& report) {
+  VerdictFindings out;
+  const auto found = report.root().find("verdict");
+  if (found == report.root().end()) report.fail("it has no \"verdict\"");
+  const std::string level = report.text(*found, "level");
+  for (const auto known :
+       {assess::Level::kGood, assess::Level::kDoubtful, assess::Level::kFailed}) {
+    if (level != assess::to_string(known)) continue;
+    out.verdict.level = known;
+    out.json = found->dump();
+    return out;
+  }
+  report.fail("its \"verdict\" has no \"level\" that is known");
+}
+
 /// Of vertices that have none: means of their triangles' normals, by area.
 void complete_normals(TriMesh& mesh) {
   if (mesh.normals.size() == mesh.positions.size()) return;
@@ -153,7 +176,7 @@ ResultReport read_report(const fs::path& folder) {
   if (followed != root.end() && !followed->is_boolean())
     report.fail("\"followed\" is neither true nor false");
   return {read_look(report), photometric == root.end() ? std::string() : photometric->dump(),
-          followed != root.end() && followed->get<bool>()};
+          followed != root.end() && followed->get<bool>(), read_box(report), read_verdict(report)};
 }
 
 ResultModel read_result(const fs::path& folder) {

@@ -25,6 +25,8 @@ struct ResultReport {
   LookFindings look;
   std::string photometric;  ///< JSON (pipeline/photometric.h); empty: it was not asked for
   bool followed = false;    ///< RefineFindings::followed
+  Box box;                  ///< that was reconstructed
+  VerdictFindings verdict;  ///< its level, and as JSON
 };
 ResultReport read_report(const std::filesystem::path& folder);
 

@@ -33,6 +33,7 @@
 #include "pipeline/stage_weights.h"
 #include "pipeline/surroundings.h"
 #include "pipeline/texture_stage.h"
+#include "projtex/gpu_views.h"
 #include "render/choose_views.h"
 #include "render/preview.h"
 
@@ -86,7 +87,8 @@ Prepared prepare(Run& run) {
   report.cameras = agreeing.findings;
   const SourcedBox box =
       tighten_box(options, {*scene.scene.box, scene.scene.box_source}, agreeing.views, progress);
-  const GridSpec grid = place_lattice(options, box, agreeing.views);
+  const GridSpec grid =
+      run.earlier.part ? run.earlier.part->grid : place_lattice(options, box, agreeing.views);
   std::vector<PreparedView> views = has_surroundings(options, box_found, agreeing.views)
                                         ? std::move(agreeing.views)
                                         : crop_views(std::move(agreeing.views), box.box);
@@ -124,8 +126,9 @@ class Carver {
     StageClock& clock = run_.clock;
     Reconstruction out;
     SparseVolume carved = carve_surface();
-    out.volume =
-        clock.run("clean", Weights::kClean, [&] { return remove_dust(job(), std::move(carved)); });
+    out.volume = clock.run("clean", Weights::kClean, [&] {
+      return part() ? std::move(carved) : remove_dust(job(), std::move(carved));
+    });
     ExtractedSurface extracted =
         clock.run("mesh", Weights::kMesh, [&] { return extract_surface(job(), out.volume); });
     make_alike_on_mesh(extracted.mesh);
@@ -140,7 +143,10 @@ class Carver {
     images_.reset();
     run_.context->release_deleted();
     hand_over_volume(out);
-    judge(surface.mesh, extracted.findings, around, out.evidence);
+    if (part())
+      take_own(surface);
+    else
+      judge(surface.mesh, extracted.findings, around, out.evidence);
     if (open && bounded_) surface = open_unseen(job(), surface.mesh, std::move(surface.seen));
     run_.report.mesh = {.extract = extracted.findings,
                         .colour = coloured.findings,
@@ -155,8 +161,12 @@ class Carver {
   SurfaceJob job() {
     return {
         run_.options,  run_.photographs, subject_,      *run_.context, hull_,
-        images_.get(), bounded_,         run_.progress, larger_.get(), run_.earlier.given_moment()};
+        images_.get(), bounded_,         run_.progress, larger_.get(), run_.earlier.given_moment(),
+        part(),        beside_};
   }
+
+  /// That is carved alone; null: the whole is.
+  const Part* part() const { return run_.earlier.part ? &*run_.earlier.part : nullptr; }
 
   SparseVolume carve_surface() {
     subject_.held_bytes = check_room(run_.options, subject_, hull_);
@@ -170,6 +180,8 @@ class Carver {
     run_.context->release_deleted();
     run_.clock.run("images", Weights::kImages, [&] {
       upload();
+      if (part())
+        beside_ = depths_beside(*run_.context, *part(), projtex::cameras_of(subject_.views));
       larger_ = larger_photographs(run_.photographs.reader, subject_, gains_, run_.options,
                                    run_.progress);
     });
@@ -178,7 +190,7 @@ class Carver {
     Surface surface;
     const auto work = [&] {
       if (!method_.from_hull) {
-        bounded_ = hull_.bounded();
+        bounded_ = part() ? any_mask(subject_.views) : hull_.bounded();
         warn_of_surroundings(run_.options, bounded_, run_.progress);
       }
       return method_.carve(job(), std::move(hull));
@@ -243,6 +255,7 @@ class Carver {
     return run_.clock.run("colour", Weights::kColour, [&] {
       ColouredSurface coloured = colour_surface(job(), std::move(mesh));
       if (run_.options.evidence) out.evidence = keep_evidence(coloured.mesh, coloured.evidence);
+      if (part()) out.volume = own_of(*part(), out.volume);
       out.attributes = attributes_from_mesh(out.volume, coloured.mesh);
       return coloured;
     });
@@ -266,6 +279,13 @@ class Carver {
     run_.clock.count_samples("surroundings", around.samples);
     run_.report.surroundings = around.findings;
     return around;
+  }
+
+  /// What is the part's own, and the whole's verdict: photographs show more than a part.
+  void take_own(OpenSurface& surface) {
+    surface.mesh = own_of(*part(), surface.mesh);
+    surface.seen = {};
+    run_.report.verdict = run_.earlier.verdict;
   }
 
   void judge(const TriMesh& mesh, const ExtractFindings& extracted, const Around& around,
@@ -342,6 +362,7 @@ class Carver {
   const SilhouetteFindings silhouettes_;
   Hull hull_;
   std::unique_ptr<projtex::ImageSet> images_;
+  std::vector<DepthMap> beside_;                 // the part, if one is carved alone
   std::optional<PhotometricCalibration> gains_;  // that pixels were divided by
   std::unique_ptr<projtex::OutOfCorePhotographs> larger_;
   bool alike_ = false;  // were the photographs' gains looked at on the hull?
@@ -351,6 +372,21 @@ std::unique_ptr<tbb::global_control> limit_threads(int threads) {
   if (threads == 0) return nullptr;
   return std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
                                                std::size_t(threads));
+}
+
+/// Those of a part are its own box and voxels.
+ReconstructOptions options_of(const std::optional<Part>& part, ReconstructOptions options) {
+  if (!part) return options;
+  options.voxel_size = part->grid.voxel_size;
+  options.box.exact = true;
+  options.report_page = ReportPage::kOff;
+  options.tiles = {};
+  return options;
+}
+
+Photographs photographs_of(const std::optional<Part>& part, Photographs photographs) {
+  if (part) photographs.scene = scene_of(*part, std::move(photographs.scene));
+  return photographs;
 }
 
 }  // namespace
@@ -367,8 +403,11 @@ Reconstruction Reconstructor::run(const Photographs& photographs, Progress& give
   const auto limit = limit_threads(options_.threads);
   const OneOpenCvThread one_thread;
   RecordingProgress progress(given);
-  Run run{options_, photographs, progress, take_volume};
-  run.earlier = read_earlier(options_);
+  EarlierResults earlier = read_earlier(options_);
+  const ReconstructOptions options = options_of(earlier.part, options_);
+  const Photographs subject = photographs_of(earlier.part, photographs);
+  Run run{options, subject, progress, take_volume};
+  run.earlier = std::move(earlier);
   Prepared prepared = prepare(run);
   Reconstruction out = Carver(run, std::move(prepared)).carve();
   out.report = std::move(run.report);

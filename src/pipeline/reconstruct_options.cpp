@@ -39,6 +39,28 @@ void check_sweep_options(const ReconstructOptions& o) {
                             " or voxel-coloring"));
 }
 
+/// Throws UsageError for options that a part has none of, for the whole gives them.
+void check_part(const ReconstructOptions& o) {
+  if (!o.part) return;
+  const std::string part = option_word("part", to_string(*o.part));
+  if (o.follow.empty())
+    throw UsageError(concat(part, ": ", option_word("follow"),
+                            " has to name the results of the whole, on coarser voxels"));
+  const char* given = o.resolution                          ? "resolution"
+                      : o.voxel_size                        ? "voxel_size"
+                      : o.box.find || o.box.exact           ? "box"
+                      : o.lattice == Lattice::kFixed        ? "lattice"
+                      : o.surroundings == Surroundings::kOn ? "surroundings"
+                      : o.unseen == Unseen::kOpen           ? "unseen"
+                      : o.mesh_error.value > 0              ? "mesh_error"
+                      : o.evidence                          ? "evidence"
+                      : !o.exports.empty()                  ? "export"
+                                                            : nullptr;
+  if (given)
+    throw UsageError(concat(part, ": ", option_word(given),
+                            " is the whole's matter, or that of the parts when they are joined"));
+}
+
 /// Throws UsageError for options that exclude each other.
 void check_combinations(const ReconstructOptions& o) {
   const std::string resolution = option_word("resolution"), voxel_size = option_word("voxel_size"),
@@ -61,6 +83,7 @@ void check_combinations(const ReconstructOptions& o) {
     throw UsageError(concat(option_word("follow"), ": ", option_word("method", method_of(o).name),
                             " starts from no surface; give ", option_word("rig"),
                             " for cameras and gains alone"));
+  check_part(o);
   check_sweep_options(o);
 }
 
@@ -83,6 +106,15 @@ Words mesh_error_words(MeshError& error) {
             const std::optional<MeshError> read = read_mesh_error(text);
             if (read) error = *read;
             return read.has_value();
+          }};
+}
+
+Words part_words(std::optional<PartNumber>& part) {
+  return {[&part] { return part ? to_string(*part) : std::string("all"); },
+          [&part](const std::string& text) {
+            const std::optional<PartNumber> read = parse_part(text);
+            if (read || text == "all") part = read;
+            return read || text == "all";
           }};
 }
 
@@ -199,6 +231,14 @@ void describe_earlier(Described& to, ReconstructOptions& o) {
   to.text("rig", &o.rig,
           "results of the same rig: their cameras and gains hold, and nothing of them is measured "
           "again");
+  to.text(
+        "part", part_words(o.part),
+        "of the whole whose results are followed, on voxels that are halved, one part of so many, "
+        "for models larger than memory ('photohull plan' with parts makes them all)")
+      .expects =
+      concat("a part and their number, such as 3/8, up to ", PartNumber::kMost, ", or all");
+  to.number("finer", &o.finer, from_to(1, 4), "",
+            "how often the whole's voxels are halved for its parts");
 }
 
 void describe_run(Described& to, ReconstructOptions& o) {

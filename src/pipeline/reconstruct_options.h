@@ -13,6 +13,7 @@
 #include "io/load_scene.h"
 #include "io/mesh/mesh_file_options.h"
 #include "pipeline/complete_box.h"
+#include "pipeline/part_number.h"
 #include "pipeline/photometric.h"
 #include "pipeline/refine_cameras.h"
 #include "projtex/sampler.h"
@@ -92,6 +93,9 @@ struct ReconstructOptions {
   /// Folders of results: of the moment before, whose surface this one's starts from, and of the
   /// same rig, whose cameras and gains hold. Empty: none.
   std::filesystem::path follow, rig;
+  /// Of the whole that `follow` holds, this part alone, its voxels halved so many times.
+  std::optional<PartNumber> part;
+  int finer = 1;
   bool fresh = false;
   bool evidence = false;
   ReportPage report_page = ReportPage::kOn;

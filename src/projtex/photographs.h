@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/camera.h"
+#include "core/depth_map.h"
 #include "core/grid.h"
 #include "projtex/gpu_views.h"
 #include "projtex/image_set.h"
@@ -16,6 +17,9 @@ struct Photographs {
   const ImageSet& images;
   std::span<const Camera> cameras;
   double noise_sigma = 0;  ///< standard deviation, square roots of linear light
+  /// Of each camera, in world units: what hides from it what is looked at, and is not looked at
+  /// itself. Empty: nothing does.
+  std::span<const DepthMap> beside{};
 };
 
 /// The cameras in voxel coordinates of a grid.

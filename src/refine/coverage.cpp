@@ -17,10 +17,10 @@ constexpr double kBefore = 3;  // voxels between a point and what it would hide
 }  // namespace
 
 Coverage::Coverage(gpu::Context& context, const GridSpec& grid, std::span<const glm::ivec3> voxels,
-                   std::span<const Camera> cameras,
-                   std::span<const carving::Silhouette> silhouettes)
-    : silhouettes_(silhouettes), cameras_(projtex::to_grid(cameras, grid)) {
+                   const SilhouetteCones& cones)
+    : silhouettes_(cones.silhouettes), cameras_(projtex::to_grid(cones.cameras, grid)) {
   visibility::DepthMaps maps(cameras_, grid);
+  if (!cones.beside.empty()) maps.draw(cones.beside, 1 / grid.voxel_size);
   maps.draw(context, cameras_, voxels);
   for (std::size_t v = 0; v < cameras_.size(); ++v) maps_.push_back(maps.map(v));
 }
@@ -47,7 +47,7 @@ Coverage::LackingPixels Coverage::lacking_pixels(double inside) const {
   tbb::parallel_for(std::size_t(0), maps_.size(), [&](std::size_t v) {
     const SilhouetteDistance* s = silhouettes_[v].distance;
     if (!s) return;
-    const visibility::HostDepthMap& map = maps_[v];
+    const DepthMap& map = maps_[v];
     const auto scale = double(map.texels_per_pixel);
     // A pixel is at most as wide as a texel: it touches those at its ends.
     const auto texels = [&](int pixels, int size) {

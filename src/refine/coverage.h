@@ -9,16 +9,17 @@
 #include "core/grid.h"
 #include "gpu/context.h"
 #include "projtex/gpu_views.h"
+#include "refine/silhouette_cones.h"
 #include "visibility/kernels/depth_maps.h"
 
 namespace photohull::refine {
 
 class Coverage {
  public:
-  /// Draws `voxels` of the grid into every view. The silhouettes, one per camera and parts may be
-  /// empty, must outlive the object.
+  /// Draws `voxels` of the grid, and what is beside them, into every view. What the cones hold
+  /// must outlive the object.
   Coverage(gpu::Context& context, const GridSpec& grid, std::span<const glm::ivec3> voxels,
-           std::span<const Camera> cameras, std::span<const carving::Silhouette> silhouettes);
+           const SilhouetteCones& cones);
 
   struct Votes {
     int lack = 0;    ///< views that show foreground, and none of the voxels
@@ -39,7 +40,7 @@ class Coverage {
  private:
   std::span<const carving::Silhouette> silhouettes_;
   std::vector<projtex::GridCamera> cameras_;
-  std::vector<visibility::HostDepthMap> maps_;
+  std::vector<DepthMap> maps_;
 };
 
 }  // namespace photohull::refine

@@ -33,12 +33,10 @@ std::vector<ivec3> skin_without(const SparseVolume& volume, const std::vector<iv
 
 std::vector<bool> are_asked_for(gpu::Context& context, const SparseVolume& volume,
                                 std::span<const std::vector<ivec3>> pieces,
-                                std::span<const Camera> cameras,
-                                std::span<const carving::Silhouette> silhouettes,
-                                const DustOptions& options) {
+                                const SilhouetteCones& cones, const DustOptions& options) {
   std::vector<bool> asked(pieces.size(), false);
   // Masks that were made close gaps on a guess: they ask for nothing.
-  std::vector<carving::Silhouette> given(silhouettes.begin(), silhouettes.end());
+  std::vector<carving::Silhouette> given(cones.silhouettes.begin(), cones.silhouettes.end());
   for (carving::Silhouette& s : given)
     if (s.likelihood) s = {};
   const auto known = std::count_if(given.begin(), given.end(),
@@ -47,7 +45,8 @@ std::vector<bool> are_asked_for(gpu::Context& context, const SparseVolume& volum
   std::vector<ivec3> all;
   for (const auto& piece : pieces) all.insert(all.end(), piece.begin(), piece.end());
   std::sort(all.begin(), all.end(), before);
-  const Coverage coverage(context, volume.grid, skin_without(volume, all), cameras, given);
+  const Coverage coverage(context, volume.grid, skin_without(volume, all),
+                          {cones.cameras, given, cones.beside});
   const double least = std::max(double(options.least_views), options.view_share * double(known));
   for (std::size_t p = 0; p < pieces.size(); ++p) {
     const std::size_t stride = pieces[p].size() / kMostAsked + 1;

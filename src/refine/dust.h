@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "carving/hull.h"
 #include "core/grid.h"
 #include "gpu/context.h"
+#include "refine/silhouette_cones.h"
 
 namespace photohull::refine {
 
@@ -18,11 +18,8 @@ struct DustOptions {
 /// For each small piece of the volume (its voxels): do masks ask for it? They do where at least so
 /// many views show, at half of its voxels, foreground that nothing but small pieces covers. That is
 /// so of a stem whose pieces lie in a row, and not of a speck before or behind the object.
-/// `silhouettes`: one for each camera, parts may be empty.
 std::vector<bool> are_asked_for(gpu::Context& context, const SparseVolume& volume,
                                 std::span<const std::vector<glm::ivec3>> pieces,
-                                std::span<const Camera> cameras,
-                                std::span<const carving::Silhouette> silhouettes,
-                                const DustOptions& options);
+                                const SilhouetteCones& cones, const DustOptions& options);
 
 }  // namespace photohull::refine

@@ -31,6 +31,7 @@ struct RefineJob {
   projtex::OutOfCorePhotographs* larger = nullptr;
 
   SharedWork* shared = nullptr;  ///< by way of which other processes may help; null: none does
+  bool is_part = false;          ///< of a whole, whose surface it starts from
 
   /// What surfels of the grid are matched in.
   MatchingPhotographs matching(const GridSpec& grid) const;

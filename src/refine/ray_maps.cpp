@@ -297,6 +297,28 @@ class RayMapper {
 };
 
 /// View by view, so that memory is that of one view's rays.
+constexpr double kHiddenBy = 2;  // voxels before what a ray found that something hides it
+
+/// Forgets what a view's rays cannot have found, for something beside the surface hides it.
+void forget_hidden(const DepthMap& beside, const projtex::GridCamera& camera, double voxel_size,
+                   RayMap& map) {
+  const auto is_hidden = [&](const glm::dvec2& pixel, double depth) {
+    return double(beside.at(pixel)) < (depth - kHiddenBy) * voxel_size;
+  };
+  const auto hides = [&](const glm::vec3& point) {
+    const glm::dvec3 q = camera.projection * glm::dvec4(glm::dvec3(point), 1);
+    return is_hidden(glm::dvec2(q) / q.z, q.z);
+  };
+  for (int row = 0; row < map.height; ++row)
+    for (int column = 0; column < map.width; ++column) {
+      const std::size_t i = std::size_t(row) * std::size_t(map.width) + std::size_t(column);
+      const glm::dvec2 pixel = map.stride * (glm::dvec2(column, row) + 0.5) - 0.5;
+      if (map.weight[i] > 0 && is_hidden(pixel, double(map.depth[i]))) map.weight[i] = 0;
+    }
+  std::erase_if(map.before, hides);
+  std::erase_if(map.through, hides);
+}
+
 std::vector<RayMap> map_views(gpu::Context& context, const SparseVolume& hull,
                               const SparseVolume* surface, const projtex::Photographs& photographs,
                               const VoteOptions& options, SharedWork* shared) {
@@ -307,6 +329,11 @@ std::vector<RayMap> map_views(gpu::Context& context, const SparseVolume& hull,
                         map_of);
   std::vector<RayMap> maps;
   for (std::size_t v = 0; v < views; ++v) maps.push_back(map_of(v));
+  if (!photographs.beside.empty()) {
+    const std::vector<projtex::GridCamera> cameras = projtex::to_grid(photographs.cameras, hull.grid);
+    for (std::size_t v = 0; v < views; ++v)
+      forget_hidden(photographs.beside[v], cameras[v], hull.grid.voxel_size, maps[v]);
+  }
   return maps;
 }
 

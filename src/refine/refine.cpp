@@ -64,9 +64,13 @@ void keep(const CheckpointFile& file, const Checkpoint& checkpoint, Progress& pr
 class SurfaceRefiner {
  public:
   /// `before`: what the first of the grids starts from; null: from a guess.
+  /// Of a part, what is below the images' sampling was told by the whole.
   SurfaceRefiner(RefineJob job, std::vector<GridSpec> grids, const SparseVolume* before,
                  Progress& progress)
-      : job_(job), grids_(std::move(grids)), before_(before), progress_(progress) {}
+      : job_(job), grids_(std::move(grids)), before_(before), progress_(progress) {
+    if (job_.is_part)
+      settled_ = settled_below_pixels(*before_, job_.finest_cameras(), job_.options.settle);
+  }
 
   SparseVolume run(const CheckpointFile* checkpoint, RefineReport& report) {
     if (checkpoint) resume(*checkpoint, report);
@@ -214,20 +218,24 @@ SparseVolume refine_surface(gpu::Context& context, const RefineScene& scene,
   options.validate();
   PHOTOHULL_CHECK_OP(int(scene.cameras.size()), ==, scene.images.layers());
   PHOTOHULL_CHECK_OP(scene.silhouettes.size(), ==, scene.cameras.size());
+  const std::span<const DepthMap> beside =
+      scene.whole ? scene.whole->beside : std::span<const DepthMap>();
   RefineJob job{context,
                 scene.hull_at,
-                {scene.cameras, scene.silhouettes},
-                {scene.images, scene.cameras, options.noise_sigma},
+                {scene.cameras, scene.silhouettes, beside},
+                {scene.images, scene.cameras, options.noise_sigma, beside},
                 options,
                 scene.finest.voxel_size,
                 scene.larger,
-                scene.shared};
-  job.options.match = fit_angles(scene.cameras, scene.finest.bounds().center(), options.match);
-  std::vector<GridSpec> grids =
-      grids_to(scene.finest, scene.cameras, job.is_bounded(), options.levels);
+                scene.shared,
+                scene.whole != nullptr};
+  const GridSpec& whole = scene.whole ? scene.whole->volume.grid : scene.finest;
+  job.options.match = fit_angles(scene.cameras, whole.bounds().center(), options.match);
+  std::vector<GridSpec> grids = grids_to(scene.finest, scene.cameras, job.is_bounded(),
+                                         scene.whole ? scene.whole->levels : options.levels);
   RefineReport counts;
-  const SparseVolume* before = nullptr;
-  if (scene.before && job.is_bounded()) {
+  const SparseVolume* before = scene.whole ? &scene.whole->volume : nullptr;
+  if (!before && scene.before && job.is_bounded()) {
     const auto from = [&](int levels) {
       return grids.end() - std::min(std::ptrdiff_t(grids.size()), std::ptrdiff_t(levels));
     };

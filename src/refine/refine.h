@@ -169,6 +169,14 @@ struct CheckpointFile {
 /// The visual hull on a grid.
 using HullAt = std::function<SparseVolume(const GridSpec&)>;
 
+/// The surface of a whole scene on coarser voxels, of which a part is refined.
+struct WholeSurface {
+  const SparseVolume& volume;
+  int levels = 1;         ///< by which the part's voxels are finer, each halves them
+  /// Of each camera, in world units: what of the surface lies outside the part's grid.
+  std::span<const DepthMap> beside;
+};
+
 /// What a surface is refined from. The parts outlive the call.
 struct RefineScene {
   const GridSpec& finest;  ///< the result's
@@ -179,6 +187,7 @@ struct RefineScene {
   /// The same views' photographs, larger, for levels whose voxels ask for them; null: none.
   projtex::OutOfCorePhotographs* larger = nullptr;
   const MomentBefore* before = nullptr;  ///< null: it is not known
+  const WholeSurface* whole = nullptr;   ///< of which this is a part; null: it is the whole itself
   SharedWork* shared = nullptr;          ///< by way of which other processes help; null: none does
 };
 
@@ -187,9 +196,11 @@ struct RefineScene {
 /// the surface's tangent patches between the views that see them and moves its signed distance, a
 /// few times over. Surface that no camera sees is closed smoothly. Deterministic on one device.
 /// Where the surface of the moment before is known, silhouettes bound space, and enough of it lies
-/// in them (FollowOptions), the last levels start from it and the others are not done.
-/// With a `checkpoint`, levels that an interrupted run of the same job finished are not done again;
-/// the caller removes the file. Throws Cancelled, UsageError for options, and what hull_at throws.
+/// in them (FollowOptions), the last levels start from it and the others are not done. Where the
+/// grid is a part of a whole whose surface is known, that is what the levels after it start from,
+/// and what lies outside the part hides it from views and covers their silhouettes. With a
+/// `checkpoint`, levels that an interrupted run of the same job finished are not done again; the
+/// caller removes the file. Throws Cancelled, UsageError for options, and what hull_at throws.
 SparseVolume refine_surface(gpu::Context& context, const RefineScene& scene,
                             const RefineOptions& options, Progress& progress,
                             RefineReport* report = nullptr,

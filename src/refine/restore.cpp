@@ -13,12 +13,11 @@ using glm::ivec3;
 class Restorer {
  public:
   Restorer(gpu::Context& context, const SparseVolume& volume, const SparseVolume& hull,
-           std::span<const Camera> cameras, std::span<const carving::Silhouette> silhouettes,
-           const RestoreOptions& options)
+           const SilhouetteCones& cones, const RestoreOptions& options)
       : volume_(volume),
         hull_(hull),
         options_(options),
-        coverage_(context, volume.grid, skin(volume), cameras, silhouettes),
+        coverage_(context, volume.grid, skin(volume), cones),
         lacking_(coverage_.lacking_pixels(options.least_inside)) {}
 
   /// Voxels that came back, as a volume with the hull's distances at them and their neighbours.
@@ -97,12 +96,10 @@ class Restorer {
 }  // namespace
 
 std::size_t restore_silhouettes(gpu::Context& context, SparseVolume& volume,
-                                const SparseVolume& hull, std::span<const Camera> cameras,
-                                std::span<const carving::Silhouette> silhouettes,
+                                const SparseVolume& hull, const SilhouetteCones& cones,
                                 const RestoreOptions& options) {
   std::size_t restored = 0;
-  const SparseVolume parts =
-      Restorer(context, volume, hull, cameras, silhouettes, options).run(restored);
+  const SparseVolume parts = Restorer(context, volume, hull, cones, options).run(restored);
   if (restored > 0) volume = union_of(volume, parts);
   return restored;
 }

@@ -3,10 +3,10 @@
 
 #include <span>
 
-#include "carving/hull.h"
 #include "core/describe.h"
 #include "core/grid.h"
 #include "gpu/context.h"
+#include "refine/silhouette_cones.h"
 
 namespace photohull::refine {
 
@@ -29,8 +29,7 @@ inline void describe(Described& to, RestoreOptions& o) {
 /// on foreground that the volume does not cover, unless they would hide, in many more views, what
 /// of the volume lies behind them. Returns how many came back.
 std::size_t restore_silhouettes(gpu::Context& context, SparseVolume& volume,
-                                const SparseVolume& hull, std::span<const Camera> cameras,
-                                std::span<const carving::Silhouette> silhouettes,
+                                const SparseVolume& hull, const SilhouetteCones& cones,
                                 const RestoreOptions& options);
 
 }  // namespace photohull::refine

@@ -1,5 +1,7 @@
 #include "refine/settle.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -9,6 +11,35 @@ namespace photohull::refine {
 namespace {
 
 constexpr std::uint8_t kNone = 255;  // no surface in the brick
+
+/// Of the distance, outward.
+glm::dvec3 slope_at(const SparseVolume& volume, const glm::ivec3& voxel) {
+  glm::dvec3 slope;
+  for (int a = 0; a < 3; ++a) {
+    glm::ivec3 step(0);
+    step[a] = 1;
+    slope[a] = double(volume.at(voxel + step)) - double(volume.at(voxel - step));
+  }
+  return slope;
+}
+
+/// Pixels of half a voxel in the view that a place on the surface looks at most straight, which
+/// surfels are matched with as a rule; 0: no view shows its outer side.
+double half_voxel(const glm::dvec3& place, const glm::dvec3& outward,
+                  std::span<const projtex::GridCamera> cameras) {
+  double straightest = 0, pixels = 0;
+  for (const projtex::GridCamera& camera : cameras) {
+    const glm::dvec3 ray = camera.centre - place;
+    const double distance = glm::length(ray), facing = glm::dot(outward, ray) / distance;
+    const glm::dvec3 p = camera.projection * glm::dvec4(place, 1);
+    const bool on_image =
+        p.z > 1 && p.x > 0 && p.y > 0 && p.x < camera.width * p.z && p.y < camera.height * p.z;
+    if (!on_image || facing <= straightest) continue;
+    straightest = facing;
+    pixels = 0.5 * camera.focal / distance;
+  }
+  return pixels;
+}
 
 double size_of(const glm::vec3& bend) {
   return std::sqrt(bend.x * bend.x + 2 * bend.y * bend.y + bend.z * bend.z);
@@ -37,6 +68,27 @@ SettledBricks::SettledBricks(const GridSpec& grid, const MatchedSurfels& surfels
     std::uint8_t& brick = kinds_[grid.brick_index(voxel / kBrickEdge)];
     brick = std::min(brick, std::uint8_t(kind_of(i)));
   }
+}
+
+SettledBricks settled_below_pixels(const SparseVolume& surface, std::span<const Camera> cameras,
+                                   const SettleOptions& options) {
+  const GridSpec& grid = surface.grid;
+  const std::vector<projtex::GridCamera> on_grid = projtex::to_grid(cameras, grid);
+  std::vector<std::uint8_t> kinds(grid.brick_count(), kNone);
+  tbb::parallel_for(std::size_t(0), surface.bricks.size(), [&](std::size_t slot) {
+    const glm::ivec3 corner = surface.bricks[slot] * kBrickEdge;
+    double pixels = 0;  // of half a voxel, the most of all places
+    for (int i = 0; i < kBrickVoxels; ++i) {
+      const float d = surface.distance[slot * kBrickVoxels + std::size_t(i)];
+      if (d > 0 || d <= -1) continue;
+      const glm::ivec3 voxel = corner + glm::ivec3(i >> 6, (i >> 3) & 7, i & 7);
+      pixels = std::max(pixels, half_voxel(voxel, slope_at(surface, voxel), on_grid));
+    }
+    const bool settled = pixels > 0 && pixels < options.least_pixels;
+    kinds[grid.brick_index(surface.bricks[slot])] =
+        std::uint8_t(settled ? Settled::kPixels : Settled::kSplit);
+  });
+  return {grid, std::move(kinds)};
 }
 
 std::vector<Settled> SettledBricks::at(const GridSpec& grid,

@@ -79,4 +79,10 @@ class SettledBricks {
   std::vector<std::uint8_t> kinds_;  // per brick of the grid: a Settled, or kNone
 };
 
+/// What a level with this surface would have settled, were it asked for the images' sampling alone:
+/// kPixels in bricks where halved voxels would be below it in the view that they look at most
+/// straight (whether something hides them there is not asked); the others are split.
+SettledBricks settled_below_pixels(const SparseVolume& surface, std::span<const Camera> cameras,
+                                   const SettleOptions& options);
+
 }  // namespace photohull::refine

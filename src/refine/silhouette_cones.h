@@ -6,6 +6,7 @@
 
 #include "carving/hull.h"
 #include "core/camera.h"
+#include "core/depth_map.h"
 
 namespace photohull::refine {
 
@@ -13,6 +14,9 @@ namespace photohull::refine {
 struct SilhouetteCones {
   std::span<const Camera> cameras;
   std::span<const carving::Silhouette> silhouettes;
+  /// Of each camera, in world units: what of the object covers its silhouette, and is not looked at
+  /// itself. Empty: nothing does.
+  std::span<const DepthMap> beside{};
 
   /// Is there a silhouette at all?
   bool any() const {

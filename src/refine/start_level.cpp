@@ -43,8 +43,8 @@ void revise_by_votes(const RefineJob& job, const SparseVolume& hull, bool last,
 void restore_lost(const RefineJob& job, const SparseVolume& hull, SparseVolume& volume,
                   LevelReport& counts) {
   if (!job.is_bounded()) return;
-  counts.restored += std::int64_t(restore_silhouettes(job.context, volume, hull, job.cones.cameras,
-                                                      job.cones.silhouettes, job.options.restore));
+  counts.restored +=
+      std::int64_t(restore_silhouettes(job.context, volume, hull, job.cones, job.options.restore));
 }
 
 void keep_thin(const RefineJob& job, const SparseVolume& hull, SparseVolume& volume,

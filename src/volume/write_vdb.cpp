@@ -16,6 +16,7 @@
 
 #include "core/error.h"
 #include "volume/fill_tree.h"
+#include "volume/vdb_file.h"
 
 namespace photohull {
 namespace {
@@ -24,57 +25,6 @@ using openvdb::FloatGrid;
 using openvdb::Vec3fGrid;
 
 openvdb::Vec3f to_vdb(const glm::vec3& v) { return {v.x, v.y, v.z}; }
-
-using MakeGrid = std::function<openvdb::GridBase::Ptr()>;
-
-/// An archive that writes to any seekable stream. io::File ignores the stream's state when it
-/// closes, so that a full disk would go unnoticed.
-class CheckedArchive : public openvdb::io::Archive {
- public:
-  /// Grids of different names. Each is made when it is written and gone before the next, since
-  /// they take several times the memory of the volume.
-  void write_to(std::ostream& out, const std::vector<MakeGrid>& grids,
-                const openvdb::MetaMap& metadata) const {
-    constexpr bool kSeekable = true;
-    openvdb::io::setWriteGridStatsMetadata(out, isGridStatsMetadataEnabled());
-    writeHeader(out, kSeekable);
-    metadata.writeMeta(out);
-    const auto count = std::int32_t(grids.size());
-    out.write(reinterpret_cast<const char*>(&count), sizeof count);
-    for (const MakeGrid& make : grids) {
-      const openvdb::GridBase::Ptr grid = make();
-      openvdb::io::GridDescriptor descriptor(grid->getName(), grid->type(),
-                                             grid->saveFloatAsHalf());
-      writeGrid(descriptor, grid, out, kSeekable);
-    }
-  }
-};
-
-openvdb::MetaMap meta_map(const SparseVolume& volume, const VdbMetadata& metadata) {
-  openvdb::MetaMap map;
-  for (const auto& [name, value] : metadata) map.insertMeta(name, openvdb::StringMetadata(value));
-  const glm::ivec3 bricks = volume.grid.bricks;
-  for (const char* name : {"voxel_size", "scene_unit", "grid_bricks", "photohull_version"})
-    map.removeMeta(name);  // These are facts, and keep their types.
-  map.insertMeta("voxel_size", openvdb::DoubleMetadata(volume.grid.voxel_size));
-  map.insertMeta("scene_unit", openvdb::DoubleMetadata(vdb_unit(volume.grid.voxel_size)));
-  map.insertMeta("grid_bricks", openvdb::Vec3IMetadata({bricks.x, bricks.y, bricks.z}));
-  map.insertMeta("photohull_version", openvdb::StringMetadata(PHOTOHULL_VERSION));
-  return map;
-}
-
-void describe(openvdb::GridBase& grid, const char* name, const SparseVolume& volume,
-              const openvdb::MetaMap& metadata) {
-  const double unit = vdb_unit(volume.grid.voxel_size);
-  const glm::dvec3 origin = volume.grid.origin / unit;
-  auto transform = openvdb::math::Transform::createLinearTransform(volume.grid.voxel_size / unit);
-  transform->postTranslate({origin.x, origin.y, origin.z});
-  grid.setTransform(transform);
-  for (auto it = metadata.beginMeta(); it != metadata.endMeta(); ++it)
-    grid.insertMeta(it->first, *it->second);
-  grid.setName(name);
-  grid.setCreator("created by photohull " PHOTOHULL_VERSION);
-}
 
 FloatGrid::Ptr surface_grid(const SparseVolume& volume) {
   const auto voxel_size = float(volume.grid.voxel_size / vdb_unit(volume.grid.voxel_size));
@@ -166,8 +116,6 @@ class ContentHash {
   std::uint64_t hash_ = 0;
 };
 
-/// A tag of UUID's shape (version 8) that depends on the contents alone. OpenVDB's own is random,
-/// so that no two files would be alike.
 std::string content_tag(const SparseVolume& volume, const VolumeAttributes& attributes,
                         const VdbMetadata& metadata) {
   ContentHash hash;
@@ -180,48 +128,7 @@ std::string content_tag(const SparseVolume& volume, const VolumeAttributes& attr
   for (const auto& [name, value] : metadata)
     for (const std::string& text : {name, value}) hash.add_bytes(text.data(), text.size());
   const std::uint64_t high = hash.mix(1), low = hash.mix(2);
-  char text[37];
-  std::snprintf(text, sizeof text, "%08x-%04x-8%03x-8%03x-%012llx", unsigned(high >> 32),
-                unsigned(high >> 16 & 0xffff), unsigned(high & 0xfff), unsigned(low >> 52),
-                static_cast<unsigned long long>(low & 0xffffffffffff));
-  return text;
-}
-
-void write_grids(AtomicFile& file, const std::vector<MakeGrid>& grids,
-                 const openvdb::MetaMap& metadata, const std::string& tag) {
-  std::vector<char> buffer(std::size_t(1) << 20);
-  std::ofstream out;
-  out.rdbuf()->pubsetbuf(buffer.data(), std::streamsize(buffer.size()));
-  errno = 0;
-  try {
-    out.exceptions(std::ios::badbit | std::ios::failbit);
-    out.open(file.temporary(), std::ios::binary | std::ios::trunc);
-    CheckedArchive archive;
-    archive.setCompression(openvdb::io::COMPRESS_ACTIVE_MASK);
-    archive.write_to(out, grids, metadata);
-    // After the magic number, the file's and the library's version and the flag for offsets.
-    constexpr std::streamoff kTag = 8 + 4 + 2 * 4 + 1;
-    out.seekp(kTag);
-    out.write(tag.data(), std::streamsize(tag.size()));
-    out.close();
-  } catch (const std::ios::failure&) {
-    file.fail(errno);
-  }
-}
-
-/// Runs a reader of an OpenVDB file; whatever it throws becomes an Error that names the file.
-template <typename Read>
-auto with_file(const std::filesystem::path& path, Read read) {
-  try {
-    openvdb::io::File file(path.string());
-    file.open(/*delayLoad=*/false);
-    return read(file);
-  } catch (const Error& error) {
-    throw Error(concat("cannot read ", path.string(), ": ", error.what(), "."));
-  } catch (const std::exception& error) {
-    throw Error(concat("cannot read ", path.string(), ": ", error.what(),
-                       "; give a complete OpenVDB file."));
-  }
+  return tag_of(high, low);
 }
 
 /// The grid named surface, or else the first level set; null when there is none.
@@ -316,9 +223,9 @@ void write_vdb(AtomicFile& file, const SparseVolume& volume, const VolumeAttribu
   PHOTOHULL_CHECK(attributes.confidence.empty() || attributes.confidence.size() == voxels);
   openvdb::initialize();
 
-  const openvdb::MetaMap map = meta_map(volume, metadata);
+  const openvdb::MetaMap map = meta_map(volume.grid, metadata);
   const auto named = [&](openvdb::GridBase::Ptr grid, const char* name) {
-    describe(*grid, name, volume, map);
+    describe(*grid, name, volume.grid, map);
     return grid;
   };
   std::vector<MakeGrid> grids = {[&] { return named(surface_grid(volume), "surface"); }};

@@ -51,7 +51,7 @@ class Dust : public ::testing::Test {
           if (const ivec3 v = ivec3(kSpeck) + ivec3(x, y, z); volume.at(v) < 0)
             pieces[0].push_back(v);
     EXPECT_FALSE(pieces[0].empty());
-    return are_asked_for(test::gl_context(), volume, pieces, cameras_, silhouettes_, {}).at(0);
+    return are_asked_for(test::gl_context(), volume, pieces, {cameras_, silhouettes_}, {}).at(0);
   }
 
   static constexpr dvec3 kSpeck{23, 23, 42};

@@ -48,7 +48,7 @@ class Restore : public testing::Test {
     std::vector<carving::Silhouette> silhouettes;
     for (const test::Outline& outline : outlines_)
       silhouettes.push_back({&outline.mask, &outline.distance});
-    return restore_silhouettes(test::gl_context(), volume, hull, cameras_, silhouettes, options_);
+    return restore_silhouettes(test::gl_context(), volume, hull, {cameras_, silhouettes}, options_);
   }
 
   dvec3 from_ = kCentre, to_ = kCentre + dvec3(14, 0, 0);
@@ -128,7 +128,7 @@ TEST_F(Restore, LackingPixelsLeaveNothingOut) {
     if (std::abs(sphere(kCentre, kBall)(dvec3(voxel))) < 1) voxels.push_back(voxel);
   }
   const SparseVolume hull = both();
-  const Coverage coverage(test::gl_context(), hull.grid, voxels, cameras_, silhouettes);
+  const Coverage coverage(test::gl_context(), hull.grid, voxels, {cameras_, silhouettes});
   for (const double inside : {0.0, 1.5}) {
     const Coverage::LackingPixels lacking = coverage.lacking_pixels(inside);
     int lack = 0, most = 0;
@@ -156,7 +156,8 @@ TEST_F(Restore, WithoutSilhouettesThereIsNothingToProve) {
   outlines_.clear();
   const std::vector<carving::Silhouette> none(cameras_.size());
   SparseVolume volume = ball();
-  EXPECT_EQ(restore_silhouettes(test::gl_context(), volume, both(), cameras_, none, options_), 0u);
+  EXPECT_EQ(restore_silhouettes(test::gl_context(), volume, both(), {cameras_, none}, options_),
+            0u);
 }
 
 TEST_F(Restore, ToTheGridsBorderAndFromNothing) {

@@ -10,6 +10,7 @@
 #include "gpu/context.h"
 #include "pipeline/findings.h"
 #include "pipeline/hull.h"
+#include "pipeline/part.h"
 #include "pipeline/photographs.h"
 #include "pipeline/reconstruct_options.h"
 #include "pipeline/subject.h"
@@ -33,6 +34,8 @@ struct SurfaceJob {
   Progress& progress;
   projtex::OutOfCorePhotographs* larger = nullptr;  ///< to match the surface in; may be null
   const refine::MomentBefore* before = nullptr;     ///< the surface a moment ago; may be null
+  const Part* part = nullptr;  ///< of a whole, that is carved alone; null: the whole is
+  std::span<const DepthMap> beside{};  ///< the part, of each of the subject's views (depths_beside)
 };
 
 struct Surface {

@@ -125,11 +125,14 @@ Surface carve(const SurfaceJob& job, SparseVolume) {
     return hull;
   };
   const refine::RefineOptions options = parameters_of(job).refine;
+  std::optional<refine::WholeSurface> whole;
+  if (job.part)
+    whole.emplace(refine::WholeSurface{job.part->near, job.options.finer, job.beside});
   const auto shared = shared_work_of(job, {*job.images, cameras, options.noise_sigma}, checkpoint);
   out.volume =
       refine::refine_surface(job.context,
                              {job.subject.grid, hull_at, silhouettes, *job.images, cameras,
-                              job.larger, job.before, shared.get()},
+                              job.larger, job.before, whole ? &*whole : nullptr, shared.get()},
                              options, job.progress, &counts, checkpoint ? &*checkpoint : nullptr);
   out.findings = findings_of(counts);
   if (job.before && !counts.followed)

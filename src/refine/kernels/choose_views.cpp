@@ -40,7 +40,7 @@ std::vector<ViewChoice> choose_views(gpu::Context& context, const GridSpec& grid
       projtex::to_gpu_views(projtex::to_grid(cameras, grid), photographs.images);
   const projtex::DeviceViews views(gpu_views);
   const visibility::DepthMaps maps =
-      render::draw_occluders(context, grid, cameras, views, mesh, surfels);
+      render::draw_occluders(context, grid, photographs, views, mesh, surfels);
   const auto program = gpu::Program::compute(context, "refine_choose_views.comp.glsl",
                                              concat(maps.defines(), views.defines()));
   const std::size_t batch =

@@ -29,7 +29,8 @@ BakedVertices bake_vertices(gpu::Context& context, const GridSpec& grid,
       projtex::to_gpu_views(projtex::to_grid(cameras, grid), photographs.images);
   const projtex::DeviceViews views(gpu_views);
   const std::vector<SurfacePoint> vertices = to_voxels(grid, mesh);
-  const visibility::DepthMaps maps = draw_occluders(context, grid, cameras, views, mesh, vertices);
+  const visibility::DepthMaps maps =
+      draw_occluders(context, grid, photographs, views, mesh, vertices);
   const auto program = gpu::Program::compute(context, "render_bake_vertices.comp.glsl",
                                              concat(maps.defines(), views.defines()));
   const std::size_t total = vertices.size();

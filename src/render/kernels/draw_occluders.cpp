@@ -34,10 +34,11 @@ void splat(gpu::Context& context, const visibility::DepthMaps& maps,
 }  // namespace
 
 visibility::DepthMaps draw_occluders(gpu::Context& context, const GridSpec& grid,
-                                     std::span<const Camera> cameras,
+                                     const projtex::Photographs& photographs,
                                      const projtex::DeviceViews& views, const TriMesh& mesh,
                                      std::span<const SurfacePoint> vertices) {
-  visibility::DepthMaps maps = occluder_maps(cameras, grid);
+  visibility::DepthMaps maps = occluder_maps(photographs.cameras, grid);
+  if (!photographs.beside.empty()) maps.draw(photographs.beside, 1 / grid.voxel_size);
   views.bind();
   maps.bind();
   splat(context, maps, views, vertices);

@@ -55,6 +55,25 @@ void DepthMaps::clear() {
     depths_.fill(nothing);
 }
 
+void DepthMaps::draw(std::span<const DepthMap> maps, double unit) {
+  PHOTOHULL_CHECK_OP(maps.size(), ==, infos_.size());
+  for (std::size_t v = 0; v < maps.size(); ++v) {
+    const glm::ivec4 size = infos_[v].size;
+    std::vector<float> depths;
+    depths.reserve(std::size_t(size.x) * std::size_t(size.y));
+    for (int y = 0; y < size.y; ++y)
+      for (int x = 0; x < size.x; ++x) {
+        const glm::dvec2 pixel = (glm::dvec2(x, y) + 0.5) / double(infos_[v].scale.x) - 0.5;
+        depths.push_back(float(double(maps[v].at(pixel)) * unit));
+      }
+    if (layers_.id())
+      layers_.upload(size.z, size.x, size.y, depths.data());
+    else
+      depths_.write(std::size_t(size.z) * sizeof(float), depths.size() * sizeof(float),
+                    depths.data());
+  }
+}
+
 void DepthMaps::bind() const {
   info_buffer_.bind_storage(shaders::kDepthMapInfosBinding);
   if (layers_.id())
@@ -89,15 +108,9 @@ void DepthMaps::draw(gpu::Context& context, std::span<const projtex::GridCamera>
   }
 }
 
-HostDepthMap DepthMaps::map(std::size_t index) const {
+DepthMap DepthMaps::map(std::size_t index) const {
   const shaders::DepthMapInfo& info = infos_[index];
   return {glm::ivec2(info.size), info.scale.x, download(index)};
-}
-
-float HostDepthMap::at(const glm::dvec2& pixel) const {
-  const int x = std::clamp(int((pixel.x + 0.5) * texels_per_pixel), 0, size.x - 1);
-  const int y = std::clamp(int((pixel.y + 0.5) * texels_per_pixel), 0, size.y - 1);
-  return depths[std::size_t(y) * size.x + x];
 }
 
 std::vector<float> DepthMaps::download(std::size_t map) const {

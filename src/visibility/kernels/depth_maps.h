@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/depth_map.h"
 #include "core/grid.h"
 #include "gpu/buffer.h"
 #include "gpu/context.h"
@@ -12,16 +13,6 @@
 #include "shared/depth_map.h"
 
 namespace photohull::visibility {
-
-/// One map, on the host.
-struct HostDepthMap {
-  glm::ivec2 size{0};          ///< texels
-  float texels_per_pixel = 1;  ///< at most 1
-  std::vector<float> depths;   ///< voxels, row-major; +infinity where nothing was drawn
-
-  /// At a place on the image (pixels), or at the texel next to it.
-  float at(const glm::dvec2& pixel) const;
-};
 
 /// One depth map per camera, with texels about as large as a voxel looks from there.
 class DepthMaps {
@@ -32,6 +23,9 @@ class DepthMaps {
 
   /// Forgets all that was drawn.
   void clear();
+  /// Draws what maps of the same cameras hold, whatever their texels; `unit` is that of their
+  /// depths, in voxels. Nothing else has been drawn.
+  void draw(std::span<const DepthMap> maps, double unit);
   /// Binds what include/depth_map.glsl reads and writes.
   void bind() const;
   /// What programs that use the maps are compiled with: where the depths are.
@@ -45,7 +39,7 @@ class DepthMaps {
   /// Draws voxels into all maps; `cameras` are those that the maps were made for.
   void draw(gpu::Context& context, std::span<const projtex::GridCamera> cameras,
             std::span<const glm::ivec3> voxels);
-  HostDepthMap map(std::size_t index) const;
+  DepthMap map(std::size_t index) const;  ///< depths in voxels
 
   const std::vector<shaders::DepthMapInfo>& infos() const { return infos_; }
   /// Depths in voxels of one map, row-major; +infinity where nothing was drawn.

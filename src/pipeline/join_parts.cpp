@@ -1,0 +1,137 @@
+#include "pipeline/join_parts.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+
+#include "core/error.h"
+#include "core/option_word.h"
+#include "core/read_file.h"
+#include "io/mesh/read_mesh.h"
+#include "io/mesh/write_mesh.h"
+#include "mesh/stitch_parts.h"
+#include "pipeline/memory.h"
+#include "pipeline/read_result.h"
+#include "pipeline/result_files.h"
+#include "volume/join_vdb.h"
+
+namespace photohull::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+constexpr double kReach = 0.75;  // voxels between vertices of two parts that are the same
+// Of a mesh in memory, for each byte of its file: doubles of what are floats there, and its border.
+constexpr std::int64_t kMeshBytes = 4, kVolumeBytes = 2;
+
+/// What is the whole's in its report, and not how it was made.
+constexpr const char* kOfTheWhole[] = {
+    "photohull",         "scene",  "photographs", "inputs",  "device", "box",
+    "image_scale",       "masks",  "left_out",    "verdict", "up",     "up_axis",
+    "preview_png_shows", "cameras"};
+
+ordered_json report_in(const fs::path& folder) {
+  read_report(folder);  // throws where it is none
+  return ordered_json::parse(read_whole_file(folder / "report.json"));
+}
+
+std::vector<fs::path> volumes_of(const std::vector<fs::path>& parts) {
+  std::vector<fs::path> out;
+  for (const fs::path& part : parts) out.push_back(part / "volume.vdb");
+  return out;
+}
+
+/// Bytes that joining takes: of volume and mesh, which come one after the other.
+std::int64_t bytes_of(const std::vector<fs::path>& parts) {
+  std::int64_t mesh = 0;
+  for (const fs::path& part : parts) mesh += std::int64_t(fs::file_size(part / "mesh.ply"));
+  return std::max(kMeshBytes * mesh, kVolumeBytes * std::int64_t(joined_bytes(volumes_of(parts))));
+}
+
+void copy_into(const fs::path& from, AtomicFile& to) {
+  const std::string bytes = read_whole_file(from);
+  to.write(bytes.data(), bytes.size());
+}
+
+/// The joined files, and what the report says of the mesh.
+ordered_json write_joined(const fs::path& whole, const std::vector<fs::path>& parts,
+                          ResultFiles& files, JoinedParts& out, Progress& progress) {
+  const std::vector<fs::path> volumes = volumes_of(parts);
+  join_vdb(files.open("volume.vdb"), volumes, {});
+  progress.check_cancelled();
+  progress.update(0.5);
+  std::vector<TriMesh> meshes;
+  for (const fs::path& part : parts)
+    meshes.push_back(read_mesh(part / "mesh.ply", Faces::kOptional));
+  Stitched stitched = stitch_parts(std::move(meshes), kReach * out.voxel_size);
+  out.triangles = std::int64_t(stitched.mesh.triangles.size());
+  out.seam_vertices = stitched.seam_vertices;
+  out.open_edges = stitched.open_edges;
+  progress.check_cancelled();
+  write_ply(files.open("mesh.ply"), stitched.mesh);
+  copy_into(whole / "preview.png", files.open("preview.png"));
+  if (stitched.open_edges > 0)
+    progress.warn(concat(stitched.open_edges, " edges of mesh.ply stay open where parts meet, of ",
+                         stitched.seam_vertices, " vertices there"));
+  return {{"vertices", stitched.mesh.positions.size()},
+          {"triangles", stitched.mesh.triangles.size()},
+          {"seam_vertices", stitched.seam_vertices},
+          {"gaps_filled", stitched.filled},
+          {"open_edges", stitched.open_edges}};
+}
+
+}  // namespace
+
+JoinedParts join_parts(const fs::path& whole, const std::vector<fs::path>& parts,
+                       const fs::path& folder, const std::optional<std::int64_t>& max_memory,
+                       Progress& progress) {
+  const ordered_json of_whole = report_in(whole);
+  ordered_json report;
+  for (const char* key : kOfTheWhole)
+    if (of_whole.contains(key)) report[key] = of_whole[key];
+  JoinedParts out;
+  out.verdict = read_report(whole).verdict;
+  out.views = of_whole.at("scene").at("views");
+  const GridSpec grid = joined_grid(volumes_of(parts));
+  out.voxel_size = grid.voxel_size;
+  report["grid"] = {{"origin", {grid.origin.x, grid.origin.y, grid.origin.z}},
+                    {"voxel_size", grid.voxel_size},
+                    {"voxels", {grid.voxels().x, grid.voxels().y, grid.voxels().z}}};
+  report["whole"] = whole.filename().string();
+  double wall = of_whole.at("wall_seconds"), cpu = of_whole.at("cpu_seconds");
+  for (const fs::path& part : parts) {
+    const ordered_json of_part = report_in(part);
+    report["parts"].push_back({{"folder", part.filename().string()},
+                               {"box", of_part.at("box")},
+                               {"triangles", of_part.at("mesh").at("triangles")}});
+    wall += of_part.at("wall_seconds").get<double>(),
+        cpu += of_part.at("cpu_seconds").get<double>();
+    progress.check_cancelled();
+  }
+  const std::int64_t bytes = bytes_of(parts),
+                     limit = max_memory ? *max_memory : default_max_memory();
+  out.joined = bytes <= limit;
+  std::vector<std::string> names = {"report.json"};
+  if (out.joined) names = {"volume.vdb", "mesh.ply", "preview.png", "report.json"};
+  ResultFiles files(folder, names);
+  if (out.joined) {
+    report["mesh"] = write_joined(whole, parts, files, out, progress);
+  } else {
+    progress.warn(concat("the parts stay by themselves: joined they would take about ",
+                         memory_text(bytes), " of memory, and may take ", memory_text(limit), " (",
+                         option_word("max_memory"), "); report.json lists them"));
+  }
+  report["wall_seconds"] = wall;
+  report["cpu_seconds"] = cpu;
+  report["warnings"] = ordered_json::array();
+  report["files"] = names;
+  const std::string text =
+      report.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  files.open("report.json").write(text.data(), text.size());
+  files.commit();
+  return out;
+}
+
+}  // namespace photohull::pipeline

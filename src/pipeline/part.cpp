@@ -1,0 +1,232 @@
+#include "pipeline/part.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/error.h"
+#include "core/option_word.h"
+#include "projtex/photographs.h"
+#include "visibility/kernels/depth_maps.h"
+
+namespace photohull::pipeline {
+namespace {
+
+using glm::ivec3;
+
+constexpr double kBoxSlack = 0.5;  // voxels that the surface may stand out of the whole's box
+constexpr double kBending = 0.2;   // of a photograph's size, to which its lens may bend
+constexpr int kAbout = 2;          // bricks of the whole about a part that its surface starts from
+
+struct Cut {
+  int axis = 0, at = 0;
+};
+
+/// The layer before which about `share` of the bricks lie, across the longest side that has two.
+std::optional<Cut> cut_of(std::span<ivec3> bricks, double share) {
+  ivec3 low = bricks.front(), high = low;
+  for (const ivec3& b : bricks) low = glm::min(low, b), high = glm::max(high, b);
+  const ivec3 size = high - low;
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  if (size[axis] == 0) return std::nullopt;
+  const auto middle = bricks.begin() + std::ptrdiff_t(share * double(bricks.size()));
+  std::nth_element(bricks.begin(), middle, bricks.end(),
+                   [axis](const ivec3& a, const ivec3& b) { return a[axis] < b[axis]; });
+  return Cut{axis, std::clamp((*middle)[axis], low[axis] + 1, high[axis])};
+}
+
+/// Without what lies outside the range: that is outside.
+SparseVolume within(const SparseVolume& volume, const BrickRange& range) {
+  SparseVolume out;
+  out.grid = volume.grid;
+  out.table.assign(volume.table.size(), SparseVolume::kOutside);
+  for (int z = range.first.z; z < range.end.z; ++z)
+    for (int y = range.first.y; y < range.end.y; ++y)
+      for (int x = range.first.x; x < range.end.x; ++x) {
+        const std::size_t index = volume.grid.brick_index({x, y, z});
+        const std::uint32_t slot = volume.table[index];
+        out.table[index] = slot;
+        if (slot >= SparseVolume::kInside) continue;
+        out.table[index] = std::uint32_t(out.bricks.size());
+        out.bricks.emplace_back(x, y, z);
+        const auto from = volume.distance.begin() + std::ptrdiff_t(slot) * kBrickVoxels;
+        out.distance.insert(out.distance.end(), from, from + kBrickVoxels);
+      }
+  return out;
+}
+
+BrickRange grown(const BrickRange& range, int bricks, const GridSpec& grid) {
+  return {glm::max(range.first - bricks, 0), glm::min(range.end + bricks, grid.bricks)};
+}
+
+/// The grid of the range of `whole`, its voxels halved so many times.
+GridSpec finer(const GridSpec& whole, const BrickRange& range, int levels) {
+  GridSpec out = whole;
+  out.origin += whole.voxel_size * glm::dvec3(range.first * kBrickEdge);
+  out.bricks = range.end - range.first;
+  for (int level = 0; level < levels; ++level) {
+    out.voxel_size /= 2;
+    out.origin -= 0.5 * out.voxel_size;
+    out.bricks *= 2;
+  }
+  return out;
+}
+
+/// The triangles that are asked for, with what their corners have.
+template <typename IsWanted>
+TriMesh some_of(const TriMesh& mesh, const IsWanted& is_wanted) {
+  TriMesh out;
+  out.origin = mesh.origin;
+  std::vector<std::uint32_t> number(mesh.positions.size(), 0);  // from 1
+  const auto copy = [](const auto& from, std::uint32_t vertex, auto& to) {
+    if (!from.empty()) to.push_back(from[vertex]);
+  };
+  for (const auto& t : mesh.triangles) {
+    if (!is_wanted(t)) continue;
+    auto& corners = out.triangles.emplace_back();
+    for (std::size_t i = 0; i < t.size(); ++i) {
+      std::uint32_t& n = number[t[i]];
+      if (n == 0) {
+        copy(mesh.positions, t[i], out.positions);
+        copy(mesh.normals, t[i], out.normals);
+        copy(mesh.colours, t[i], out.colours);
+        copy(mesh.confidence, t[i], out.confidence);
+        n = std::uint32_t(out.positions.size());
+      }
+      corners[i] = n - 1;
+    }
+  }
+  return out;
+}
+
+/// Voxels at the surface that lie outside the range.
+std::vector<ivec3> skin_outside(const SparseVolume& volume, const BrickRange& range) {
+  std::vector<ivec3> out;
+  for (std::size_t slot = 0; slot < volume.bricks.size(); ++slot) {
+    const ivec3 brick = volume.bricks[slot];
+    if (range.contains(brick)) continue;
+    for (int i = 0; i < kBrickVoxels; ++i) {
+      const float d = volume.distance[slot * kBrickVoxels + std::size_t(i)];
+      if (d <= 0 && d > -1) out.push_back(brick * kBrickEdge + ivec3(i >> 6, (i >> 3) & 7, i & 7));
+    }
+  }
+  return out;
+}
+
+/// Might the camera show something of the box? Lenses that bend show more than a pinhole does.
+bool may_show(const Camera& camera, const Box& box) {
+  const Intrinsics& k = camera.intrinsics;
+  const glm::dvec2 size(k.width, k.height);
+  glm::dvec2 least(std::numeric_limits<double>::max()), greatest(-least);
+  for (int corner = 0; corner < 8; ++corner) {
+    const auto pixel =
+        camera.project({(corner & 1 ? box.max : box.min).x, (corner & 2 ? box.max : box.min).y,
+                        (corner & 4 ? box.max : box.min).z});
+    if (!pixel) return true;  // it stands within, or beside
+    least = glm::min(least, *pixel);
+    greatest = glm::max(greatest, *pixel);
+  }
+  return glm::all(glm::lessThan(least, (1 + kBending) * size)) &&
+         glm::all(glm::greaterThan(greatest, -kBending * size));
+}
+
+}  // namespace
+
+std::string to_string(const PartNumber& part) { return concat(part.number, "/", part.count); }
+
+std::optional<PartNumber> parse_part(const std::string& text) {
+  PartNumber out;
+  const char* end = text.data() + text.size();
+  const auto [bar, fault] = std::from_chars(text.data(), end, out.number);
+  if (fault != std::errc() || bar == end || *bar != '/') return std::nullopt;
+  const auto [last, other] = std::from_chars(bar + 1, end, out.count);
+  const bool legal = out.number >= 1 && out.number <= out.count && out.count <= PartNumber::kMost;
+  if (other != std::errc() || last != end || !legal) return std::nullopt;
+  return out;
+}
+
+BrickRange range_of_part(const SparseVolume& whole, const PartNumber& part) {
+  std::vector<ivec3> bricks = whole.bricks;
+  std::span<ivec3> some(bricks);
+  BrickRange range{ivec3(0), whole.grid.bricks};
+  int number = part.number - 1, count = part.count;
+  while (count > 1) {
+    const int before = count / 2;
+    const auto cut = some.empty() ? std::nullopt : cut_of(some, double(before) / count);
+    if (!cut)
+      throw Error(concat(option_word("part", to_string(part)), ": the whole has a surface of ",
+                         whole.bricks.size(), " bricks, too few for so many parts; make fewer"));
+    const auto is_before = [&](const ivec3& brick) { return brick[cut->axis] < cut->at; };
+    const auto middle = std::partition(some.begin(), some.end(), is_before);
+    if (number < before) {
+      range.end[cut->axis] = cut->at;
+      some = some.first(std::size_t(middle - some.begin()));
+      count = before;
+    } else {
+      range.first[cut->axis] = cut->at;
+      some = some.subspan(std::size_t(middle - some.begin()));
+      number -= before, count -= before;
+    }
+  }
+  return range;
+}
+
+Part cut_part(const SparseVolume& whole, const Box& box, const PartNumber& part, int levels) {
+  const BrickRange range = range_of_part(whole, part);
+  const int halo = (kHaloVoxels + (kBrickEdge << levels) - 1) / (kBrickEdge << levels);
+  const BrickRange all = grown(range, halo, whole.grid);
+  Part out;
+  out.near = within(whole, grown(all, kAbout, whole.grid));
+  out.grid = finer(whole.grid, all, levels);
+  const int scale = 1 << levels;
+  out.own = {scale * (range.first - all.first), scale * (range.end - all.first)};
+  const Box filled = out.grid.bounds();
+  out.beside = skin_outside(whole, all);
+  const double slack = kBoxSlack * out.grid.voxel_size;
+  out.box = {glm::max(filled.min, box.min - slack), glm::min(filled.max, box.max + slack)};
+  return out;
+}
+
+std::vector<DepthMap> depths_beside(gpu::Context& context, const Part& part,
+                                    std::span<const Camera> cameras) {
+  const GridSpec& grid = part.near.grid;
+  const std::vector<projtex::GridCamera> on_grid = projtex::to_grid(cameras, grid);
+  visibility::DepthMaps maps(on_grid, grid);
+  maps.draw(context, on_grid, part.beside);
+  std::vector<DepthMap> out;
+  for (std::size_t view = 0; view < cameras.size(); ++view) {
+    out.push_back(maps.map(view));
+    for (float& depth : out.back().depths) depth = float(depth * grid.voxel_size);
+  }
+  return out;
+}
+
+SparseVolume own_of(const Part& part, const SparseVolume& volume) {
+  return within(volume, part.own);
+}
+
+TriMesh own_of(const Part& part, const TriMesh& mesh) {
+  const GridSpec& grid = part.grid;
+  return some_of(mesh, [&](const std::array<std::uint32_t, 3>& t) {
+    const glm::dvec3 middle = (mesh.world(t[0]) + mesh.world(t[1]) + mesh.world(t[2])) / 3.0;
+    const glm::dvec3 voxel = glm::floor((middle - grid.origin) / grid.voxel_size + 0.5);
+    return part.own.contains(ivec3(glm::floor(voxel / double(kBrickEdge))));
+  });
+}
+
+Scene scene_of(const Part& part, Scene scene) {
+  scene.box = part.box;
+  scene.box_source = "the part";
+  std::erase_if(scene.views,
+                [&](const SourceView& view) { return !may_show(view.camera, part.box); });
+  if (scene.views.size() < 2)
+    throw Error(concat("the part is shown by ", scene.views.size(),
+                       " photographs, and nothing can be told of it; make fewer parts"));
+  return scene;
+}
+
+}  // namespace photohull::pipeline

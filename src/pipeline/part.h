@@ -1,0 +1,65 @@
+// A part of a scene whose whole is known on coarser voxels: models larger than memory, part by
+// part.
+#pragma once
+
+#include <vector>
+
+#include <span>
+
+#include "core/box.h"
+#include "core/camera.h"
+#include "core/depth_map.h"
+#include "core/grid.h"
+#include "core/mesh.h"
+#include "core/scene.h"
+#include "gpu/context.h"
+#include "pipeline/part_number.h"
+
+namespace photohull::pipeline {
+
+/// Bricks of a lattice, from `first` up to `end`.
+struct BrickRange {
+  glm::ivec3 first{0}, end{0};
+
+  bool contains(const glm::ivec3& brick) const {
+    return glm::all(glm::greaterThanEqual(brick, first)) && glm::all(glm::lessThan(brick, end));
+  }
+};
+
+/// The grid of a volume cut into ranges of about as many stored bricks each, `part.count` of them:
+/// always across the longest side of what is stored. They leave none of the grid out, nor do they
+/// overlap. Throws Error where there are fewer layers of bricks than that.
+BrickRange range_of_part(const SparseVolume& whole, const PartNumber& part);
+
+/// Voxels around a part's own that are refined with it, so that what patches and smoothing reach
+/// over its border is there: at least so many.
+inline constexpr int kHaloVoxels = 16;
+
+/// What a part is made of.
+struct Part {
+  SparseVolume near;  ///< the whole's surface in the part and about it, on the whole's grid
+  /// Voxels of the whole's grid at its surface, outside the part's grid.
+  std::vector<glm::ivec3> beside;
+  GridSpec grid;      ///< of the part, its halo included
+  BrickRange own;     ///< bricks of `grid` that are the part's own
+  Box box;            ///< that the grid's voxels fill, as far as it lies in the whole's
+};
+
+/// `box`: that the whole was made in. `levels`: how often its voxels are halved.
+Part cut_part(const SparseVolume& whole, const Box& box, const PartNumber& part, int levels);
+
+/// Of each camera, in world units: what of the whole lies outside the part's grid. Throws Error when
+/// the device cannot hold it.
+std::vector<DepthMap> depths_beside(gpu::Context& context, const Part& part,
+                                    std::span<const Camera> cameras);
+
+/// What of a volume on the part's grid is its own; the rest is outside.
+SparseVolume own_of(const Part& part, const SparseVolume& volume);
+/// The triangles of a mesh whose middles lie in what is the part's own.
+TriMesh own_of(const Part& part, const TriMesh& mesh);
+
+/// The scene with the part's box, and without photographs that show nothing of it. Throws Error
+/// where fewer than two are left.
+Scene scene_of(const Part& part, Scene scene);
+
+}  // namespace photohull::pipeline
