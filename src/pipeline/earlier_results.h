@@ -36,6 +36,7 @@ struct EarlierResults {
   VerdictFindings verdict;   ///< of the whole
 
   const ResultRig* given_rig() const { return rig ? &*rig : nullptr; }
+  const Part* given_part() const { return part ? &*part : nullptr; }
   const refine::MomentBefore* given_moment() const { return before ? &*before : nullptr; }
 };
 

@@ -59,6 +59,7 @@ ExtractedSurface extract_surface(const SurfaceJob& job, const SparseVolume& volu
 }
 
 ColouredSurface colour_surface(const SurfaceJob& job, TriMesh mesh) {
+  if (mesh.triangles.empty() && job.part) return {std::move(mesh), {}, {}};
   if (mesh.triangles.empty())
     throw Error(concat("the volume holds no surface: every part is thinner than a voxel; raise ",
                        option_word("resolution")));
@@ -66,10 +67,9 @@ ColouredSurface colour_surface(const SurfaceJob& job, TriMesh mesh) {
   const render::Shaping shaping = method_of(job.options).by_silhouettes
                                       ? render::Shaping::kSilhouettes
                                       : render::Shaping::kPhotographs;
-  BakeReport baked = bake_colour(
-      job.context, job.subject.grid,
-      {*job.images, cameras, job.subject.noise_sigma, job.beside},
-      shaping, mesh, job.progress);
+  BakeReport baked = bake_colour(job.context, job.subject.grid,
+                                 {*job.images, cameras, job.subject.noise_sigma, job.beside},
+                                 shaping, mesh, job.progress);
   const auto unseen = std::count(mesh.confidence.begin(), mesh.confidence.end(), 0.0f);
   const double share = double(unseen) / double(mesh.confidence.size());
   if (share > 0.5)

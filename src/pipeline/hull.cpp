@@ -46,9 +46,9 @@ SparseVolume Hull::carve_box(const GridSpec& grid, const Box& inner) {
   findings_.nodes_tested += counts.nodes_tested;
   findings_.bricks_evaluated += counts.bricks_evaluated;
   findings_.samples += counts.samples;
-  const bool specks = grid.voxel_size == subject_.grid.voxel_size &&
+  const bool specks = !options_.carved_box && grid.voxel_size == subject_.grid.voxel_size &&
                       volume.inside_voxels() == thin &&
-                      thin < kFewestThinVoxels;  // coarse grids may hold no more of it
+                      thin < kFewestThinVoxels;  // coarse grids, and parts, may hold no more of it
   return specks ? SparseVolume() : volume;
 }
 

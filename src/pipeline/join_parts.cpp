@@ -37,6 +37,11 @@ ordered_json report_in(const fs::path& folder) {
   return ordered_json::parse(read_whole_file(folder / "report.json"));
 }
 
+/// A part may lie where nothing is left, and its mesh is empty.
+bool has_surface(const fs::path& part) {
+  return report_in(part).at("mesh").at("triangles").get<std::int64_t>() > 0;
+}
+
 std::vector<fs::path> volumes_of(const std::vector<fs::path>& parts) {
   std::vector<fs::path> out;
   for (const fs::path& part : parts) out.push_back(part / "volume.vdb");
@@ -64,7 +69,7 @@ ordered_json write_joined(const fs::path& whole, const std::vector<fs::path>& pa
   progress.update(0.5);
   std::vector<TriMesh> meshes;
   for (const fs::path& part : parts)
-    meshes.push_back(read_mesh(part / "mesh.ply", Faces::kOptional));
+    if (has_surface(part)) meshes.push_back(read_mesh(part / "mesh.ply"));
   Stitched stitched = stitch_parts(std::move(meshes), kReach * out.voxel_size);
   out.triangles = std::int64_t(stitched.mesh.triangles.size());
   out.seam_vertices = stitched.seam_vertices;

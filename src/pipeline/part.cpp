@@ -10,7 +10,9 @@
 
 #include "core/error.h"
 #include "core/option_word.h"
+#include "pipeline/place_lattice.h"
 #include "projtex/photographs.h"
+#include "views/crop.h"
 #include "visibility/kernels/depth_maps.h"
 
 namespace photohull::pipeline {
@@ -19,7 +21,7 @@ namespace {
 using glm::ivec3;
 
 constexpr double kBoxSlack = 0.5;  // voxels that the surface may stand out of the whole's box
-constexpr double kBending = 0.2;   // of a photograph's size, to which its lens may bend
+constexpr int kMipPixels = 32;     // of a texel of the sixth mip level: parts see the same ones
 constexpr int kAbout = 2;          // bricks of the whole about a part that its surface starts from
 
 struct Cut {
@@ -117,21 +119,23 @@ std::vector<ivec3> skin_outside(const SparseVolume& volume, const BrickRange& ra
   return out;
 }
 
-/// Might the camera show something of the box? Lenses that bend show more than a pinhole does.
+/// Might the camera show something of the box?
 bool may_show(const Camera& camera, const Box& box) {
-  const Intrinsics& k = camera.intrinsics;
-  const glm::dvec2 size(k.width, k.height);
+  const glm::dvec2 size(camera.intrinsics.width, camera.intrinsics.height);
   glm::dvec2 least(std::numeric_limits<double>::max()), greatest(-least);
+  int before = 0;
   for (int corner = 0; corner < 8; ++corner) {
     const auto pixel =
         camera.project({(corner & 1 ? box.max : box.min).x, (corner & 2 ? box.max : box.min).y,
                         (corner & 4 ? box.max : box.min).z});
-    if (!pixel) return true;  // it stands within, or beside
+    if (!pixel) continue;
+    ++before;
     least = glm::min(least, *pixel);
     greatest = glm::max(greatest, *pixel);
   }
-  return glm::all(glm::lessThan(least, (1 + kBending) * size)) &&
-         glm::all(glm::greaterThan(greatest, -kBending * size));
+  if (before < 8) return before > 0;  // some corners are behind it: it stands beside or within
+  return glm::all(glm::lessThan(least, size)) &&
+         glm::all(glm::greaterThan(greatest, glm::dvec2(-1)));
 }
 
 }  // namespace
@@ -180,9 +184,11 @@ Part cut_part(const SparseVolume& whole, const Box& box, const PartNumber& part,
   const int halo = (kHaloVoxels + (kBrickEdge << levels) - 1) / (kBrickEdge << levels);
   const BrickRange all = grown(range, halo, whole.grid);
   Part out;
+  out.whole_box = box;
   out.near = within(whole, grown(all, kAbout, whole.grid));
   out.grid = finer(whole.grid, all, levels);
   const int scale = 1 << levels;
+  out.first_voxel = scale * kBrickEdge * all.first;
   out.own = {scale * (range.first - all.first), scale * (range.end - all.first)};
   const Box filled = out.grid.bounds();
   out.beside = skin_outside(whole, all);
@@ -218,15 +224,14 @@ TriMesh own_of(const Part& part, const TriMesh& mesh) {
   });
 }
 
-Scene scene_of(const Part& part, Scene scene) {
-  scene.box = part.box;
-  scene.box_source = "the part";
-  std::erase_if(scene.views,
-                [&](const SourceView& view) { return !may_show(view.camera, part.box); });
-  if (scene.views.size() < 2)
-    throw Error(concat("the part is shown by ", scene.views.size(),
-                       " photographs, and nothing can be told of it; make fewer parts"));
-  return scene;
+std::vector<PreparedView> views_of(const Part& part, std::vector<PreparedView> views) {
+  std::erase_if(views, [&](const PreparedView& view) { return !may_show(view.camera, part.box); });
+  if (views.size() < 2)
+    throw Error(concat("the part is shown by ", views.size(),
+                       views.size() == 1 ? " photograph" : " photographs",
+                       ", and nothing can be told of it; make fewer parts"));
+  for (PreparedView& view : views) crop_to_box(part.box, kCropMargin, view, kMipPixels);
+  return views;
 }
 
 }  // namespace photohull::pipeline

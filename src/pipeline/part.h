@@ -11,7 +11,7 @@
 #include "core/depth_map.h"
 #include "core/grid.h"
 #include "core/mesh.h"
-#include "core/scene.h"
+#include "core/prepared_view.h"
 #include "gpu/context.h"
 #include "pipeline/part_number.h"
 
@@ -40,16 +40,18 @@ struct Part {
   SparseVolume near;  ///< the whole's surface in the part and about it, on the whole's grid
   /// Voxels of the whole's grid at its surface, outside the part's grid.
   std::vector<glm::ivec3> beside;
-  GridSpec grid;      ///< of the part, its halo included
-  BrickRange own;     ///< bricks of `grid` that are the part's own
-  Box box;            ///< that the grid's voxels fill, as far as it lies in the whole's
+  GridSpec grid;              ///< of the part, its halo included
+  glm::ivec3 first_voxel{0};  ///< of the whole's grid at such voxels, that `grid` begins with
+  BrickRange own;             ///< bricks of `grid` that are the part's own
+  Box whole_box;              ///< that the whole was made in
+  Box box;                    ///< that the grid's voxels fill, as far as it lies in the whole's
 };
 
 /// `box`: that the whole was made in. `levels`: how often its voxels are halved.
 Part cut_part(const SparseVolume& whole, const Box& box, const PartNumber& part, int levels);
 
-/// Of each camera, in world units: what of the whole lies outside the part's grid. Throws Error when
-/// the device cannot hold it.
+/// Of each camera, in world units: what of the whole lies outside the part's grid. Throws Error
+/// when the device cannot hold it.
 std::vector<DepthMap> depths_beside(gpu::Context& context, const Part& part,
                                     std::span<const Camera> cameras);
 
@@ -58,8 +60,8 @@ SparseVolume own_of(const Part& part, const SparseVolume& volume);
 /// The triangles of a mesh whose middles lie in what is the part's own.
 TriMesh own_of(const Part& part, const TriMesh& mesh);
 
-/// The scene with the part's box, and without photographs that show nothing of it. Throws Error
-/// where fewer than two are left.
-Scene scene_of(const Part& part, Scene scene);
+/// Views that may show something of the part, without the pixels that do not. Throws Error where
+/// fewer than two are left.
+std::vector<PreparedView> views_of(const Part& part, std::vector<PreparedView> views);
 
 }  // namespace photohull::pipeline

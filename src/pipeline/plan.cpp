@@ -46,8 +46,9 @@ void count_cost(const Request& request, const Scene& scene, const Box& box, bool
   question.masks = silhouettes_of(request.masks, scene);
   plan.silhouettes = question.masks != Silhouettes::kNone;
   if (with_grid)
-    plan.grid = *(question.grid = lattice_of(request.options, box, cameras_at(matched, scene),
-                                             plan.silhouettes));
+    plan.grid =
+        *(question.grid = lattice_of(request.options, request.options.carved_box.value_or(box),
+                                     cameras_at(matched, scene), plan.silhouettes));
   if (makes_texture(request.options)) {
     question.texture_bytes = texture_bytes(memory_limit(request.options));
     question.pixel = carving::pixel_footprint(box, question.cameras);

@@ -118,6 +118,15 @@ Box read_box(const ReportFile& report) {
   return box;
 }
 
+std::vector<std::string> texts(const ReportFile& report, const json& object, const char* key) {
+  std::vector<std::string> out;
+  for (const json& text : report.at(object, key)) {
+    if (!text.is_string()) report.fail(concat("\"", key, "\" holds something other than text"));
+    out.push_back(text.get<std::string>());
+  }
+  return out;
+}
+
 VerdictFindings read_verdict(const ReportFile& report) {
   VerdictFindings out;
   const auto found = report.root().find("verdict");
@@ -127,6 +136,9 @@ VerdictFindings read_verdict(const ReportFile& report) {
        {assess::Level::kGood, assess::Level::kDoubtful, assess::Level::kFailed}) {
     if (level != assess::to_string(known)) continue;
     out.verdict.level = known;
+    out.verdict.reasons = texts(report, *found, "reasons");
+    out.verdict.notes = texts(report, *found, "notes");
+    out.verdict.coverage = report.text(*found, "coverage");
     out.json = found->dump();
     return out;
   }

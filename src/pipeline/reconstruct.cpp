@@ -99,10 +99,13 @@ Prepared prepare(Run& run) {
   });
   report.silhouettes = found.findings;
   report.full_evidence = found.full_evidence;
-  report.box = box.box;
+  const Part* part = run.earlier.given_part();
+  if (part) found.views = views_of(*part, std::move(found.views));
+  const Box carved = part ? part->box : box.box;
+  report.box = carved;
   report.box_source = box.source;
   report.grid = grid;
-  return {{box.box, box.source, box_found, seen, grid, std::move(found.views),
+  return {{carved, box.source, box_found, seen, grid, std::move(found.views),
            scene.findings.noise_sigma, scene.findings.mask_confidence, found.full_evidence,
            scene.held_bytes},
           masks,
@@ -166,7 +169,7 @@ class Carver {
   }
 
   /// That is carved alone; null: the whole is.
-  const Part* part() const { return run_.earlier.part ? &*run_.earlier.part : nullptr; }
+  const Part* part() const { return run_.earlier.given_part(); }
 
   SparseVolume carve_surface() {
     subject_.held_bytes = check_room(run_.options, subject_, hull_);
@@ -374,18 +377,21 @@ std::unique_ptr<tbb::global_control> limit_threads(int threads) {
                                                std::size_t(threads));
 }
 
-/// Those of a part are its own box and voxels.
+/// Those of a part have the voxels and the box that it was cut out with.
 ReconstructOptions options_of(const std::optional<Part>& part, ReconstructOptions options) {
   if (!part) return options;
   options.voxel_size = part->grid.voxel_size;
   options.box.exact = true;
+  options.carved_box = part->box;
   options.report_page = ReportPage::kOff;
   options.tiles = {};
   return options;
 }
 
 Photographs photographs_of(const std::optional<Part>& part, Photographs photographs) {
-  if (part) photographs.scene = scene_of(*part, std::move(photographs.scene));
+  if (!part) return photographs;
+  photographs.scene.box = part->whole_box;
+  photographs.scene.box_source = "the whole";
   return photographs;
 }
 

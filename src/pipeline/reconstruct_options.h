@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "carving/statistic.h"
+#include "core/box.h"
 #include "core/describe.h"
 #include "io/load_scene.h"
 #include "io/mesh/mesh_file_options.h"
@@ -113,6 +114,9 @@ struct ReconstructOptions {
   /// photographs; empty: none. It does not affect results and is not described.
   std::filesystem::path checkpoint;
   SharedTiles tiles;
+  /// Where it is a part of the scene's box: what of this voxels fill. It is no choice of a user and
+  /// not described.
+  std::optional<Box> carved_box;
 
   /// Throws UsageError naming the option.
   void validate() const;

@@ -22,6 +22,8 @@ struct FitOptions {
   double least_score = 0.3, full_score = 0.8, slope = 0.05;
   double largest_offset = 0.5, largest_step = 0.5, most_bend = 1;
   double unit_deviation = 0.1, most_weight = 4;
+  /// Of the whole's grid, the voxel that a part's begins with: surfels at one place hold out alike.
+  glm::ivec3 first_voxel{0};
 };
 
 inline void describe(Described& to, FitOptions& o) {

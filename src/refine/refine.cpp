@@ -231,6 +231,7 @@ SparseVolume refine_surface(gpu::Context& context, const RefineScene& scene,
                 scene.whole != nullptr};
   const GridSpec& whole = scene.whole ? scene.whole->volume.grid : scene.finest;
   job.options.match = fit_angles(scene.cameras, whole.bounds().center(), options.match);
+  if (scene.whole) job.options.fit.first_voxel = scene.whole->first_voxel;
   std::vector<GridSpec> grids = grids_to(scene.finest, scene.cameras, job.is_bounded(),
                                          scene.whole ? scene.whole->levels : options.levels);
   RefineReport counts;

@@ -172,7 +172,9 @@ using HullAt = std::function<SparseVolume(const GridSpec&)>;
 /// The surface of a whole scene on coarser voxels, of which a part is refined.
 struct WholeSurface {
   const SparseVolume& volume;
-  int levels = 1;         ///< by which the part's voxels are finer, each halves them
+  glm::ivec3 first_voxel{
+      0};          ///< of the whole's grid at the part's voxels, that the part's begins with
+  int levels = 1;  ///< by which the part's voxels are finer, each halves them
   /// Of each camera, in world units: what of the surface lies outside the part's grid.
   std::span<const DepthMap> beside;
 };
@@ -187,8 +189,8 @@ struct RefineScene {
   /// The same views' photographs, larger, for levels whose voxels ask for them; null: none.
   projtex::OutOfCorePhotographs* larger = nullptr;
   const MomentBefore* before = nullptr;  ///< null: it is not known
-  const WholeSurface* whole = nullptr;   ///< of which this is a part; null: it is the whole itself
   SharedWork* shared = nullptr;          ///< by way of which other processes help; null: none does
+  const WholeSurface* whole = nullptr;   ///< of which this is a part; null: it is the whole itself
 };
 
 /// The surface that the photographs agree on, on the finest grid, from the hull inwards. A level

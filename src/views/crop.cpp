@@ -7,24 +7,50 @@
 namespace photohull {
 namespace {
 
-/// Copies a rectangle of row-major pixels to the front of the same memory and shrinks it.
-void crop_rows(std::vector<std::uint8_t>& bytes, std::size_t pixel_bytes, int width,
-               const glm::ivec2& low, const glm::ivec2& size) {
-  for (int y = 0; y < size.y; ++y)
-    std::memmove(&bytes[std::size_t(y) * size.x * pixel_bytes],
-                 &bytes[(std::size_t(y + low.y) * width + low.x) * pixel_bytes],
-                 size.x * pixel_bytes);
-  bytes.resize(std::size_t(size.x) * size.y * pixel_bytes);
-  bytes.shrink_to_fit();
-}
-
 /// A rectangle of pixels.
 struct Frame {
   glm::ivec2 low{0}, size{0};
 };
 
+/// Copies a rectangle of row-major pixels to the front of the same memory and shrinks it.
+/// A pixel takes so many of the values.
+template <typename T>
+void crop_rows(std::vector<T>& values, std::size_t each, int width, const Frame& frame) {
+  const auto& [low, size] = frame;
+  for (int y = 0; y < size.y; ++y)
+    std::memmove(&values[std::size_t(y) * size.x * each],
+                 &values[(std::size_t(y + low.y) * width + low.x) * each],
+                 size.x * each * sizeof(T));
+  values.resize(std::size_t(size.x) * size.y * each);
+  values.shrink_to_fit();
+}
+
+void crop_mask(int width, const Frame& frame, Mask& mask) {
+  if (mask.empty()) return;
+  crop_rows(mask.coverage, 1, width, frame);
+  mask.width = frame.size.x;
+  mask.height = frame.size.y;
+}
+
+void crop_silhouette(int width, const Frame& frame, ViewSilhouette& silhouette) {
+  crop_mask(width, frame, silhouette.widened);
+  SilhouetteDistance& distance = silhouette.distance;
+  if (!distance.pixels.empty()) {
+    crop_rows(distance.pixels, 1, width, frame);
+    distance.width = frame.size.x;
+    distance.height = frame.size.y;
+  }
+  for (LinePoint& point : silhouette.lines) {
+    point.x -= float(frame.low.x);
+    point.y -= float(frame.low.y);
+  }
+  std::erase_if(silhouette.lines, [&](const LinePoint& p) {
+    return p.x < 0 || p.y < 0 || p.x > float(frame.size.x - 1) || p.y > float(frame.size.y - 1);
+  });
+}
+
 /// What crop_to_box keeps of a camera's image.
-Frame kept_frame(const Box& box, int margin, const Camera& camera) {
+Frame kept_frame(const Box& box, int margin, const Camera& camera, int multiple) {
   const Intrinsics& k = camera.intrinsics;
   const Frame all{glm::ivec2(0), {k.width, k.height}};
   glm::dvec2 least(1e300), greatest(-1e300);
@@ -39,7 +65,8 @@ Frame kept_frame(const Box& box, int margin, const Camera& camera) {
   const glm::dvec2 last(all.size - 1);
   if (glm::any(glm::greaterThan(least, last)) || glm::any(glm::lessThan(greatest, glm::dvec2(0))))
     return all;
-  const glm::ivec2 low(glm::clamp(glm::floor(least) - double(margin), glm::dvec2(0), last));
+  const glm::ivec2 from(glm::clamp(glm::floor(least) - double(margin), glm::dvec2(0), last));
+  const glm::ivec2 low = multiple * (from / multiple);
   const glm::ivec2 high(glm::clamp(glm::ceil(greatest) + double(margin), glm::dvec2(0), last));
   return {low, high - low + 1};
 }
@@ -53,20 +80,21 @@ void cut(const Frame& frame, Intrinsics& k) {
 
 }  // namespace
 
-void crop_to_box(const Box& box, int margin, PreparedView& view) {
+void crop_to_box(const Box& box, int margin, PreparedView& view, int multiple) {
   Intrinsics& k = view.camera.intrinsics;
-  const auto [low, size] = kept_frame(box, margin, view.camera);
-  if (size.x == k.width && size.y == k.height) return;
-  crop_rows(view.image.bytes, view.image.bytes_per_pixel(), k.width, low, size);
-  if (!view.mask.empty()) crop_rows(view.mask.coverage, 1, k.width, low, size);
-  view.image.width = view.mask.width = size.x;
-  view.image.height = view.mask.height = size.y;
-  cut({low, size}, k);
+  const Frame frame = kept_frame(box, margin, view.camera, multiple);
+  if (frame.size.x == k.width && frame.size.y == k.height) return;
+  crop_rows(view.image.bytes, std::size_t(view.image.bytes_per_pixel()), k.width, frame);
+  view.image.width = frame.size.x;
+  view.image.height = frame.size.y;
+  crop_mask(k.width, frame, view.mask);
+  crop_silhouette(k.width, frame, view.silhouette);
+  cut(frame, k);
 }
 
 Intrinsics cropped_intrinsics(const Box& box, int margin, const Camera& camera) {
   Intrinsics k = camera.intrinsics;
-  cut(kept_frame(box, margin, camera), k);
+  cut(kept_frame(box, margin, camera, 1), k);
   return k;
 }
 

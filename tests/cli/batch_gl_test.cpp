@@ -155,7 +155,7 @@ TEST_F(BatchCommand, FramesFollowEachOtherInChains) {
   // Two processes: what follows waits for what it follows, and ends the same.
   succeed(with("plan", "job"));
   EXPECT_THAT(succeed({"run", path("job"), "--pieces", "2"}).out,
-              HasSubstr("1 follow frames that are not made yet"));
+              HasSubstr("1 go by others that are not made yet"));
   auto other = std::async(std::launch::async, [&] { return run_photohull({"run", path("job")}); });
   EXPECT_EQ(run_photohull({"run", path("job")}).code, 0);
   EXPECT_EQ(other.get().code, 0);

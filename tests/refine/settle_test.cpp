@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "support/analytic_volumes.h"
 #include "support/cameras.h"
 
 namespace photohull::refine {
@@ -127,6 +128,28 @@ TEST_F(Settle, AnswersOnTheFinerGrid) {
             (std::vector{Settled::kFlat, Settled::kSplit, Settled::kSplit}));
   EXPECT_EQ(SettledBricks().at(fine, positions),
             (std::vector{Settled::kSplit, Settled::kSplit, Settled::kSplit}));
+}
+
+TEST_F(Settle, OfAWholeDistancesTellWhatIsBelowPixels) {
+  // Pixels are voxels where the camera stands 100 away, and half of one is 0.5 there.
+  const SparseVolume ball = sample_volume({6, 6, 6}, sphere(dvec3(24), 16), dvec3(0), 1);
+  const auto kinds = [&](double near, double far) {
+    const std::vector<Camera> cameras = {
+        test::look_at(dvec3(24, 24, 40 + near), dvec3(24), 100, 400, 400, {0, 1, 0}),
+        test::look_at(dvec3(24, 24, 8 - far), dvec3(24), 100, 400, 400, {0, 1, 0})};
+    const SettledBricks settled = settled_below_pixels(ball, cameras, options_);
+    const std::vector<vec3> poles = {vec3(24, 24, 40), vec3(24, 24, 8)};
+    return settled.at(ball.grid, poles);
+  };
+  // Each pole looks at its own camera, however near the other one is.
+  EXPECT_EQ(kinds(80, 140)[0], Settled::kSplit);
+  EXPECT_EQ(kinds(80, 140)[1], Settled::kPixels);
+  EXPECT_EQ(kinds(140, 80)[0], Settled::kPixels);
+  EXPECT_EQ(kinds(140, 80)[1], Settled::kSplit);
+  EXPECT_EQ(settled_below_pixels(ball, {}, options_).count(Settled::kPixels), 0);
+  EXPECT_EQ(settled_below_pixels(ball, {}, options_).count(Settled::kSplit),
+            std::int64_t(ball.bricks.size()))
+      << "what no camera shows is not settled";
 }
 
 }  // namespace

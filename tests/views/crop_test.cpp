@@ -44,6 +44,36 @@ TEST(CropToBox, KeepsWhatEveryPointOfTheBoxSees) {
   }
 }
 
+TEST(CropToBox, SilhouettesGoWithThePixels) {
+  PreparedView view = numbered_view();
+  ViewSilhouette& silhouette = view.silhouette;
+  silhouette.widened = view.mask;
+  silhouette.distance = {100, 80, {}};
+  for (int i = 0; i < 100 * 80; ++i)
+    silhouette.distance.pixels.push_back(float(i % 100) - 0.5f * float(i / 100));
+  silhouette.lines = {{40, 35, 1, 0, 0.5f}, {2, 3, 0, 1, 0.7f}, {48.5f, 41.25f, 0, 1, 0.9f}};
+  for (const int multiple : {1, 8, 32}) {
+    PreparedView cropped = view;
+    crop_to_box({{-0.4, -0.3, -0.5}, {0.5, 0.2, 0.5}}, 3, cropped, multiple);
+    const int x = cropped.image.bytes[0], y = cropped.image.bytes[1];  // of the first pixel
+    EXPECT_EQ(x % multiple, 0);
+    EXPECT_EQ(y % multiple, 0);
+    EXPECT_EQ(cropped.camera.intrinsics.cx, 48.3 - x);
+    EXPECT_EQ(cropped.silhouette.widened.coverage, cropped.mask.coverage);
+    const SilhouetteDistance& distance = cropped.silhouette.distance;
+    ASSERT_EQ(distance.width, cropped.image.width);
+    ASSERT_EQ(distance.height, cropped.image.height);
+    ASSERT_EQ(distance.pixels.size(), std::size_t(distance.width) * std::size_t(distance.height));
+    EXPECT_EQ(distance.pixels.front(), float(x) - 0.5f * float(y));
+    EXPECT_EQ(distance.pixels.back(),
+              float(x + distance.width - 1) - 0.5f * float(y + distance.height - 1));
+    ASSERT_EQ(cropped.silhouette.lines.size(), 2u) << "one lies where nothing is left";
+    EXPECT_EQ(cropped.silhouette.lines[0].x, float(40 - x));
+    EXPECT_EQ(cropped.silhouette.lines[1].y, 41.25f - float(y));
+    EXPECT_EQ(cropped.silhouette.lines[1].width, 0.9f);
+  }
+}
+
 TEST(CropToBox, LeavesAViewThatCannotBeCut) {
   for (const Box& box : {Box{{-1, -1, -6}, {1, 1, 1}},         // partly behind the camera
                          Box{{90, 90, 0}, {91, 91, 1}},        // off the image

@@ -100,6 +100,40 @@ class DepthMapsTest : public ::testing::Test {
   GridSpec grid_{{3, 4, -5}, 0.1, {4, 3, 2}};
 };
 
+TEST_F(DepthMapsTest, WhatOtherMapsHoldIsDrawnInTheirUnit) {
+  const std::vector<GridCamera> cameras = random_cameras(3);
+  std::vector<DepthMap> others;
+  for (const GridCamera& camera : cameras) {
+    DepthMap& map = others.emplace_back();
+    map.size = {camera.width / 3 + 1, camera.height / 3 + 1};  // coarser texels
+    map.texels_per_pixel = 1 / 3.0f;
+    for (int i = 0; i < map.size.x * map.size.y; ++i)
+      map.depths.push_back(i % 5 == 0 ? std::numeric_limits<float>::infinity()
+                                      : 1 + 0.125f * float(i % 97));
+  }
+  DepthMaps maps(cameras, grid_);
+  maps.draw(others, 4);
+  for (std::size_t v = 0; v < cameras.size(); ++v) {
+    const DepthMap drawn = maps.map(v);
+    for (int y = 0; y < drawn.size.y; ++y)
+      for (int x = 0; x < drawn.size.x; ++x) {
+        const glm::dvec2 pixel = (glm::dvec2(x, y) + 0.5) / double(drawn.texels_per_pixel) - 0.5;
+        ASSERT_EQ(drawn.at(pixel), 4 * others[v].at(pixel)) << v << ' ' << x << ' ' << y;
+      }
+  }
+  // What is drawn later lies before it, or behind.
+  const std::vector<ivec3> voxels = random_voxels(200, cameras);
+  DepthMaps alone(cameras, grid_), both(cameras, grid_);
+  alone.draw(context_, cameras, voxels);
+  both.draw(others, 4);
+  both.draw(context_, cameras, voxels);
+  for (std::size_t v = 0; v < cameras.size(); ++v) {
+    const std::vector<float> under = maps.download(v), over = alone.download(v),
+                             found = both.download(v);
+    for (std::size_t i = 0; i < found.size(); ++i) ASSERT_EQ(found[i], std::min(under[i], over[i]));
+  }
+}
+
 TEST_F(DepthMapsTest, RandomVoxelsFromRandomCameras) {
   for (int trial = 0; trial < 5; ++trial) {
     const std::vector<GridCamera> cameras = random_cameras(6);

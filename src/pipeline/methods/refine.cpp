@@ -120,19 +120,21 @@ Surface carve(const SurfaceJob& job, SparseVolume) {
   const std::vector<carving::Silhouette> silhouettes = silhouettes_of(job.subject.views);
   // No hull is finer, and none is carved later as a rule: its textures go.
   const auto hull_at = [&](const GridSpec& grid) {
-    SparseVolume hull = job.hull.carve(grid);
+    // Of the whole something is there, and a part may be empty.
+    SparseVolume hull = job.part ? job.hull.carve_box(grid, job.subject.box) : job.hull.carve(grid);
     if (grid.voxel_size == job.subject.grid.voxel_size) job.hull.release_textures();
     return hull;
   };
   const refine::RefineOptions options = parameters_of(job).refine;
   std::optional<refine::WholeSurface> whole;
   if (job.part)
-    whole.emplace(refine::WholeSurface{job.part->near, job.options.finer, job.beside});
+    whole.emplace(
+        refine::WholeSurface{job.part->near, job.part->first_voxel, job.options.finer, job.beside});
   const auto shared = shared_work_of(job, {*job.images, cameras, options.noise_sigma}, checkpoint);
   out.volume =
       refine::refine_surface(job.context,
                              {job.subject.grid, hull_at, silhouettes, *job.images, cameras,
-                              job.larger, job.before, whole ? &*whole : nullptr, shared.get()},
+                              job.larger, job.before, shared.get(), whole ? &*whole : nullptr},
                              options, job.progress, &counts, checkpoint ? &*checkpoint : nullptr);
   out.findings = findings_of(counts);
   if (job.before && !counts.followed)
@@ -140,7 +142,7 @@ Surface carve(const SurfaceJob& job, SparseVolume) {
                              job.bounded
                                  ? ": too much lies elsewhere now, so the surface was found anew"
                                  : ": without masks the surface is found anew"));
-  check_found(job, out.volume, counts);
+  if (!job.part) check_found(job, out.volume, counts);
   return out;
 }
 

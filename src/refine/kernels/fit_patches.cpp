@@ -53,9 +53,11 @@ class Fitter {
 
   std::vector<PatchFit> fit(std::span<const render::SurfacePoint> surfels,
                             std::span<const glm::vec3> bends, const Buffer& choices) const {
+    const glm::vec3 first(options_.first_voxel);
     std::vector<shaders::FitShape> shapes;
     for (std::size_t i = 0; i < surfels.size(); ++i)
-      shapes.push_back({glm::vec4(bends[i], holds_out(surfels[i].position, options_.hold_out))});
+      shapes.push_back(
+          {glm::vec4(bends[i], holds_out(surfels[i].position + first, options_.hold_out))});
     const auto program =
         gpu::Program::compute(context_, "refine_fit_patches.comp.glsl", views_.defines());
     const shaders::FitParameters parameters =

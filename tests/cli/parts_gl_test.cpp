@@ -1,0 +1,143 @@
+// plan, batch and run with parts: a whole on coarser voxels, its parts on finer ones, joined.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "batch_scenes.h"
+#include "io/mesh/read_mesh.h"
+#include "pipeline/join_parts.h"
+#include "support/analytic_volumes.h"
+#include "support/places.h"
+#include "volume/write_vdb.h"
+
+namespace photohull::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// How two volumes on one grid differ near the surface of either, in voxels.
+struct Difference {
+  double mean = 0, far = 0;  ///< far: share of the voxels that differ by a quarter or more
+};
+
+Difference difference(const SparseVolume& a, const SparseVolume& b) {
+  const glm::ivec3 n = a.grid.voxels();
+  double sum = 0, far = 0, count = 0;
+  for (int x = 0; x < n.x; ++x)
+    for (int y = 0; y < n.y; ++y)
+      for (int z = 0; z < n.z; ++z) {
+        const double p = double(a.at({x, y, z})), q = double(b.at({x, y, z}));
+        if (std::min(std::abs(p), std::abs(q)) > 1) continue;
+        sum += std::abs(p - q), far += std::abs(p - q) > 0.25, ++count;
+      }
+  return {sum / count, far / count};
+}
+
+class Parts : public BatchScenes {
+ protected:
+  static std::string temple() { return in_checkout("datasets/templeSparseRing"); }
+  json report(const std::string& folder) const {
+    return json::parse(read_bytes(folder_ / folder / "report.json"));
+  }
+};
+
+TEST_F(Parts, TogetherAreTheWholeInOnePiece) {
+  const Finished run = succeed({"batch", temple(), "--resolution", "80", "--parts", "3",
+                                "--report-page", "off", "--out", path("job")});
+  EXPECT_THAT(run.out, HasSubstr("5 scenes, 0 of them made before"));
+  const std::string name = "job/templeSparseRing";
+  // The same voxels, of one part, are what parts are to be.
+  succeed({"reconstruct", temple(), "--follow", path(name + ".whole"), "--part", "1/1", "--out",
+           path("one")});
+  const SparseVolume joined = read_vdb_surface(folder_ / name / "volume.vdb"),
+                     one = read_vdb_surface(folder_ / "one/volume.vdb");
+  ASSERT_EQ(joined.grid.bricks, one.grid.bricks);
+  EXPECT_LT(glm::distance(joined.grid.origin, one.grid.origin), 1e-9);
+  const Difference d = difference(joined, one);
+  EXPECT_LT(d.mean, 0.1);
+  EXPECT_LT(d.far, 0.1);
+  EXPECT_NEAR(double(joined.inside_voxels()), double(one.inside_voxels()),
+              0.005 * double(one.inside_voxels()));
+  const json told = report(name);
+  EXPECT_EQ(told["mesh"]["open_edges"], 0);
+  EXPECT_GT(told["mesh"]["seam_vertices"], 50);
+  EXPECT_EQ(told["parts"].size(), 3u);
+  EXPECT_EQ(told["verdict"], report(name + ".whole")["verdict"]);
+  const TriMesh mesh = read_mesh(folder_ / name / "mesh.ply");
+  EXPECT_EQ(open_edges(mesh), 0u);
+  EXPECT_EQ(mesh.colours.size(), mesh.positions.size());
+  EXPECT_EQ(mesh.triangles.size(), told["mesh"]["triangles"]);
+
+  // Where memory does not suffice, the parts are listed.
+  std::vector<fs::path> parts;
+  for (const json& part : told["parts"])
+    parts.push_back(folder_ / "job" / part["folder"].get<std::string>());
+  Progress progress;
+  const pipeline::JoinedParts apart = pipeline::join_parts(
+      folder_ / (name + ".whole"), parts, folder_ / "apart", std::int64_t(1000), progress);
+  EXPECT_FALSE(apart.joined);
+  EXPECT_EQ(report("apart")["parts"], told["parts"]);
+  EXPECT_FALSE(fs::exists(folder_ / "apart/volume.vdb"));
+
+  // A part that was lost is made again, and joined to the same model.
+  const std::string before = read_bytes(folder_ / name / "mesh.ply");
+  fs::remove(folder_ / (name + ".part2/volume.vdb"));
+  EXPECT_THAT(succeed({"batch", temple(), "--resolution", "80", "--parts", "3", "--report-page",
+                       "off", "--out", path("job")})
+                  .out,
+              HasSubstr("5 scenes, 3 of them made before"));
+  EXPECT_EQ(read_bytes(folder_ / name / "mesh.ply"), before);
+}
+
+TEST_F(Parts, WithoutTheWholeThereAreNone) {
+  write_masks("nothing", 0, 0);
+  const Finished run =
+      run_photohull({"batch", scene(), "--masks", path("nothing"), "--resolution", "32", "--parts",
+                     "2", "--report-page", "off", "--out", path("job")});
+  EXPECT_EQ(run.code, 1);
+  EXPECT_THAT(run.err,
+              AllOf(HasSubstr(".part1: "), HasSubstr("has no result, of which this is a part"),
+                    HasSubstr("without which the parts cannot be joined"),
+                    HasSubstr("4 of 4 scenes have no result")));
+}
+
+TEST_F(Parts, WhatGoesWithNoPartsIsRefused) {
+  const auto refusal = [&](Arguments arguments) {
+    arguments.insert(arguments.end(), {"--out", path("job")});
+    const Finished run = run_photohull(arguments);
+    EXPECT_EQ(run.code, 2) << run.err;
+    return run.err;
+  };
+  EXPECT_THAT(refusal({"plan", scene(), "--parts", "4"}),
+              HasSubstr("give --resolution or --voxel-size"));
+  EXPECT_THAT(refusal({"plan", scene(), "--parts", "4", "--resolution", "64", "--frames", "1-2"}),
+              HasSubstr("--parts and --frames exclude each other"));
+  EXPECT_THAT(refusal({"plan", scene(), "--parts", "4", "--resolution", "64", "--method", "hull"}),
+              HasSubstr("--method hull"));
+  EXPECT_THAT(refusal({"plan", scene(), "--parts", "4", "--resolution", "64", "--export", "glb"}),
+              HasSubstr("--export"));
+  EXPECT_THAT(refusal({"reconstruct", scene(), "--part", "1/2"}), HasSubstr("--follow"));
+  EXPECT_THAT(refusal({"reconstruct", scene(), "--part", "3/2", "--follow", path("x")}),
+              HasSubstr("a part and their number, such as 3/8"));
+  EXPECT_THAT(refusal({"reconstruct", scene(), "--part", "1/2", "--follow", path("x"),
+                       "--resolution", "64"}),
+              HasSubstr("--resolution is the whole's matter"));
+  const Finished missing = run_photohull(
+      {"reconstruct", scene(), "--part", "1/2", "--follow", path("x"), "--out", path("job")});
+  EXPECT_EQ(missing.code, 1);
+  EXPECT_THAT(missing.err, HasSubstr("there is no such folder"));
+  succeed({"reconstruct", scene(), "--masks", path("cutouts"), "--resolution", "20",
+           "--report-page", "off", "--out", path("small")});
+  const Finished many = run_photohull({"reconstruct", scene(), "--masks", path("cutouts"), "--part",
+                                       "1/900", "--follow", path("small"), "--out", path("job")});
+  EXPECT_EQ(many.code, 1);
+  EXPECT_THAT(many.err, HasSubstr("too few for so many parts"));
+}
+
+}  // namespace
+}  // namespace photohull::test
