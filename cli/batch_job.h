@@ -37,8 +37,4 @@ struct BatchOptions {
 void run_batch(const std::vector<BatchPiece>& pieces, const batch::Store& store,
                const BatchOptions& options);
 
-/// The table of what is there, and the sum of it. Throws as run_batch does, and Error where pieces
-/// are not made yet.
-void merge_batch(const std::vector<std::string>& names, const batch::Store& store);
-
 }  // namespace photohull::cli

@@ -39,6 +39,7 @@ void add_batch(CLI::App& app) {
       "  photohull batch plants/*/ --out out/plants --method hull --resolution 256\n"
       "  photohull batch --list plants.txt --out out/plants\n"
       "  photohull batch rig.json --images \"frames/{frame}\" --frames 0000-0299 --out out/dance\n"
+      "  photohull batch statue.json --resolution 6000 --parts 8 --out out/statue\n"
       "  srun -n 8 photohull batch --list plants.txt --out /shared/plants");
   c->callback([a] { run_command(*a); });
 }

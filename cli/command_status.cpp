@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "batch_arguments.h"
+#include "batch_overview.h"
 #include "cli/front/command_table.h"
 #include "commands.h"
 

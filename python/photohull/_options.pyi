@@ -125,6 +125,11 @@ class ReconstructOptions(TypedDict, total=False):
     follow: str | float | os.PathLike[str] | None
     # results of the same rig: their cameras and gains hold, and nothing of them is measured again.
     rig: str | float | os.PathLike[str] | None
+    # of the whole whose results are followed, on voxels that are halved, one part of so many, for
+    # models larger than memory ('photohull plan' with parts makes them all). Default: all.
+    part: str | float | os.PathLike[str] | None
+    # how often the whole's voxels are halved for its parts. Default: 1.
+    finer: int | None
     # at which photographs are read; auto: what the voxels need, and the memory bears. Default: auto.
     image_scale: float | str | None
     # memory that the job may take; auto: three quarters of what is available (bytes). Default: auto.

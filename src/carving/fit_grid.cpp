@@ -25,7 +25,8 @@ glm::ivec3 bricks_for(const glm::dvec3& voxels, double voxel_size) {
                        " x ", bricks.y * kBrickEdge, " x ", bricks.z * kBrickEdge,
                        " voxels, whose index alone takes ", std::ceil(count * 4 / 1048576),
                        " MiB; choose a lower ", option_word("resolution"), ", a larger ",
-                       option_word("voxel_size"), " or a smaller ", option_word("box")));
+                       option_word("voxel_size"), " or a smaller ", option_word("box"),
+                       ", or make it in parts ('photohull batch' with ", option_word("parts"), ")"));
   return glm::ivec3(bricks);
 }
 

@@ -144,8 +144,9 @@ void check_memory(std::int64_t bytes, std::int64_t limit) {
   };
   throw Error(concat("this job would take about ", text(bytes), " of memory, but may take ",
                      text(limit), " (", option_word("max_memory"), "); lower ",
-                     option_word("resolution"), " or ", option_word("image_scale"),
-                     ", or use fewer ", option_word("views")));
+                     option_word("resolution"), " or ", option_word("image_scale"), ", use fewer ",
+                     option_word("views"), ", or make it in parts ('photohull batch' with ",
+                     option_word("parts"), ")"));
 }
 
 std::string explain_empty_hull(const Box& box, std::span<const PreparedView> views,

@@ -73,13 +73,13 @@ EarlierResults read_earlier(const ReconstructOptions& options) {
   EarlierResults out;
   if (!options.rig_folder().empty()) out.rig = read_rig(options.rig_folder());
   if (options.follow.empty()) return out;
-  ResultReport report = read_report(options.follow);
   SparseVolume volume = read_vdb_surface(options.follow / "volume.vdb");
   if (options.part) {
+    WholeReport report = read_whole_report(options.follow);
     out.part = cut_part(volume, report.box, *options.part, options.finer);
     out.verdict = std::move(report.verdict);
   } else {
-    out.before = {std::move(volume), report.followed};
+    out.before = {std::move(volume), read_report(options.follow).followed};
   }
   return out;
 }

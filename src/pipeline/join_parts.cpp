@@ -97,7 +97,7 @@ JoinedParts join_parts(const fs::path& whole, const std::vector<fs::path>& parts
   for (const char* key : kOfTheWhole)
     if (of_whole.contains(key)) report[key] = of_whole[key];
   JoinedParts out;
-  out.verdict = read_report(whole).verdict;
+  out.verdict = read_whole_report(whole).verdict;
   out.views = of_whole.at("scene").at("views");
   const GridSpec grid = joined_grid(volumes_of(parts));
   out.voxel_size = grid.voxel_size;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <limits>
 #include <span>
 #include <utility>
@@ -139,19 +138,6 @@ bool may_show(const Camera& camera, const Box& box) {
 }
 
 }  // namespace
-
-std::string to_string(const PartNumber& part) { return concat(part.number, "/", part.count); }
-
-std::optional<PartNumber> parse_part(const std::string& text) {
-  PartNumber out;
-  const char* end = text.data() + text.size();
-  const auto [bar, fault] = std::from_chars(text.data(), end, out.number);
-  if (fault != std::errc() || bar == end || *bar != '/') return std::nullopt;
-  const auto [last, other] = std::from_chars(bar + 1, end, out.count);
-  const bool legal = out.number >= 1 && out.number <= out.count && out.count <= PartNumber::kMost;
-  if (other != std::errc() || last != end || !legal) return std::nullopt;
-  return out;
-}
 
 BrickRange range_of_part(const SparseVolume& whole, const PartNumber& part) {
   std::vector<ivec3> bricks = whole.bricks;

@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "core/describe.h"
+
 namespace photohull::pipeline {
 
 struct PartNumber {
@@ -15,5 +17,7 @@ struct PartNumber {
 std::string to_string(const PartNumber& part);
 /// Nothing: the text is none.
 std::optional<PartNumber> parse_part(const std::string& text);
+/// The same as an option, which is "all" where there is none.
+Words part_words(std::optional<PartNumber>& part);
 
 }  // namespace photohull::pipeline

@@ -188,7 +188,12 @@ ResultReport read_report(const fs::path& folder) {
   if (followed != root.end() && !followed->is_boolean())
     report.fail("\"followed\" is neither true nor false");
   return {read_look(report), photometric == root.end() ? std::string() : photometric->dump(),
-          followed != root.end() && followed->get<bool>(), read_box(report), read_verdict(report)};
+          followed != root.end() && followed->get<bool>()};
+}
+
+WholeReport read_whole_report(const fs::path& folder) {
+  const ReportFile report(report_of(folder));
+  return {read_box(report), read_verdict(report)};
 }
 
 ResultModel read_result(const fs::path& folder) {

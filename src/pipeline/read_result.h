@@ -25,10 +25,15 @@ struct ResultReport {
   LookFindings look;
   std::string photometric;  ///< JSON (pipeline/photometric.h); empty: it was not asked for
   bool followed = false;    ///< RefineFindings::followed
-  Box box;                  ///< that was reconstructed
-  VerdictFindings verdict;  ///< its level, and as JSON
 };
 ResultReport read_report(const std::filesystem::path& folder);
+
+/// What it tells of a whole that parts are made of. Throws as read_result does.
+struct WholeReport {
+  Box box;                  ///< that was reconstructed
+  VerdictFindings verdict;  ///< and as JSON
+};
+WholeReport read_whole_report(const std::filesystem::path& folder);
 
 /// The model of a folder that `write` wrote: from mesh.glb where the report says that it has a
 /// texture, else from mesh.ply. Normals are there. Throws Error where there is no such folder,

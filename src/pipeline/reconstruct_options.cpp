@@ -109,15 +109,6 @@ Words mesh_error_words(MeshError& error) {
           }};
 }
 
-Words part_words(std::optional<PartNumber>& part) {
-  return {[&part] { return part ? to_string(*part) : std::string("all"); },
-          [&part](const std::string& text) {
-            const std::optional<PartNumber> read = parse_part(text);
-            if (read || text == "all") part = read;
-            return read || text == "all";
-          }};
-}
-
 Words mask_hole_words(bool& keep) {
   return {[&keep] { return std::string(keep ? "keep" : "mend"); },
           [&keep](const std::string& text) {

@@ -24,7 +24,7 @@ DRAFT = {
 # Tags want more pixels.
 SHEET = {"--size": "640x480", "--views": "8"}
 # Values that fit the stand-in, for options that are there.
-FITTING = {"--voxel-size": "0.08", "--box": BOX, "--samples": "2000", "--frames": "4"}
+FITTING = {"--voxel-size": "0.08", "--box": BOX, "--samples": "2000", "--frames": "4", "--parts": "2"}
 WRITES = ("reconstruct", "synthesize", "masks", "chart", "stress")  # want --out, also where sentences leave it out
 READS = ("reconstruct", "masks", "info")  # want a scene
 

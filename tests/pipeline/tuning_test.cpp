@@ -145,7 +145,7 @@ TEST(Tune, ReachesEveryField) {
   expect_all_described<refine::LookOptions>();
   expect_all_described<refine::SeatOptions>();
   expect_all_described<refine::SettleOptions>();
-  expect_all_described<refine::FitOptions>();
+  expect_all_described<refine::FitOptions>(1);  // first_voxel: follows the part
   expect_all_described<refine::PeakOptions>();
   expect_all_described<refine::RegularizeOptions>();
   expect_all_described<SharpenOptions>();
