@@ -1,14 +1,12 @@
 #include "pipeline/part.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
-#include <span>
-#include <utility>
-#include <vector>
+#include <optional>
 
 #include "core/error.h"
 #include "core/option_word.h"
+#include "mesh/simplify_mesh.h"
 #include "pipeline/place_lattice.h"
 #include "projtex/photographs.h"
 #include "views/crop.h"
@@ -73,33 +71,6 @@ GridSpec finer(const GridSpec& whole, const BrickRange& range, int levels) {
     out.voxel_size /= 2;
     out.origin -= 0.5 * out.voxel_size;
     out.bricks *= 2;
-  }
-  return out;
-}
-
-/// The triangles that are asked for, with what their corners have.
-template <typename IsWanted>
-TriMesh some_of(const TriMesh& mesh, const IsWanted& is_wanted) {
-  TriMesh out;
-  out.origin = mesh.origin;
-  std::vector<std::uint32_t> number(mesh.positions.size(), 0);  // from 1
-  const auto copy = [](const auto& from, std::uint32_t vertex, auto& to) {
-    if (!from.empty()) to.push_back(from[vertex]);
-  };
-  for (const auto& t : mesh.triangles) {
-    if (!is_wanted(t)) continue;
-    auto& corners = out.triangles.emplace_back();
-    for (std::size_t i = 0; i < t.size(); ++i) {
-      std::uint32_t& n = number[t[i]];
-      if (n == 0) {
-        copy(mesh.positions, t[i], out.positions);
-        copy(mesh.normals, t[i], out.normals);
-        copy(mesh.colours, t[i], out.colours);
-        copy(mesh.confidence, t[i], out.confidence);
-        n = std::uint32_t(out.positions.size());
-      }
-      corners[i] = n - 1;
-    }
   }
   return out;
 }
@@ -201,13 +172,15 @@ SparseVolume own_of(const Part& part, const SparseVolume& volume) {
   return within(volume, part.own);
 }
 
-TriMesh own_of(const Part& part, const TriMesh& mesh) {
+TriMesh own_of(const Part& part, TriMesh mesh) {
   const GridSpec& grid = part.grid;
-  return some_of(mesh, [&](const std::array<std::uint32_t, 3>& t) {
+  std::erase_if(mesh.triangles, [&](const auto& t) {
     const glm::dvec3 middle = (mesh.world(t[0]) + mesh.world(t[1]) + mesh.world(t[2])) / 3.0;
     const glm::dvec3 voxel = glm::floor((middle - grid.origin) / grid.voxel_size + 0.5);
-    return part.own.contains(ivec3(glm::floor(voxel / double(kBrickEdge))));
+    return !part.own.contains(ivec3(glm::floor(voxel / double(kBrickEdge))));
   });
+  keep_used_vertices(mesh);
+  return mesh;
 }
 
 std::vector<PreparedView> views_of(const Part& part, std::vector<PreparedView> views) {

@@ -2,9 +2,8 @@
 // part.
 #pragma once
 
-#include <vector>
-
 #include <span>
+#include <vector>
 
 #include "core/box.h"
 #include "core/camera.h"
@@ -58,7 +57,7 @@ std::vector<DepthMap> depths_beside(gpu::Context& context, const Part& part,
 /// What of a volume on the part's grid is its own; the rest is outside.
 SparseVolume own_of(const Part& part, const SparseVolume& volume);
 /// The triangles of a mesh whose middles lie in what is the part's own.
-TriMesh own_of(const Part& part, const TriMesh& mesh);
+TriMesh own_of(const Part& part, TriMesh mesh);
 
 /// Views that may show something of the part, without the pixels that do not. Throws Error where
 /// fewer than two are left.

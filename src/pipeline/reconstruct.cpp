@@ -209,7 +209,7 @@ class Carver {
 
   /// What is the part's own, and the whole's verdict: photographs show more than a part.
   void take_own(OpenSurface& surface) {
-    surface.mesh = own_of(*part(), surface.mesh);
+    surface.mesh = own_of(*part(), std::move(surface.mesh));
     surface.seen = {};
     run_.report.verdict = run_.earlier.verdict;
   }

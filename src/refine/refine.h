@@ -172,8 +172,8 @@ using HullAt = std::function<SparseVolume(const GridSpec&)>;
 /// The surface of a whole scene on coarser voxels, of which a part is refined.
 struct WholeSurface {
   const SparseVolume& volume;
-  glm::ivec3 first_voxel{
-      0};          ///< of the whole's grid at the part's voxels, that the part's begins with
+  /// Of the whole's grid at the part's voxels: that the part's grid begins with.
+  glm::ivec3 first_voxel{0};
   int levels = 1;  ///< by which the part's voxels are finer, each halves them
   /// Of each camera, in world units: what of the surface lies outside the part's grid.
   std::span<const DepthMap> beside;

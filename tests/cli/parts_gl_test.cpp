@@ -84,6 +84,19 @@ TEST_F(Parts, TogetherAreTheWholeInOnePiece) {
   EXPECT_EQ(report("apart")["parts"], told["parts"]);
   EXPECT_FALSE(fs::exists(folder_ / "apart/volume.vdb"));
 
+  // A part in which nothing is left changes nothing.
+  fs::create_directories(folder_ / "empty");
+  json nothing = report(name + ".part1");
+  nothing["mesh"]["triangles"] = 0;
+  write_bytes(folder_ / "empty/report.json", nothing.dump());
+  write_bytes(folder_ / "empty/mesh.ply", "");
+  fs::copy_file(parts.front() / "volume.vdb", folder_ / "empty/volume.vdb");
+  std::vector<fs::path> more = parts;
+  more.push_back(folder_ / "empty");
+  EXPECT_EQ(pipeline::join_parts(folder_ / (name + ".whole"), more, folder_ / "with", {}, progress)
+                .triangles,
+            apart.triangles + told["mesh"]["triangles"].get<std::int64_t>());
+
   // A part that was lost is made again, and joined to the same model.
   const std::string before = read_bytes(folder_ / name / "mesh.ply");
   fs::remove(folder_ / (name + ".part2/volume.vdb"));
