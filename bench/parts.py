@@ -1,6 +1,6 @@
 """What models in parts cost and how they differ: time, memory, accuracy, and what lies where parts meet.
 
-    python3 -m bench parts [--scene FOLDER] [--resolutions 256,512,1024] [--parts 1,2,4,8] [--repeat 1] [--out FILE]
+    python3 -m bench parts [--scene FOLDER] [--resolutions 256,512,1024] [--parts 1,2,4] [--repeat 1] [--out FILE]
 
 A scene is reconstructed at once, and by `batch --parts` in each number of parts. The table is in
 docs/measurements/benchmarks.md: processor time of all pieces together and of `reconstruct`, the largest peak of memory of
@@ -23,7 +23,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_program(parser)
     parser.add_argument("--scene", type=Path, default=DATASETS / "armadillo", help="(default: the shared armadillo)")
     parser.add_argument("--resolutions", type=listed, default=["256", "512", "1024"], help="voxels along the longest side")
-    parser.add_argument("--parts", type=listed, default=["1", "2", "4", "8"], help="numbers of parts, 1 among them")
+    parser.add_argument("--parts", type=listed, default=["1", "2", "4"], help="numbers of parts, 1 among them")
     parser.add_argument("--repeat", type=int, default=1, help="runs of each, of which the median counts")
     parser.add_argument("--out", type=Path, help="file for the figures")
 
