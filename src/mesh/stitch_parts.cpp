@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/gtx/hash.hpp>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <unordered_map>
@@ -18,7 +19,8 @@
 namespace photohull {
 namespace {
 
-constexpr std::size_t kLongestGap = 24;  // edges: more are no gap between parts
+constexpr std::size_t kLongestGap = 1000;  // edges: more are no gap between parts
+constexpr double kWidestGap = 8;           // times the reach, from one part to the other
 
 /// Sides that no triangle runs along the other way, in order.
 std::vector<Side> border_of(const TriMesh& mesh) {
@@ -40,6 +42,8 @@ void drop_doubled(TriMesh& mesh) {
   std::size_t triangle = 0;
   std::erase_if(mesh.triangles, [&](const auto&) { return doubled[triangle++]; });
 }
+
+constexpr std::uint32_t kSeam = std::numeric_limits<std::uint32_t>::max();  // of several parts
 
 /// A vertex at the border of a part.
 struct BorderVertex {
@@ -167,20 +171,40 @@ class Loops {
   std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> next_;
 };
 
-/// A triangle, or triangles from the loop's middle to its sides, which run the other way.
-void fill(const std::vector<std::uint32_t>& loop, TriMesh& mesh) {
-  if (loop.size() == 3) {
-    mesh.triangles.push_back({loop[0], loop[2], loop[1]});
-    return;
-  }
-  const auto middle = std::uint32_t(mesh.positions.size());
-  const auto add = [&](auto& values) {
-    if (!values.empty()) values.push_back(values[loop.front()]);
+/// Is what a loop goes around a gap between parts, whose borders are near each other all along it?
+/// `parts`: of the vertices, and kSeam of those that several have.
+bool is_gap(const std::vector<std::uint32_t>& loop, const std::vector<std::uint32_t>& parts,
+            const TriMesh& mesh, double reach) {
+  if (loop.size() < 3) return false;
+  return std::ranges::all_of(loop, [&](std::uint32_t a) {
+    return parts[a] == kSeam || std::ranges::any_of(loop, [&](std::uint32_t b) {
+             return parts[b] != parts[a] &&
+                    double(glm::distance(mesh.positions[a], mesh.positions[b])) <=
+                        kWidestGap * reach;
+           });
+  });
+}
+
+/// Triangles that fill a loop, and run the other way: the corner whose neighbours are nearest to
+/// each other is cut off again and again, but for neighbours that a side of the mesh (`sides`)
+/// joins already.
+void fill(std::vector<std::uint32_t> loop, const std::vector<Side>& sides, TriMesh& mesh) {
+  const auto joined = [&](std::uint32_t a, std::uint32_t b) {
+    return opposite(sides, {a, b, 0}) || opposite(sides, {b, a, 0});
   };
-  add(mesh.positions), add(mesh.normals), add(mesh.colours), add(mesh.confidence);
-  average(loop, middle, mesh);
-  for (std::size_t i = 0; i < loop.size(); ++i)
-    mesh.triangles.push_back({middle, loop[(i + 1) % loop.size()], loop[i]});
+  while (loop.size() > 3) {
+    const std::size_t n = loop.size();
+    std::size_t best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::uint32_t before = loop[(i + n - 1) % n], after = loop[(i + 1) % n];
+      const double length = double(glm::distance(mesh.positions[before], mesh.positions[after]));
+      if (length < least && !joined(before, after)) best = i, least = length;
+    }
+    mesh.triangles.push_back({loop[(best + 1) % n], loop[best], loop[(best + n - 1) % n]});
+    loop.erase(loop.begin() + std::ptrdiff_t(best));
+  }
+  mesh.triangles.push_back({loop[2], loop[1], loop[0]});
 }
 
 }  // namespace
@@ -189,6 +213,7 @@ Stitched stitch_parts(std::vector<TriMesh> parts, double reach) {
   PHOTOHULL_CHECK_OP(reach, >, 0.0);
   Stitched out;
   std::vector<BorderVertex> border;
+  std::vector<std::uint32_t> part_of;  // of each vertex
   for (std::size_t part = 0; part < parts.size(); ++part) {
     const auto first = std::uint32_t(out.mesh.positions.size());
     std::vector<std::uint32_t> vertices;
@@ -198,15 +223,15 @@ Stitched stitch_parts(std::vector<TriMesh> parts, double reach) {
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     for (const std::uint32_t v : vertices) border.push_back({first + v, part});
     append_mesh(parts[part], out.mesh);
+    part_of.resize(out.mesh.positions.size(), std::uint32_t(part));
     parts[part] = {};
   }
   std::vector<std::uint32_t> stands_for(out.mesh.positions.size());
   std::iota(stands_for.begin(), stands_for.end(), 0u);
-  std::vector<bool> at_seam(stands_for.size(), false);
   for (const std::vector<std::uint32_t>& set : Seam(out.mesh, border, reach).sets()) {
     average(set, set.front(), out.mesh);
     for (const std::uint32_t v : set) stands_for[v] = set.front();
-    at_seam[set.front()] = true;
+    part_of[set.front()] = kSeam;
     ++out.seam_vertices;
   }
   for (auto& t : out.mesh.triangles)
@@ -214,18 +239,16 @@ Stitched stitch_parts(std::vector<TriMesh> parts, double reach) {
   std::erase_if(out.mesh.triangles,
                 [](const auto& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
   drop_doubled(out.mesh);
-  const std::vector<Side> open = border_of(out.mesh);
+  const std::vector<Side> sides = sorted_sides(out.mesh.triangles), open = border_of(out.mesh);
   Loops loops(open);
   for (const Side& side : open)
-    loops.walk(side.from, [&](const std::vector<std::uint32_t>& loop) {
-      const bool gap = loop.size() >= 3 &&
-                       std::ranges::any_of(loop, [&](std::uint32_t v) { return at_seam[v]; });
-      if (!gap) return;
-      fill(loop, out.mesh);
+    loops.walk(side.from, [&](std::vector<std::uint32_t> loop) {
+      if (!is_gap(loop, part_of, out.mesh, reach)) return;
+      fill(std::move(loop), sides, out.mesh);
       ++out.filled;
     });
   for (const Side& side : border_of(out.mesh))
-    out.open_edges += at_seam[side.from] || at_seam[side.to];
+    out.open_edges += part_of[side.from] == kSeam || part_of[side.to] == kSeam;
   keep_used_vertices(out.mesh);
   return out;
 }

@@ -79,6 +79,24 @@ TEST(StitchParts, PartsThatDifferAtTheirBordersAreClosed) {
   }
 }
 
+TEST(StitchParts, LongGapsBetweenPartsAreFilledFromSideToSide) {
+  // One part ends up to two voxels before the other begins, on half of the way around.
+  const TriMesh whole = ball();
+  std::vector<TriMesh> parts = parts_of(whole, 2, 0.05);
+  std::erase_if(parts[0].triangles, [&](const auto& t) {
+    const glm::dvec3 p = parts[0].world(t[0]);
+    return p.y > kCentre.y && p.x < kCentre.x + 2.2;
+  });
+  keep_used_vertices(parts[0]);
+  const Stitched stitched = stitch_parts(parts, 0.75);
+  EXPECT_EQ(stitched.open_edges, 0u);
+  EXPECT_EQ(open_edges(stitched.mesh), 0u);
+  EXPECT_NEAR(volume_of(stitched.mesh), volume_of(whole), 0.01 * volume_of(whole));
+  for (const auto& [a, b, c] : stitched.mesh.triangles)
+    for (const auto& [p, q] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)})
+      EXPECT_LT(glm::distance(stitched.mesh.positions[p], stitched.mesh.positions[q]), 4);
+}
+
 TEST(StitchParts, TheSeamIsInTheMiddleAndHasBothColours) {
   const Stitched stitched = stitch_parts(parts_of(ball(), 2, 0), 0.75);
   std::size_t mixed = 0;
