@@ -34,7 +34,7 @@ struct SurfaceJob {
   Progress& progress;
   projtex::OutOfCorePhotographs* larger = nullptr;  ///< to match the surface in; may be null
   const refine::MomentBefore* before = nullptr;     ///< the surface a moment ago; may be null
-  const Part* part = nullptr;  ///< of a whole, that is carved alone; null: the whole is
+  const Part* part = nullptr;          ///< of a whole, that is carved alone; null: the whole is
   std::span<const DepthMap> beside{};  ///< the part, of each of the subject's views (depths_beside)
 };
 
