@@ -24,7 +24,7 @@ using nlohmann::ordered_json;
 
 constexpr double kReach = 0.75;  // voxels between vertices of two parts that are the same
 // Of a mesh in memory, for each byte of its file: doubles of what are floats there, and its border.
-constexpr std::int64_t kMeshBytes = 4, kVolumeBytes = 2;
+constexpr std::int64_t kMeshBytes = 6, kVolumeBytes = 2;
 
 /// What is the whole's in its report, and not how it was made.
 constexpr const char* kOfTheWhole[] = {
