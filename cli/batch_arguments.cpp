@@ -78,19 +78,21 @@ void make_coarser(int times, pipeline::ReconstructOptions& job) {
 
 /// A scene's whole, its parts, and what joins them. Throws UsageError where the voxels' size is not
 /// given, or other options do not go with parts.
-std::vector<BatchPiece> in_parts(const BatchPiece& scene, int count, const std::string& out) {
+std::vector<BatchPiece> in_parts(const BatchPiece& scene, int count, int finer,
+                                 const std::string& out) {
   if (!scene.job.resolution && !scene.job.voxel_size)
     throw UsageError(concat("--parts: give --resolution or --voxel-size, for the whole of ",
                             scene.name, " is made on coarser voxels"));
   std::vector<BatchPiece> pieces{scene};
   BatchPiece& whole = pieces.back();
   whole.name += ".whole";
-  make_coarser(scene.job.finer, whole.job);
+  make_coarser(finer, whole.job);
   BatchPiece joined = scene;
   joined.joins.push_back(whole.name);
   BatchPiece part = scene;
   part.job.resolution.reset();
   part.job.voxel_size.reset();
+  part.job.finer = finer;
   part.job.follow = std::filesystem::path(out) / whole.name;
   const std::size_t digits = std::to_string(count).size();
   for (int number = 1; number <= count; ++number) {
@@ -105,6 +107,7 @@ std::vector<BatchPiece> in_parts(const BatchPiece& scene, int count, const std::
   return pieces;
 }
 
+/// Those of parts may be those of other scenes.
 void check_names(const std::vector<BatchPiece>& pieces) {
   std::vector<batch::Piece> named;
   for (const BatchPiece& piece : pieces) named.push_back({piece.name, {}, {}, piece.scene});
@@ -153,7 +156,9 @@ void BatchArguments::add_to(CLI::App& command) {
 
 std::vector<BatchPiece> BatchArguments::pieces() const {
   if (out.empty()) throw UsageError("--out is empty: give a folder for the results");
-  job.validate();
+  pipeline::ReconstructOptions usual = job;
+  if (parts > 0) usual.finer = 1;  // of the whole
+  usual.validate();
   std::vector<batch::Piece> given = batch::pieces_of_scenes(scenes);
   if (!list.empty()) {
     const std::vector<batch::Piece> listed = batch::read_piece_list(list);
@@ -175,7 +180,7 @@ std::vector<BatchPiece> BatchArguments::pieces() const {
   std::vector<BatchPiece> pieces;
   for (std::size_t i = 0; i < given.size(); ++i) {
     const batch::Piece& one = given[i];
-    BatchPiece piece{one.name, {}, job, load};
+    BatchPiece piece{one.name, {}, usual, load};
     if (!frames.empty()) name_frame(piece, one.frame);
     if (before[i].follow && job.effective_method() == pipeline::Method::kRefine)
       piece.job.follow = std::filesystem::path(out) / *before[i].follow;
@@ -185,9 +190,10 @@ std::vector<BatchPiece> BatchArguments::pieces() const {
       pieces.push_back(std::move(piece));
       continue;
     }
-    for (BatchPiece& each : in_parts(piece, parts, out)) pieces.push_back(std::move(each));
+    for (BatchPiece& each : in_parts(piece, parts, job.finer, out))
+      pieces.push_back(std::move(each));
   }
-  check_names(pieces);
+  if (parts > 0) check_names(pieces);
   return pieces;
 }
 

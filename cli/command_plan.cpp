@@ -34,7 +34,7 @@ void add_plan(CLI::App& app) {
       "  photohull plan --list plants.txt --out /shared/plants\n"
       "  photohull plan rig.json --images \"frames/{frame}\" --frames 0000-0299 --out out/dance\n"
       "  photohull plan statue.json --tiles 64 --out /shared/statue\n"
-      "  photohull plan church.json --resolution 12000 --parts 40 --out /shared/church");
+      "  photohull plan church.json --resolution 12000 --finer 2 --parts 40 --out /shared/church");
   c->callback([a] { run_plan(*a); });
 }
 

@@ -44,7 +44,14 @@ SparseVolume remove_dust(const SurfaceJob& job, SparseVolume volume) {
   const std::vector<Camera> cameras = projtex::cameras_of(job.subject.views);
   const std::vector<carving::Silhouette> silhouettes = silhouettes_of(job.subject.views);
   remove_small_components(volume, kDebrisFraction, [&](auto pieces) {
-    return refine::are_asked_for(job.context, volume, pieces, {cameras, silhouettes}, {});
+    std::vector<bool> wanted =
+        refine::are_asked_for(job.context, volume, pieces, {cameras, silhouettes, job.beside}, {});
+    // What reaches out of a part may be joined with more in another one.
+    for (std::size_t i = 0; i < pieces.size() && job.part; ++i)
+      wanted[i] = wanted[i] || !std::ranges::all_of(pieces[i], [&](const glm::ivec3& voxel) {
+                    return job.part->own.contains(voxel / kBrickEdge);
+                  });
+    return wanted;
   });
   return volume;
 }

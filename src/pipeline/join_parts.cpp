@@ -37,9 +37,30 @@ ordered_json report_in(const fs::path& folder) {
   return ordered_json::parse(read_whole_file(folder / "report.json"));
 }
 
+/// What read(report) finds in the report of a folder.
+template <typename Read>
+auto told_in(const fs::path& folder, const Read& read) {
+  try {
+    return read(report_in(folder));
+  } catch (const ordered_json::exception& problem) {
+    throw Error(concat((folder / "report.json").string(), ": ", problem.what(),
+                       "; make this result again"));
+  }
+}
+
+std::int64_t size_of(const fs::path& file) {
+  std::error_code failure;
+  const auto size = fs::file_size(file, failure);
+  if (failure)
+    throw Error(concat(file.string(), ": ", failure.message(), "; make this result again"));
+  return std::int64_t(size);
+}
+
 /// A part may lie where nothing is left, and its mesh is empty.
 bool has_surface(const fs::path& part) {
-  return report_in(part).at("mesh").at("triangles").get<std::int64_t>() > 0;
+  return told_in(part, [](const ordered_json& report) {
+    return report.at("mesh").at("triangles").get<std::int64_t>() > 0;
+  });
 }
 
 std::vector<fs::path> volumes_of(const std::vector<fs::path>& parts) {
@@ -51,7 +72,7 @@ std::vector<fs::path> volumes_of(const std::vector<fs::path>& parts) {
 /// Bytes that joining takes: of volume and mesh, which come one after the other.
 std::int64_t bytes_of(const std::vector<fs::path>& parts) {
   std::int64_t mesh = 0;
-  for (const fs::path& part : parts) mesh += std::int64_t(fs::file_size(part / "mesh.ply"));
+  for (const fs::path& part : parts) mesh += size_of(part / "mesh.ply");
   return std::max(kMeshBytes * mesh, kVolumeBytes * std::int64_t(joined_bytes(volumes_of(parts))));
 }
 
@@ -92,27 +113,34 @@ ordered_json write_joined(const fs::path& whole, const std::vector<fs::path>& pa
 JoinedParts join_parts(const fs::path& whole, const std::vector<fs::path>& parts,
                        const fs::path& folder, const std::optional<std::int64_t>& max_memory,
                        Progress& progress) {
-  const ordered_json of_whole = report_in(whole);
-  ordered_json report;
-  for (const char* key : kOfTheWhole)
-    if (of_whole.contains(key)) report[key] = of_whole[key];
   JoinedParts out;
   out.verdict = read_whole_report(whole).verdict;
-  out.views = of_whole.at("scene").at("views");
   const GridSpec grid = joined_grid(volumes_of(parts));
   out.voxel_size = grid.voxel_size;
+  double wall = 0, cpu = 0;
+  const auto add_times = [&](const ordered_json& of_piece) {
+    wall += of_piece.at("wall_seconds").get<double>();
+    cpu += of_piece.at("cpu_seconds").get<double>();
+  };
+  ordered_json report = told_in(whole, [&](const ordered_json& of_whole) {
+    ordered_json kept;
+    for (const char* key : kOfTheWhole)
+      if (of_whole.contains(key)) kept[key] = of_whole[key];
+    out.views = of_whole.at("scene").at("views");
+    add_times(of_whole);
+    return kept;
+  });
   report["grid"] = {{"origin", {grid.origin.x, grid.origin.y, grid.origin.z}},
                     {"voxel_size", grid.voxel_size},
                     {"voxels", {grid.voxels().x, grid.voxels().y, grid.voxels().z}}};
   report["whole"] = whole.filename().string();
-  double wall = of_whole.at("wall_seconds"), cpu = of_whole.at("cpu_seconds");
   for (const fs::path& part : parts) {
-    const ordered_json of_part = report_in(part);
-    report["parts"].push_back({{"folder", part.filename().string()},
-                               {"box", of_part.at("box")},
-                               {"triangles", of_part.at("mesh").at("triangles")}});
-    wall += of_part.at("wall_seconds").get<double>(),
-        cpu += of_part.at("cpu_seconds").get<double>();
+    report["parts"].push_back(told_in(part, [&](const ordered_json& of_part) {
+      add_times(of_part);
+      return ordered_json{{"folder", part.filename().string()},
+                          {"box", of_part.at("box")},
+                          {"triangles", of_part.at("mesh").at("triangles")}};
+    }));
     progress.check_cancelled();
   }
   const std::int64_t bytes = bytes_of(parts),

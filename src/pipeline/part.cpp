@@ -11,6 +11,7 @@
 #include "projtex/photographs.h"
 #include "views/crop.h"
 #include "visibility/kernels/depth_maps.h"
+#include "volume/skin.h"
 
 namespace photohull::pipeline {
 namespace {
@@ -75,20 +76,6 @@ GridSpec finer(const GridSpec& whole, const BrickRange& range, int levels) {
   return out;
 }
 
-/// Voxels at the surface that lie outside the range.
-std::vector<ivec3> skin_outside(const SparseVolume& volume, const BrickRange& range) {
-  std::vector<ivec3> out;
-  for (std::size_t slot = 0; slot < volume.bricks.size(); ++slot) {
-    const ivec3 brick = volume.bricks[slot];
-    if (range.contains(brick)) continue;
-    for (int i = 0; i < kBrickVoxels; ++i) {
-      const float d = volume.distance[slot * kBrickVoxels + std::size_t(i)];
-      if (d <= 0 && d > -1) out.push_back(brick * kBrickEdge + ivec3(i >> 6, (i >> 3) & 7, i & 7));
-    }
-  }
-  return out;
-}
-
 /// Might the camera show something of the box?
 bool may_show(const Camera& camera, const Box& box) {
   const glm::dvec2 size(camera.intrinsics.width, camera.intrinsics.height);
@@ -148,7 +135,8 @@ Part cut_part(const SparseVolume& whole, const Box& box, const PartNumber& part,
   out.first_voxel = scale * kBrickEdge * all.first;
   out.own = {scale * (range.first - all.first), scale * (range.end - all.first)};
   const Box filled = out.grid.bounds();
-  out.beside = skin_outside(whole, all);
+  out.beside = skin(whole);
+  std::erase_if(out.beside, [&](const ivec3& voxel) { return all.contains(voxel / kBrickEdge); });
   const double slack = kBoxSlack * out.grid.voxel_size;
   out.box = {glm::max(filled.min, box.min - slack), glm::min(filled.max, box.max + slack)};
   return out;

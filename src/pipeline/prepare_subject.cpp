@@ -73,9 +73,8 @@ ReconstructOptions options_of(const std::optional<Part>& part, ReconstructOption
   return options;
 }
 
-Photographs photographs_of(const std::optional<Part>& part, Photographs photographs) {
-  if (!part) return photographs;
-  photographs.scene.box = part->whole_box;
+Photographs photographs_of(const Part& part, Photographs photographs) {
+  photographs.scene.box = part.whole_box;
   photographs.scene.box_source = "the whole";
   return photographs;
 }

@@ -38,7 +38,7 @@ Prepared prepare(Run& run);
 /// The options as they hold for a part, if one is made: it has the voxels and the box that it was
 /// cut out with.
 ReconstructOptions options_of(const std::optional<Part>& part, ReconstructOptions options);
-/// The photographs, with the whole's box if a part of it is made.
-Photographs photographs_of(const std::optional<Part>& part, Photographs photographs);
+/// The photographs with the box of the whole that a part is made of.
+Photographs photographs_of(const Part& part, Photographs photographs);
 
 }  // namespace photohull::pipeline

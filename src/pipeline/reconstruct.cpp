@@ -52,9 +52,8 @@ class Carver {
     StageClock& clock = run_.clock;
     Reconstruction out;
     SparseVolume carved = carve_surface();
-    out.volume = clock.run("clean", Weights::kClean, [&] {
-      return part() ? std::move(carved) : remove_dust(job(), std::move(carved));
-    });
+    out.volume =
+        clock.run("clean", Weights::kClean, [&] { return remove_dust(job(), std::move(carved)); });
     ExtractedSurface extracted =
         clock.run("mesh", Weights::kMesh, [&] { return extract_surface(job(), out.volume); });
     make_alike_on_mesh(extracted.mesh);
@@ -106,8 +105,10 @@ class Carver {
     run_.context->release_deleted();
     run_.clock.run("images", Weights::kImages, [&] {
       upload();
-      if (part())
+      if (run_.earlier.part) {
         beside_ = depths_beside(*run_.context, *part(), projtex::cameras_of(subject_.views));
+        run_.earlier.part->beside = {};
+      }
       larger_ = larger_photographs(run_.photographs.reader, subject_, gains_, run_.options,
                                    run_.progress);
     });
@@ -129,6 +130,7 @@ class Carver {
     }
     larger_.reset();
     run_.earlier.before.reset();
+    if (run_.earlier.part) run_.earlier.part->near = {};
     hull_.release_textures();
     run_.report.surface = std::move(surface.findings);
     return std::move(surface.volume);
@@ -316,8 +318,9 @@ Reconstruction Reconstructor::run(const Photographs& photographs, Progress& give
   RecordingProgress progress(given);
   EarlierResults earlier = read_earlier(options_);
   const ReconstructOptions options = options_of(earlier.part, options_);
-  const Photographs subject = photographs_of(earlier.part, photographs);
-  Run run{options, subject, progress, take_volume};
+  std::optional<Photographs> of_whole;
+  if (earlier.part) of_whole = photographs_of(*earlier.part, photographs);
+  Run run{options, of_whole ? *of_whole : photographs, progress, take_volume};
   run.earlier = std::move(earlier);
   Prepared prepared = prepare(run);
   Reconstruction out = Carver(run, std::move(prepared)).carve();

@@ -41,6 +41,9 @@ void check_sweep_options(const ReconstructOptions& o) {
 
 /// Throws UsageError for options that a part has none of, for the whole gives them.
 void check_part(const ReconstructOptions& o) {
+  if (!o.part && o.finer != 1)
+    throw UsageError(concat(option_word("finer", o.finer), " is for parts: give ",
+                            option_word("part"), " or, for a batch, ", option_word("parts")));
   if (!o.part) return;
   const std::string part = option_word("part", to_string(*o.part));
   if (o.follow.empty())

@@ -4,6 +4,7 @@
 
 #include "refine/coverage.h"
 #include "volume/combine.h"
+#include "volume/skin.h"
 
 namespace photohull::refine {
 namespace {
@@ -58,18 +59,6 @@ class Restorer {
     if (coverage_.most_lack(glm::dvec3(voxel), lacking_) < options_.least_views) return false;
     const Coverage::Votes votes = coverage_.votes(glm::dvec3(voxel), options_.least_inside);
     return votes.lack >= options_.least_views && votes.before <= options_.most_before * votes.lack;
-  }
-
-  /// Voxels at the surface of a volume.
-  static std::vector<ivec3> skin(const SparseVolume& volume) {
-    std::vector<ivec3> voxels;
-    for (std::size_t slot = 0; slot < volume.bricks.size(); ++slot)
-      for (int i = 0; i < kBrickVoxels; ++i) {
-        const float d = volume.distance[slot * kBrickVoxels + std::size_t(i)];
-        if (d <= 0 && d > -1)
-          voxels.push_back(volume.bricks[slot] * kBrickEdge + ivec3(i >> 6, (i >> 3) & 7, i & 7));
-      }
-    return voxels;
   }
 
   void store(SparseVolume& out, const ivec3& voxel) const {

@@ -17,7 +17,7 @@ namespace photohull {
 GridSpec joined_grid(std::span<const std::filesystem::path> files);
 
 /// Writes the grids of the files as those of one file on the joined grid, for the caller to commit:
-/// `surface`, and `Cd` and `confidence` where the first file has them. Of a brick that more than
+/// `surface`, and `Cd` and `confidence` where a file has them. Of a brick that more than
 /// one file stores, the first one's is taken. One grid of all files is in memory at a time. Equal
 /// files give equal bytes. Throws as joined_grid does, and Error when the file cannot be written.
 void join_vdb(AtomicFile& file, std::span<const std::filesystem::path> files,

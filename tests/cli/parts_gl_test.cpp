@@ -10,6 +10,7 @@
 #include "pipeline/join_parts.h"
 #include "support/analytic_volumes.h"
 #include "support/places.h"
+#include "volume/components.h"
 #include "volume/write_vdb.h"
 
 namespace photohull::test {
@@ -63,6 +64,7 @@ TEST_F(Parts, TogetherAreTheWholeInOnePiece) {
   EXPECT_LT(d.far, 0.1);
   EXPECT_NEAR(double(joined.inside_voxels()), double(one.inside_voxels()),
               0.005 * double(one.inside_voxels()));
+  EXPECT_EQ(component_sizes(joined).size(), component_sizes(one).size()) << "dust of parts is gone";
   const json told = report(name);
   EXPECT_EQ(told["mesh"]["open_edges"], 0);
   EXPECT_GT(told["mesh"]["seam_vertices"], 50);
@@ -96,6 +98,22 @@ TEST_F(Parts, TogetherAreTheWholeInOnePiece) {
   EXPECT_EQ(pipeline::join_parts(folder_ / (name + ".whole"), more, folder_ / "with", {}, progress)
                 .triangles,
             apart.triangles + told["mesh"]["triangles"].get<std::int64_t>());
+
+  // A result that is damaged is named.
+  const auto refusal = [&] {
+    try {
+      pipeline::join_parts(folder_ / (name + ".whole"), more, folder_ / "without", {}, progress);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing was refused");
+  };
+  fs::remove(folder_ / "empty/mesh.ply");
+  EXPECT_THAT(refusal(), HasSubstr("empty/mesh.ply"));
+  nothing.erase("mesh");
+  write_bytes(folder_ / "empty/report.json", nothing.dump());
+  EXPECT_THAT(refusal(), HasSubstr("empty/report.json"));
+  EXPECT_FALSE(fs::exists(folder_ / "without/report.json"));
 
   // A part that was lost is made again, and joined to the same model.
   const std::string before = read_bytes(folder_ / name / "mesh.ply");
@@ -135,6 +153,8 @@ TEST_F(Parts, WhatGoesWithNoPartsIsRefused) {
   EXPECT_THAT(refusal({"plan", scene(), "--parts", "4", "--resolution", "64", "--export", "glb"}),
               HasSubstr("--export"));
   EXPECT_THAT(refusal({"reconstruct", scene(), "--part", "1/2"}), HasSubstr("--follow"));
+  EXPECT_THAT(refusal({"reconstruct", scene(), "--finer", "2"}), HasSubstr("is for parts"));
+  EXPECT_THAT(refusal({"plan", scene(), "--finer", "2"}), HasSubstr("is for parts"));
   EXPECT_THAT(refusal({"reconstruct", scene(), "--part", "3/2", "--follow", path("x")}),
               HasSubstr("a part and their number, such as 3/8"));
   EXPECT_THAT(refusal({"reconstruct", scene(), "--part", "1/2", "--follow", path("x"),

@@ -7,6 +7,7 @@
 #include "projtex/photographs.h"
 #include "refine_surface.h"
 #include "visibility/kernels/depth_maps.h"
+#include "volume/skin.h"
 
 namespace photohull::refine {
 namespace {
@@ -30,13 +31,10 @@ class PartOfBowl : public RefineSurface {
   /// What cameras see of the whole's bricks elsewhere, world units.
   std::vector<DepthMap> depths_beside(int first, int end) const {
     const std::vector<projtex::GridCamera> cameras = projtex::to_grid(scene_.cameras, whole_.grid);
-    std::vector<ivec3> voxels;
-    const ivec3 n = whole_.grid.voxels();
-    for (int i = 0; i < n.x * n.y * n.z; ++i) {
-      const ivec3 voxel(i % n.x, i / n.x % n.y, i / n.x / n.y);
-      const bool elsewhere = voxel.x / kBrickEdge < first || voxel.x / kBrickEdge >= end;
-      if (elsewhere && whole_.at(voxel) <= 0 && whole_.at(voxel) > -1) voxels.push_back(voxel);
-    }
+    std::vector<ivec3> voxels = skin(whole_);
+    std::erase_if(voxels, [&](const ivec3& voxel) {
+      return voxel.x / kBrickEdge >= first && voxel.x / kBrickEdge < end;
+    });
     visibility::DepthMaps maps(cameras, whole_.grid);
     maps.draw(test::gl_context(), cameras, voxels);
     std::vector<DepthMap> out;

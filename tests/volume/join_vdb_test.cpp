@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "painted.h"
 #include "support/analytic_volumes.h"
 #include "support/scratch_folder.h"
 
@@ -22,20 +23,12 @@ using testing::HasSubstr;
 constexpr double kVoxelSize = 0.25;
 const ivec3 kBricks(6, 7, 8);
 
-/// Colours of a voxel's place, and a confidence of every other one.
+/// Colours of a voxel's brick, and a confidence of every other one.
 VolumeAttributes paint(const SparseVolume& volume, const ivec3& first) {
-  const auto all = std::make_shared<VoxelMask>(volume.bricks.size());
-  for (std::size_t i = 0; i < volume.distance.size(); ++i) all->mark(i);
-  all->count();
-  VolumeAttributes out;
-  out.colour = {all, glm::vec3(0), glm::vec3(VolumeAttributes::kUnknown)};
-  out.confidence = {all, 0.0f, VolumeAttributes::kUnknown};
-  for (std::size_t i = 0; i < volume.distance.size(); ++i) {
-    const ivec3 brick = volume.bricks[i / kBrickVoxels] + first;
-    out.colour.ranked(i) = glm::vec3(brick) / 8.0f;
-    out.confidence.ranked(i) = i % 2 ? 0.75f : VolumeAttributes::kUnknown;
-  }
-  return out;
+  return painted(
+      volume,
+      [&](std::size_t i) { return glm::vec3(volume.bricks[i / kBrickVoxels] + first) / 8.0f; },
+      [](std::size_t i) { return i % 2 ? 0.75f : VolumeAttributes::kUnknown; });
 }
 
 class JoinVdb : public testing::Test {

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "core/error.h"
+#include "painted.h"
 #include "support/analytic_volumes.h"
 #include "support/scratch_folder.h"
 
@@ -23,17 +24,9 @@ SparseVolume ball() {
 }
 
 VolumeAttributes paint(const SparseVolume& volume) {
-  const auto all = std::make_shared<VoxelMask>(volume.bricks.size());
-  for (std::size_t i = 0; i < volume.distance.size(); ++i) all->mark(i);
-  all->count();
-  VolumeAttributes attributes;
-  attributes.colour = {all, glm::vec3(0), glm::vec3(VolumeAttributes::kUnknown)};
-  attributes.confidence = {all, 0.0f, VolumeAttributes::kUnknown};
-  for (std::size_t i = 0; i < volume.distance.size(); ++i) {
-    attributes.colour.ranked(i) = {0.25f, float(i % 100) / 100, 0.5f};
-    attributes.confidence.ranked(i) = i % 2 ? 0.75f : VolumeAttributes::kUnknown;
-  }
-  return attributes;
+  return painted(
+      volume, [](std::size_t i) { return glm::vec3(0.25f, float(i % 100) / 100, 0.5f); },
+      [](std::size_t i) { return i % 2 ? 0.75f : VolumeAttributes::kUnknown; });
 }
 
 std::string print(const std::string& arguments) {
