@@ -330,7 +330,8 @@ std::vector<RayMap> map_views(gpu::Context& context, const SparseVolume& hull,
   std::vector<RayMap> maps;
   for (std::size_t v = 0; v < views; ++v) maps.push_back(map_of(v));
   if (!photographs.beside.empty()) {
-    const std::vector<projtex::GridCamera> cameras = projtex::to_grid(photographs.cameras, hull.grid);
+    const std::vector<projtex::GridCamera> cameras =
+        projtex::to_grid(photographs.cameras, hull.grid);
     for (std::size_t v = 0; v < views; ++v)
       forget_hidden(photographs.beside[v], cameras[v], hull.grid.voxel_size, maps[v]);
   }

@@ -25,6 +25,7 @@ DRAFT = {
 SHEET = {"--size": "640x480", "--views": "8"}
 # Values that fit the stand-in, for options that are there.
 FITTING = {"--voxel-size": "0.08", "--box": BOX, "--samples": "2000", "--frames": "4", "--parts": "2"}
+SIZED = {"--voxel-size", "--part"}  # say how large voxels are
 WRITES = ("reconstruct", "synthesize", "masks", "chart", "stress")  # want --out, also where sentences leave it out
 READS = ("reconstruct", "masks", "info")  # want a scene
 
@@ -76,6 +77,6 @@ def drafted(text: str) -> tuple[dict[str, str], list[str]]:
             name = option
     sheet = command == "synthesize" and ("on_sheet" in text or "on_turntable" in text)
     for option, value in (SHEET if sheet else DRAFT.get(name, {})).items():
-        if not (option == "--resolution" and "--voxel-size" in words):
+        if option != "--resolution" or SIZED.isdisjoint(words):
             set_option(words, option, value)
     return environment, words
