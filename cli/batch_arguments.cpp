@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/option_word.h"
 #include "option_flags.h"
+#include "pipeline/part_options.h"
 #include "scene_arguments.h"
 
 namespace photohull::cli {
@@ -70,12 +71,6 @@ std::vector<std::string> words_of(BatchPiece piece) {
   return words;
 }
 
-/// The same voxels, doubled so many times.
-void make_coarser(int times, pipeline::ReconstructOptions& job) {
-  if (job.resolution) *job.resolution = std::max((*job.resolution + (1 << times) - 1) >> times, 2);
-  if (job.voxel_size) *job.voxel_size *= 1 << times;
-}
-
 /// A scene's whole, its parts, and what joins them. Throws UsageError where the voxels' size is not
 /// given, or other options do not go with parts.
 std::vector<BatchPiece> in_parts(const BatchPiece& scene, int count, int finer,
@@ -86,20 +81,16 @@ std::vector<BatchPiece> in_parts(const BatchPiece& scene, int count, int finer,
   std::vector<BatchPiece> pieces{scene};
   BatchPiece& whole = pieces.back();
   whole.name += ".whole";
-  make_coarser(finer, whole.job);
+  whole.job = pipeline::options_of_whole(whole.job, finer);
   BatchPiece joined = scene;
   joined.joins.push_back(whole.name);
   BatchPiece part = scene;
-  part.job.resolution.reset();
-  part.job.voxel_size.reset();
-  part.job.finer = finer;
-  part.job.follow = std::filesystem::path(out) / whole.name;
+  const std::filesystem::path followed = std::filesystem::path(out) / whole.name;
   const std::size_t digits = std::to_string(count).size();
   for (int number = 1; number <= count; ++number) {
     const std::string text = std::to_string(number);
     part.name = scene.name + ".part" + std::string(digits - text.size(), '0') + text;
-    part.job.part = {number, count};
-    part.job.validate();
+    part.job = pipeline::options_of_part(scene.job, {number, count}, finer, followed);
     joined.joins.push_back(part.name);
     pieces.push_back(part);
   }

@@ -14,11 +14,11 @@
 #include "cli/front/exit_code.h"
 #include "core/error.h"
 #include "kept_steps.h"
+#include "make_model.h"
 #include "pipeline/helper.h"
 #include "pipeline/join_parts.h"
 #include "pipeline/stage_clock.h"
 #include "pipeline/stage_weights.h"
-#include "pipeline/write_results.h"
 #include "reconstruct_scene.h"
 #include "terminal_progress.h"
 
@@ -321,12 +321,11 @@ class Batch {
     load.most_views = io::kEnoughViews;
     pipeline::ReconstructOptions job = piece.job;
     if (options_.tiles > 0) job.tiles = {store_.tiles(piece.name), options_.tiles};
-    const pipeline::Report report = pipeline::reconstruct_to_folder(
-        job, pipeline::load_photographs(piece.scene, load), store_.results(piece.name), progress);
-    take_verdict(report.verdict.verdict, out);
-    out.views = int(report.photographs.views);
-    out.voxel_size = report.grid.voxel_size;
-    out.triangles = report.mesh.triangles;
+    const MadeModel made = make_model(job, load, piece.scene, store_.results(piece.name), progress);
+    take_verdict(made.verdict.verdict, out);
+    out.views = made.views;
+    out.voxel_size = made.voxel_size;
+    out.triangles = made.triangles;
   }
 
   void write_table() {

@@ -6,11 +6,11 @@
 #include "core/error.h"
 #include "core/read_file.h"
 #include "kept_steps.h"
+#include "make_model.h"
 #include "pipeline/earlier_results.h"
 #include "pipeline/image_scale.h"
 #include "pipeline/input_hashes.h"
 #include "pipeline/stage_weights.h"
-#include "pipeline/write_results.h"
 #include "terminal_progress.h"
 
 namespace photohull::cli {
@@ -61,14 +61,14 @@ void reconstruct_scene(const pipeline::ReconstructOptions& job, const io::LoadSc
   progress.stage("scene", 0);
   io::LoadSceneOptions load = given;
   load.most_views = io::kEnoughViews;
-  const pipeline::Report report =
-      pipeline::reconstruct_to_folder(job, pipeline::load_photographs(scene, load), out, progress);
+  const MadeModel made = make_model(job, load, scene, out, progress);
   progress.finish();
+  if (!made.report) return tell_results(out, json);
   if (json)
-    std::fputs(report.to_json().c_str(), stdout);
+    std::fputs(made.report->to_json().c_str(), stdout);
   else
-    print_summary(report, out);
-  const assess::Verdict& verdict = report.verdict.verdict;
+    print_summary(*made.report, out);
+  const assess::Verdict& verdict = made.verdict.verdict;
   if (verdict.level == assess::Level::kFailed) throw_failed(verdict.reasons.front());
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/option_word.h"
+#include "core/too_many_voxels.h"
 #include "core/viewing_depth.h"
 
 namespace photohull::carving {
@@ -14,19 +15,18 @@ namespace {
 constexpr double kMargin = 3.0;  // voxels around the box: room for the narrow band
 constexpr double kRounding = 1e-12;
 constexpr double kMaxBricks = 520.0 * 520 * 520;  // tables of 536 MiB; 4096^3 voxels fit
-constexpr double kBytesPerSurfaceBrick = 12e3;    // rough: distances, mesh, VDB copy
 
 /// Along each axis, for so many voxels. Throws as fit_grid does.
 glm::ivec3 bricks_for(const glm::dvec3& voxels, double voxel_size) {
   const glm::dvec3 bricks = glm::ceil((voxels + 2.0 * kMargin) / double(kBrickEdge));
-  const double count = bricks.x * bricks.y * bricks.z;
-  if (!(count <= kMaxBricks))
-    throw Error(concat("voxel size ", voxel_size, " makes a lattice of ", bricks.x * kBrickEdge,
-                       " x ", bricks.y * kBrickEdge, " x ", bricks.z * kBrickEdge,
-                       " voxels, whose index alone takes ", std::ceil(count * 4 / 1048576),
-                       " MiB; choose a lower ", option_word("resolution"), ", a larger ",
-                       option_word("voxel_size"), " or a smaller ", option_word("box"),
-                       ", or make it in parts ('photohull batch' with ", option_word("parts"), ")"));
+  if (!is_lattice(bricks))
+    throw TooManyVoxels(concat("voxel size ", voxel_size, " makes a lattice of ",
+                               bricks.x * kBrickEdge, " x ", bricks.y * kBrickEdge, " x ",
+                               bricks.z * kBrickEdge, " voxels, whose index alone takes ",
+                               std::ceil(bricks.x * bricks.y * bricks.z * 4 / 1048576),
+                               " MiB; choose a lower ", option_word("resolution"), ", a larger ",
+                               option_word("voxel_size"), " or a smaller ", option_word("box")),
+                        voxel_size, 1);
   return glm::ivec3(bricks);
 }
 
@@ -36,6 +36,8 @@ void check_voxel_size(double voxel_size) {
 }
 
 }  // namespace
+
+bool is_lattice(const glm::dvec3& bricks) { return bricks.x * bricks.y * bricks.z <= kMaxBricks; }
 
 double pixel_footprint(const Box& box, std::span<const Camera> cameras) {
   std::vector<double> sizes;
@@ -78,12 +80,6 @@ GridSpec fixed_grid(const Box& box, double voxel_size) {
   grid.bricks = bricks_for(glm::ceil(box.size() / voxel_size * (1 - kRounding)), voxel_size);
   grid.origin = box.min + voxel_size * (0.5 - kMargin);
   return grid;
-}
-
-std::int64_t estimate_memory(const GridSpec& grid) {
-  const glm::dvec3 b(grid.bricks);
-  const double faces = 2.0 * (b.x * b.y + b.y * b.z + b.z * b.x);
-  return std::int64_t(4.0 * double(grid.brick_count()) + faces * kBytesPerSurfaceBrick);
 }
 
 GridSpec coarser(const GridSpec& grid) {

@@ -15,9 +15,11 @@ namespace photohull::carving {
 /// has.
 double pixel_footprint(const Box& box, std::span<const Camera> cameras);
 
-/// A lattice over the box, grown by a margin of `kMargin` voxels on each side.
-/// Throws UsageError for a voxel size that is not finite and positive, and Error when the lattice's
-/// index alone would take more than 256 MiB (the message says how much).
+/// Can one lattice have so many bricks along each axis, by the memory that its index takes?
+bool is_lattice(const glm::dvec3& bricks);
+
+/// A lattice over the box, grown by a margin of `kMargin` voxels on each side. Throws UsageError
+/// for a voxel size that is not finite and positive, and TooManyVoxels where that is no lattice.
 GridSpec fit_grid(const Box& box, double voxel_size);
 
 /// A lattice whose voxels tile the box from its lower corner: voxel (3, 3, 3) begins there, and the
@@ -27,10 +29,6 @@ GridSpec fixed_grid(const Box& box, double voxel_size);
 
 /// Voxel size for an effective resolution of `resolution`^3: the box's longest side has that many.
 double voxel_size_for(const Box& box, int resolution);
-
-/// Bytes that a reconstruction on this grid is expected to take at its peak, images not counted:
-/// the brick table, and bricks, mesh and files of a surface as large as the box's faces.
-std::int64_t estimate_memory(const GridSpec& grid);
 
 /// The grid with voxels twice as large over the same space.
 GridSpec coarser(const GridSpec& grid);

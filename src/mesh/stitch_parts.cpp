@@ -4,23 +4,20 @@
 #include <array>
 #include <cstdint>
 #include <glm/gtx/hash.hpp>
-#include <limits>
 #include <map>
 #include <numeric>
+#include <set>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "core/error.h"
+#include "mesh/fill_gaps.h"
 #include "mesh/join_meshes.h"
 #include "mesh/mesh_edges.h"
-#include "mesh/simplify_mesh.h"
 
 namespace photohull {
 namespace {
-
-constexpr std::size_t kLongestGap = 1000;  // edges: more are no gap between parts
-constexpr double kWidestGap = 8;           // times the reach, from one part to the other
 
 /// Sides that no triangle runs along the other way, in order.
 std::vector<Side> border_of(const TriMesh& mesh) {
@@ -42,8 +39,6 @@ void drop_doubled(TriMesh& mesh) {
   std::size_t triangle = 0;
   std::erase_if(mesh.triangles, [&](const auto&) { return doubled[triangle++]; });
 }
-
-constexpr std::uint32_t kSeam = std::numeric_limits<std::uint32_t>::max();  // of several parts
 
 /// A vertex at the border of a part.
 struct BorderVertex {
@@ -141,116 +136,178 @@ void average(const std::vector<std::uint32_t>& some, std::uint32_t vertex, TriMe
   if (!mesh.confidence.empty()) mesh.confidence[vertex] = mean_of(mesh.confidence, some);
 }
 
-/// Loops of kLongestGap sides at most, without a vertex that comes twice, along sides of a border,
-/// each side in one at most.
-class Loops {
+/// Appends a vertex of another mesh that has the same origin, with its attributes.
+void add_vertex(const TriMesh& from, std::size_t vertex, TriMesh& to) {
+  to.positions.push_back(from.positions[vertex]);
+  if (!from.normals.empty()) to.normals.push_back(from.normals[vertex]);
+  if (!from.colours.empty()) to.colours.push_back(from.colours[vertex]);
+  if (!from.confidence.empty()) to.confidence.push_back(from.confidence[vertex]);
+}
+
+/// The rims as one mesh, which joining changes.
+class Joining {
  public:
-  explicit Loops(const std::vector<Side>& border) {
-    for (const Side& side : border) next_[side.from].push_back(side.to);
+  explicit Joining(std::vector<Rim> rims) : rims_(std::move(rims)) {
+    for (std::size_t part = 0; part < rims_.size(); ++part) {
+      Rim& rim = rims_[part];
+      const auto first = std::uint32_t(mesh_.positions.size());
+      first_.push_back(first);
+      for (const Side& side : border_of(rim.mesh))
+        if (!rim.border[side.from] || !rim.border[side.to])
+          inner_.insert({first + side.from, first + side.to});
+      for (std::uint32_t v = 0; v < rim.vertices.size(); ++v)
+        if (rim.border[v]) border_.push_back({first + v, part});
+      append_mesh(rim.mesh, mesh_);
+      part_of_.resize(mesh_.positions.size(), std::uint32_t(part));
+      rim.mesh = {};
+    }
+    stands_for_.resize(mesh_.positions.size());
+    std::iota(stands_for_.begin(), stands_for_.end(), 0u);
   }
 
-  /// Goes on from a vertex as long as there are sides that no loop has; visit(loop).
-  template <typename Visit>
-  void walk(std::uint32_t first, const Visit& visit) {
-    std::vector<std::uint32_t> path{first};
-    for (auto* ends = &next_[first]; !ends->empty(); ends = &next_[path.back()]) {
-      const std::uint32_t end = ends->back();
-      ends->pop_back();
-      const auto met = std::find(path.end() - std::ptrdiff_t(std::min(path.size(), kLongestGap)),
-                                 path.end(), end);
-      if (met == path.end()) {
-        path.push_back(end);
-        continue;
-      }
-      visit(std::vector<std::uint32_t>(met, path.end()));
-      path.erase(met + 1, path.end());
+  Stitched join(double reach) {
+    Stitched out;
+    for (const std::vector<std::uint32_t>& set : Seam(mesh_, border_, reach).sets()) {
+      average(set, set.front(), mesh_);
+      for (const std::uint32_t v : set) stands_for_[v] = set.front();
+      part_of_[set.front()] = kSeam;
+      ++out.seam_vertices;
     }
+    for (auto& t : mesh_.triangles)
+      for (std::uint32_t& v : t) v = stands_for_[v];
+    std::erase_if(mesh_.triangles,
+                  [](const auto& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
+    drop_doubled(mesh_);
+    out.filled = fill_gaps(open_sides(), part_of_, reach, mesh_);
+    for (const Side& side : open_sides())
+      out.open_edges += part_of_[side.from] == kSeam || part_of_[side.to] == kSeam;
+    number(out);
+    return out;
   }
 
  private:
-  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> next_;
+  /// But for those where rims end within their parts.
+  std::vector<Side> open_sides() const {
+    std::vector<Side> out = border_of(mesh_);
+    std::erase_if(out, [&](const Side& side) { return inner_.contains({side.from, side.to}); });
+    return out;
+  }
+
+  /// Says what becomes of the parts.
+  void number(Stitched& out) {
+    std::vector<bool> used(mesh_.positions.size(), false);
+    for (const auto& t : mesh_.triangles)
+      for (const std::uint32_t v : t) used[v] = true;
+    std::vector<std::uint32_t> numbers(mesh_.positions.size());  // in the joined mesh
+    for (std::size_t i = 0; i < rims_.size(); ++i) {
+      Rim& rim = rims_[i];
+      StitchedPart part;
+      part.first = std::uint32_t(out.vertices);
+      part.places.origin = mesh_.origin;
+      for (std::uint32_t k = 0; k < rim.vertices.size(); ++k) {
+        const std::uint32_t v = first_[i] + k;
+        numbers[v] = part.first + rim.vertices[k] - std::uint32_t(part.gone.size());
+        if (rim.whole[k] && !used[v]) {
+          part.gone.push_back(rim.vertices[k]);
+        } else if (part_of_[v] == kSeam) {
+          part.moved.push_back(rim.vertices[k]);
+          add_vertex(mesh_, v, part.places);
+        }
+      }
+      out.vertices += rim.part_vertices - part.gone.size();
+      out.triangles += rim.part_triangles - rim.triangles.size();
+      part.rim = std::move(rim.triangles);
+      out.parts.push_back(std::move(part));
+    }
+    out.triangles += mesh_.triangles.size();
+    out.rim = std::move(mesh_.triangles);
+    for (auto& t : out.rim)
+      for (std::uint32_t& v : t) v = numbers[v];
+  }
+
+  std::vector<Rim> rims_;
+  TriMesh mesh_;
+  std::vector<std::uint32_t> first_;  // of each rim, in mesh_
+  std::vector<BorderVertex> border_;
+  std::set<std::pair<std::uint32_t, std::uint32_t>> inner_;  // sides where rims end
+  std::vector<std::uint32_t> part_of_;                       // of each vertex
+  std::vector<std::uint32_t> stands_for_;
 };
 
-/// Is what a loop goes around a gap between parts, whose borders are near each other all along it?
-/// `parts`: of the vertices, and kSeam of those that several have.
-bool is_gap(const std::vector<std::uint32_t>& loop, const std::vector<std::uint32_t>& parts,
-            const TriMesh& mesh, double reach) {
-  if (loop.size() < 3) return false;
-  return std::ranges::all_of(loop, [&](std::uint32_t a) {
-    return parts[a] == kSeam || std::ranges::any_of(loop, [&](std::uint32_t b) {
-             return parts[b] != parts[a] &&
-                    double(glm::distance(mesh.positions[a], mesh.positions[b])) <=
-                        kWidestGap * reach;
-           });
-  });
-}
-
-/// Triangles that fill a loop, and run the other way: the corner whose neighbours are nearest to
-/// each other is cut off again and again, but for neighbours that a side of the mesh (`sides`)
-/// joins already.
-void fill(std::vector<std::uint32_t> loop, const std::vector<Side>& sides, TriMesh& mesh) {
-  const auto joined = [&](std::uint32_t a, std::uint32_t b) {
-    return opposite(sides, {a, b, 0}) || opposite(sides, {b, a, 0});
-  };
-  while (loop.size() > 3) {
-    const std::size_t n = loop.size();
-    std::size_t best = 0;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < n; ++i) {
-      const std::uint32_t before = loop[(i + n - 1) % n], after = loop[(i + 1) % n];
-      const double length = double(glm::distance(mesh.positions[before], mesh.positions[after]));
-      if (length < least && !joined(before, after)) best = i, least = length;
-    }
-    mesh.triangles.push_back({loop[(best + 1) % n], loop[best], loop[(best + n - 1) % n]});
-    loop.erase(loop.begin() + std::ptrdiff_t(best));
+/// Leaves out what is listed, which is in order.
+template <typename T>
+void leave_out(const std::vector<std::uint32_t>& listed, std::vector<T>& values) {
+  if (values.empty()) return;
+  std::size_t next = 0, kept = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (next < listed.size() && listed[next] == i)
+      ++next;
+    else
+      values[kept++] = values[i];
   }
-  mesh.triangles.push_back({loop[2], loop[1], loop[0]});
+  values.resize(kept);
 }
 
 }  // namespace
 
-Stitched stitch_parts(std::vector<TriMesh> parts, double reach) {
+Rim rim_of(const TriMesh& part) {
+  const std::size_t count = part.positions.size();
+  std::vector<bool> border(count, false), near(count, false), used(count, false);
+  for (const Side& side : border_of(part)) border[side.from] = border[side.to] = true;
+  for (const auto& [a, b, c] : part.triangles)
+    if (border[a] || border[b] || border[c]) near[a] = near[b] = near[c] = true;
+  Rim rim;
+  rim.part_vertices = std::uint32_t(count);
+  rim.part_triangles = std::uint32_t(part.triangles.size());
+  for (std::uint32_t t = 0; t < part.triangles.size(); ++t) {
+    const auto& [a, b, c] = part.triangles[t];
+    if (!near[a] && !near[b] && !near[c]) continue;
+    rim.triangles.push_back(t);
+    rim.mesh.triangles.push_back(part.triangles[t]);
+    used[a] = used[b] = used[c] = true;
+  }
+  rim.mesh.origin = part.origin;
+  std::vector<std::uint32_t> numbers(count, 0);
+  for (std::uint32_t v = 0; v < count; ++v) {
+    if (!used[v]) continue;
+    numbers[v] = std::uint32_t(rim.vertices.size());
+    rim.vertices.push_back(v);
+    rim.border.push_back(border[v]);
+    rim.whole.push_back(near[v]);
+    add_vertex(part, v, rim.mesh);
+  }
+  for (auto& t : rim.mesh.triangles)
+    for (std::uint32_t& v : t) v = numbers[v];
+  return rim;
+}
+
+Stitched stitch_rims(std::vector<Rim> rims, double reach) {
   PHOTOHULL_CHECK_OP(reach, >, 0.0);
-  Stitched out;
-  std::vector<BorderVertex> border;
-  std::vector<std::uint32_t> part_of;  // of each vertex
-  for (std::size_t part = 0; part < parts.size(); ++part) {
-    const auto first = std::uint32_t(out.mesh.positions.size());
-    std::vector<std::uint32_t> vertices;
-    for (const Side& side : border_of(parts[part]))
-      vertices.insert(vertices.end(), {side.from, side.to});
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    for (const std::uint32_t v : vertices) border.push_back({first + v, part});
-    append_mesh(parts[part], out.mesh);
-    part_of.resize(out.mesh.positions.size(), std::uint32_t(part));
-    parts[part] = {};
+  return Joining(std::move(rims)).join(reach);
+}
+
+TriMesh joined_part(const StitchedPart& part, TriMesh mesh) {
+  for (std::size_t i = 0; i < part.moved.size(); ++i) {
+    const std::uint32_t v = part.moved[i];
+    mesh.positions[v] = glm::vec3(part.places.world(i) - mesh.origin);
+    if (!part.places.normals.empty()) mesh.normals[v] = part.places.normals[i];
+    if (!part.places.colours.empty()) mesh.colours[v] = part.places.colours[i];
+    if (!part.places.confidence.empty()) mesh.confidence[v] = part.places.confidence[i];
   }
-  std::vector<std::uint32_t> stands_for(out.mesh.positions.size());
-  std::iota(stands_for.begin(), stands_for.end(), 0u);
-  for (const std::vector<std::uint32_t>& set : Seam(out.mesh, border, reach).sets()) {
-    average(set, set.front(), out.mesh);
-    for (const std::uint32_t v : set) stands_for[v] = set.front();
-    part_of[set.front()] = kSeam;
-    ++out.seam_vertices;
+  std::vector<std::uint32_t> numbers(mesh.positions.size());
+  std::uint32_t gone = 0;
+  for (std::uint32_t v = 0; v < numbers.size(); ++v) {
+    numbers[v] = part.first + v - gone;
+    if (gone < part.gone.size() && part.gone[gone] == v) ++gone;
   }
-  for (auto& t : out.mesh.triangles)
-    for (std::uint32_t& v : t) v = stands_for[v];
-  std::erase_if(out.mesh.triangles,
-                [](const auto& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
-  drop_doubled(out.mesh);
-  const std::vector<Side> sides = sorted_sides(out.mesh.triangles), open = border_of(out.mesh);
-  Loops loops(open);
-  for (const Side& side : open)
-    loops.walk(side.from, [&](std::vector<std::uint32_t> loop) {
-      if (!is_gap(loop, part_of, out.mesh, reach)) return;
-      fill(std::move(loop), sides, out.mesh);
-      ++out.filled;
-    });
-  for (const Side& side : border_of(out.mesh))
-    out.open_edges += part_of[side.from] == kSeam || part_of[side.to] == kSeam;
-  keep_used_vertices(out.mesh);
-  return out;
+  leave_out(part.gone, mesh.positions);
+  leave_out(part.gone, mesh.normals);
+  leave_out(part.gone, mesh.colours);
+  leave_out(part.gone, mesh.confidence);
+  leave_out(part.rim, mesh.triangles);
+  for (auto& t : mesh.triangles)
+    for (std::uint32_t& v : t) v = numbers[v];
+  return mesh;
 }
 
 }  // namespace photohull

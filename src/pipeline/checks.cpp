@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/median.h"
 #include "core/option_word.h"
+#include "core/too_many_voxels.h"
 #include "masks/silhouette.h"
 #include "pipeline/memory.h"
 
@@ -136,17 +137,19 @@ void check_cameras_outside(const Box& box, const std::string& source,
                          option_word("masks", "none"), " and ", option_word("method", "refine")));
 }
 
-void check_memory(std::int64_t bytes, std::int64_t limit) {
-  if (bytes <= limit) return;
-  const bool apart = memory_text(bytes) != memory_text(limit);
+void check_memory(const MemoryNeed& need, std::int64_t limit) {
+  if (need.bytes <= limit) return;
+  const bool apart = memory_text(need.bytes) != memory_text(limit);
   const auto text = [&](std::int64_t size) {
     return apart ? memory_text(size) : concat(size >> 20, " MiB");
   };
-  throw Error(concat("this job would take about ", text(bytes), " of memory, but may take ",
-                     text(limit), " (", option_word("max_memory"), "); lower ",
-                     option_word("resolution"), " or ", option_word("image_scale"), ", use fewer ",
-                     option_word("views"), ", or make it in parts ('photohull batch' with ",
-                     option_word("parts"), ")"));
+  const double room =
+      double(limit - need.fixed) / double(std::max<std::int64_t>(need.bytes - need.fixed, 1));
+  throw TooManyVoxels(
+      concat("this job would take about ", text(need.bytes), " of memory, but may take ",
+             text(limit), " (", option_word("max_memory"), "); lower ", option_word("resolution"),
+             " or ", option_word("image_scale"), ", or use fewer ", option_word("views")),
+      need.voxel_size, room);
 }
 
 std::string explain_empty_hull(const Box& box, std::span<const PreparedView> views,

@@ -35,8 +35,15 @@ std::string sentence_about_cameras(const Box& box, const std::string& source,
 void check_cameras_outside(const Box& box, const std::string& source,
                            std::span<const SourceView> views);
 
-/// Throws Error when a job that takes `bytes` would exceed `limit`.
-void check_memory(std::int64_t bytes, std::int64_t limit);
+/// What a job takes.
+struct MemoryNeed {
+  std::int64_t bytes = 0;  ///< in all
+  std::int64_t fixed = 0;  ///< of these, what it takes however few voxels it has
+  double voxel_size = 0;   ///< world units
+};
+
+/// Throws TooManyVoxels when a job would exceed `limit`.
+void check_memory(const MemoryNeed& need, std::int64_t limit);
 
 /// Why nothing of the box is left: voxels that are too large, or the views whose silhouettes alone
 /// remove the most of it. `silhouettes`: one for each view, as the hull had them.

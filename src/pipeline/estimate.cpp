@@ -12,6 +12,7 @@ namespace {
 constexpr double kBaseBytes = 285e6;        // libraries, the driver's compiler, batches of rays
 constexpr double kPixelBytes = 6.7;         // without silhouettes: colour, twice, and its mip chain
 constexpr double kMaskedPixelBytes = 14.8;  // with: coverage and distances as well
+constexpr double kBesidePixelBytes = 6.5;   // of a part: depths beside it, and the whole's bricks
 constexpr double kHullAreaBytes = 525;      // bricks, mesh and files of a voxel's square
 constexpr double kUsualHull = 0.29;         // area of the hull, of that of the box
 // While a texture is made:
@@ -49,6 +50,7 @@ Cost estimate_cost(const CostQuestion& q) {
   const double read_pixels = pixels(read);
   const bool open = q.masks == Silhouettes::kNone;
   double bytes = kBaseBytes + (open ? kPixelBytes : kMaskedPixelBytes) * read_pixels;
+  if (q.part) bytes += kBesidePixelBytes * read_pixels;
   Cost cost;
   cost.cpu_seconds = kBaseSeconds + kPixelSeconds * pixels(q.files);
   if (q.masks == Silhouettes::kMade) cost.cpu_seconds += kMadePixelSeconds * read_pixels;

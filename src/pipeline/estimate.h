@@ -20,6 +20,7 @@ struct CostQuestion {
   std::optional<GridSpec> grid;   ///< nothing: not known yet, photographs alone count
   Method method = Method::kRefine;
   Silhouettes masks = Silhouettes::kGiven;
+  bool part = false;               ///< is it a part, which knows depths of what lies beside it?
   std::int64_t texture_bytes = 0;  ///< that making a texture may take (texture_stage.h); 0: no such
   double pixel = 0;  ///< of the photographs as read, world units at the box's centre; for a texture
   /// Area of the hull, squares of voxels, where masks were seen; nothing: not known yet.

@@ -4,6 +4,7 @@
 #include <limits>
 #include <optional>
 
+#include "carving/fit_grid.h"
 #include "core/error.h"
 #include "core/option_word.h"
 #include "mesh/simplify_mesh.h"
@@ -20,6 +21,7 @@ using glm::ivec3;
 
 constexpr double kBoxSlack = 0.5;  // voxels that the surface may stand out of the whole's box
 constexpr int kMipPixels = 32;     // of a texel of the sixth mip level: parts see the same ones
+constexpr int kFinerSteps = 8;     // more parts by an eighth are tried next
 constexpr int kAbout = 2;          // bricks of the whole about a part that its surface starts from
 
 struct Cut {
@@ -95,38 +97,78 @@ bool may_show(const Camera& camera, const Box& box) {
          glm::all(glm::greaterThan(greatest, glm::dvec2(-1)));
 }
 
+/// Goes on with a range that has `some` of the surface's bricks, which is to become so many parts.
+/// False: it has too few layers of bricks.
+bool cut_range(std::span<ivec3> some, const BrickRange& range, int count,
+               std::vector<BrickRange>& out) {
+  if (count == 1) {
+    out.push_back(range);
+    return true;
+  }
+  if (some.empty()) return false;
+  const int before = count / 2;
+  const auto cut = cut_of(some, double(before) / count);
+  if (!cut) return false;
+  const auto middle = std::partition(
+      some.begin(), some.end(), [&](const ivec3& brick) { return brick[cut->axis] < cut->at; });
+  const std::size_t size = std::size_t(middle - some.begin());
+  BrickRange low = range, high = range;
+  low.end[cut->axis] = high.first[cut->axis] = cut->at;
+  return cut_range(some.first(size), low, before, out) &&
+         cut_range(some.subspan(size), high, count - before, out);
+}
+
+/// In their order; none where there are too few layers of bricks.
+std::vector<BrickRange> ranges_of_parts(const SparseVolume& whole, int count) {
+  std::vector<ivec3> bricks = whole.bricks;
+  std::vector<BrickRange> out;
+  if (!cut_range(bricks, {ivec3(0), whole.grid.bricks}, count, out)) out.clear();
+  return out;
+}
+
+/// Of the whole's bricks, around a part's own.
+int halo_bricks(int levels) {
+  return (kHaloVoxels + (kBrickEdge << levels) - 1) / (kBrickEdge << levels);
+}
+
+/// Of the whole's bricks, those in the range.
+double share_of(const SparseVolume& whole, const BrickRange& range) {
+  const auto in = std::ranges::count_if(whole.bricks,
+                                        [&](const ivec3& brick) { return range.contains(brick); });
+  return double(in) / double(whole.bricks.size());
+}
+
 }  // namespace
 
-BrickRange range_of_part(const SparseVolume& whole, const PartNumber& part) {
-  std::vector<ivec3> bricks = whole.bricks;
-  std::span<ivec3> some(bricks);
-  BrickRange range{ivec3(0), whole.grid.bricks};
-  int number = part.number - 1, count = part.count;
-  while (count > 1) {
-    const int before = count / 2;
-    const auto cut = some.empty() ? std::nullopt : cut_of(some, double(before) / count);
-    if (!cut)
-      throw Error(concat(option_word("part", to_string(part)), ": the whole has a surface of ",
-                         whole.bricks.size(), " bricks, too few for so many parts; make fewer"));
-    const auto is_before = [&](const ivec3& brick) { return brick[cut->axis] < cut->at; };
-    const auto middle = std::partition(some.begin(), some.end(), is_before);
-    if (number < before) {
-      range.end[cut->axis] = cut->at;
-      some = some.first(std::size_t(middle - some.begin()));
-      count = before;
-    } else {
-      range.first[cut->axis] = cut->at;
-      some = some.subspan(std::size_t(middle - some.begin()));
-      number -= before, count -= before;
-    }
+std::optional<int> fewest_parts(const SparseVolume& whole, int levels, double room) {
+  for (int count = 2; count <= PartNumber::kMost; count += 1 + count / kFinerSteps) {
+    const std::vector<BrickRange> ranges = ranges_of_parts(whole, count);
+    if (ranges.empty()) return std::nullopt;
+    const bool fit = std::ranges::all_of(ranges, [&](const BrickRange& range) {
+      const BrickRange all = grown(range, halo_bricks(levels), whole.grid);
+      return share_of(whole, all) <= room &&
+             carving::is_lattice(glm::dvec3((all.end - all.first) << levels));
+    });
+    if (fit) return count;
   }
-  return range;
+  return std::nullopt;
+}
+
+double share_of_part(const SparseVolume& whole, const PartNumber& part, int levels) {
+  return share_of(whole, grown(range_of_part(whole, part), halo_bricks(levels), whole.grid));
+}
+
+BrickRange range_of_part(const SparseVolume& whole, const PartNumber& part) {
+  const std::vector<BrickRange> ranges = ranges_of_parts(whole, part.count);
+  if (ranges.empty())
+    throw Error(concat(option_word("part", to_string(part)), ": the whole has a surface of ",
+                       whole.bricks.size(), " bricks, too few for so many parts; make fewer"));
+  return ranges[std::size_t(part.number - 1)];
 }
 
 Part cut_part(const SparseVolume& whole, const Box& box, const PartNumber& part, int levels) {
   const BrickRange range = range_of_part(whole, part);
-  const int halo = (kHaloVoxels + (kBrickEdge << levels) - 1) / (kBrickEdge << levels);
-  const BrickRange all = grown(range, halo, whole.grid);
+  const BrickRange all = grown(range, halo_bricks(levels), whole.grid);
   Part out;
   out.whole_box = box;
   out.near = within(whole, grown(all, kAbout, whole.grid));

@@ -2,6 +2,7 @@
 // part.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -48,6 +49,14 @@ struct Part {
 
 /// `box`: that the whole was made in. `levels`: how often its voxels are halved.
 Part cut_part(const SparseVolume& whole, const Box& box, const PartNumber& part, int levels);
+
+/// How few parts the whole has to be cut into, at voxels that are halved so many times, for each to
+/// have at most `room` (> 0) of its surface, that around the part's own included, and to fit into a
+/// lattice. Nothing: no number does.
+std::optional<int> fewest_parts(const SparseVolume& whole, int levels, double room);
+
+/// The share of the whole's surface that a part has, that around its own included.
+double share_of_part(const SparseVolume& whole, const PartNumber& part, int levels);
 
 /// Of each camera, in world units: what of the whole lies outside the part's grid. Throws Error
 /// when the device cannot hold it.

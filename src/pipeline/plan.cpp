@@ -16,6 +16,7 @@
 namespace photohull::pipeline {
 namespace {
 
+constexpr double kPartsPhotographs = 0.7;  // of memory that those of a part may take as they are
 constexpr double kCoarsestHeld = 4;  // voxels that a pixel may be wide where some are held larger
 
 /// Alpha channels are not known before decoding: they count as masks that must be made.
@@ -44,6 +45,7 @@ void count_cost(const Request& request, const Scene& scene, const Box& box, bool
   question.cameras = cameras_at(plan.scales, scene);
   question.method = request.options.effective_method();
   question.masks = silhouettes_of(request.masks, scene);
+  question.part = request.options.part.has_value();
   plan.silhouettes = question.masks != Silhouettes::kNone;
   if (with_grid)
     plan.grid =
@@ -54,6 +56,8 @@ void count_cost(const Request& request, const Scene& scene, const Box& box, bool
     question.pixel = carving::pixel_footprint(box, question.cameras);
   }
   plan.cost = estimate_cost(question);
+  question.grid.reset();
+  plan.fixed_bytes = estimate_cost(question).bytes;
 }
 
 /// The plan with photographs as much smaller as leaves room for some of the wanted size besides.
@@ -129,6 +133,8 @@ Plan plan_job(const Request& request, const Scene& scene, const Box& box, bool w
   plan.scales = plan.wanted;
   count_cost(request, scene, box, with_grid, plan.scales, plan);
   if (options.image_scale || plan.cost.bytes <= limit) return plan;
+  // Smaller parts are better than smaller photographs.
+  if (options.part && double(plan.fixed_bytes) <= kPartsPhotographs * double(limit)) return plan;
   if (auto some = plan_to_hold_some(request, scene, box, with_grid, limit, plan)) return *some;
   while (plan.cost.bytes > limit) {
     std::vector<double> smaller = plan.scales;

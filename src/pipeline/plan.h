@@ -38,6 +38,7 @@ struct Plan {
   bool silhouettes = true;  ///< may there be any? They are not known before photographs are decoded
   GridSpec grid;            ///< where it was asked for
   Cost cost;
+  std::int64_t fixed_bytes = 0;  ///< of the cost, without voxels
   /// For photographs that are matched at the wanted scales, a few at a time (OutOfCorePhotographs),
   /// while all are held at `scales`. 0: they are matched as they are held.
   std::int64_t held_bytes = 0;
@@ -45,8 +46,9 @@ struct Plan {
 
 /// `scene` is in its files' pixels. `with_grid`: voxels count, else photographs alone. Scales are
 /// made smaller until the cost is at most `limit` bytes or nothing more can be done; a forced scale
-/// stays. Where the method can match larger photographs than it holds, room is kept for some.
-/// Throws as voxel_size_of and carving::fit_grid do.
+/// stays, and so do those of a part that could be cut smaller. Where the method can match larger
+/// photographs than it holds, room is kept for some. Throws as voxel_size_of and carving::fit_grid
+/// do.
 Plan plan_job(const Request& request, const Scene& scene, const Box& box, bool with_grid,
               std::int64_t limit);
 

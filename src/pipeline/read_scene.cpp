@@ -48,7 +48,7 @@ Reading choose_reading(const Photographs& photographs, const Scene& scene, const
   const std::int64_t limit = memory_limit(options);
   Plan plan =
       plan_reading({options, photographs.load.masks, photographs.reader}, scene, box, known, limit);
-  check_memory(plan.cost.bytes, limit);
+  check_memory({plan.cost.bytes, plan.fixed_bytes, plan.grid.voxel_size}, limit);
   const bool short_of_memory = plan.scales != plan.wanted;
   if (plan.held_bytes > 0)
     progress.warn(concat("the photographs are held at ", smallest_scale_text(plan.scales),

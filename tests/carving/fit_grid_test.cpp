@@ -87,12 +87,5 @@ TEST(PixelFootprint, IsTheMedianOfDepthOverFocalLength) {
   EXPECT_EQ(pixel_footprint(kBox, {}), 0);
 }
 
-TEST(EstimateMemory, GrowsWithTheSurface) {
-  const GridSpec small{{0, 0, 0}, 1, {10, 10, 10}}, large{{0, 0, 0}, 1, {20, 20, 20}};
-  EXPECT_GT(estimate_memory(small), 4 * 1000);
-  EXPECT_GT(estimate_memory(large), 3.9 * double(estimate_memory(small)));
-  EXPECT_GT(estimate_memory({{0, 0, 0}, 1, {4096, 4096, 4}}), std::int64_t(1) << 32);
-}
-
 }  // namespace
 }  // namespace photohull::carving

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "core/error.h"
 #include "core/option_word.h"
+#include "core/too_many_voxels.h"
 #include "support/ray_cast.h"
 
 namespace photohull::pipeline {
@@ -29,7 +29,7 @@ std::vector<SourceView> around(double distance) {
 /// What is said of a job of so many MiB that may take 1 GiB; empty: it may be done.
 std::string refusal(std::int64_t mebibytes) {
   try {
-    check_memory(mebibytes << 20, std::int64_t(1) << 30);
+    check_memory({mebibytes << 20, 0, 1}, std::int64_t(1) << 30);
   } catch (const Error& e) {
     return e.what();
   }
@@ -40,6 +40,22 @@ TEST(CheckMemory, NamesBothSizesSuchThatTheyDiffer) {
   EXPECT_EQ(refusal(1024), "");
   EXPECT_THAT(refusal(3072), HasSubstr("about 3 GiB of memory, but may take 1 GiB"));
   EXPECT_THAT(refusal(1034), HasSubstr("about 1034 MiB of memory, but may take 1024 MiB"));
+}
+
+TEST(CheckMemory, TellsHowMuchOfTheSurfaceWouldFit) {
+  const auto room = [](std::int64_t fixed) {
+    try {
+      check_memory({1000, fixed, 0.25}, 700);
+    } catch (const TooManyVoxels& problem) {
+      EXPECT_EQ(problem.voxel_size(), 0.25);
+      return problem.room();
+    }
+    return double(NAN);
+  };
+  EXPECT_DOUBLE_EQ(room(0), 0.7);
+  EXPECT_DOUBLE_EQ(room(400), 0.5);
+  EXPECT_DOUBLE_EQ(room(700), 0);
+  EXPECT_LT(room(900), 0) << "photographs alone do not fit";
 }
 
 TEST(HopelessSetup, CamerasAroundTheBoxAreFine) {

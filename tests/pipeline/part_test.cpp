@@ -76,6 +76,28 @@ TEST(Part, MorePartsThanLayersAreRefused) {
   EXPECT_THROW(range_of_part(nothing, {1, 2}), Error);
 }
 
+TEST(Part, AsFewPartsAreMadeAsHaveRoom) {
+  const SparseVolume whole = two_balls();
+  const auto largest = [&](int count) {
+    double most = 0;
+    for (int number = 1; number <= count; ++number)
+      most = std::max(most, share_of_part(whole, {number, count}, 2));
+    return most;
+  };
+  EXPECT_EQ(fewest_parts(whole, 2, 1), 2) << "one did not fit";
+  for (const double room : {0.9, 0.6, 0.4, 0.3}) {
+    const auto count = fewest_parts(whole, 2, room);
+    ASSERT_TRUE(count) << room;
+    EXPECT_LE(largest(*count), room);
+    if (*count > 2) EXPECT_GT(largest(*count - 1), room);
+  }
+  // What is around a part's own is larger than this.
+  EXPECT_EQ(fewest_parts(whole, 2, 0.01), std::nullopt);
+  // A halo is two of the whole's bricks at voxels that are as large, and one where they are halved.
+  EXPECT_GT(share_of_part(whole, {1, 2}, 0), share_of_part(whole, {1, 2}, 1));
+  EXPECT_DOUBLE_EQ(share_of_part(whole, {1, 1}, 1), 1);
+}
+
 TEST(Part, VoxelsAreHalvedAndTheHaloIsWideEnough) {
   const SparseVolume whole = two_balls();
   for (const int levels : {1, 2, 3})

@@ -102,41 +102,40 @@ void check_attributes(const TriMesh& mesh, const VertexScalars& scalars) {
   for (const auto& scalar : scalars) PHOTOHULL_CHECK(scalar.second.size() == count);
 }
 
-std::string header(const TriMesh& mesh, const VertexScalars& scalars, bool doubles) {
-  const char* real = doubles ? "double" : "float";
+std::string header(const PlyLayout& layout, const VertexScalars& scalars) {
+  const char* real = layout.doubles ? "double" : "float";
   std::string text = concat("ply\nformat binary_little_endian 1.0\ncomment created by photohull ",
-                            PHOTOHULL_VERSION, "\nelement vertex ", mesh.positions.size(), "\n");
+                            PHOTOHULL_VERSION, "\nelement vertex ", layout.vertices, "\n");
   for (const char* axis : {"x", "y", "z"}) text += concat("property ", real, " ", axis, "\n");
-  if (!mesh.normals.empty()) text += "property float nx\nproperty float ny\nproperty float nz\n";
-  if (!mesh.colours.empty())
-    text += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
-  if (!mesh.confidence.empty()) text += "property float confidence\n";
+  if (layout.normals) text += "property float nx\nproperty float ny\nproperty float nz\n";
+  if (layout.colours) text += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  if (layout.confidence) text += "property float confidence\n";
   for (const auto& scalar : scalars) text += concat("property float ", scalar.first, "\n");
-  return text + concat("element face ", mesh.triangles.size(),
+  return text + concat("element face ", layout.triangles,
                        "\nproperty list uchar int vertex_indices\nend_header\n");
 }
 
-void put_vertices(const TriMesh& mesh, const VertexScalars& scalars, bool doubles,
+void put_vertices(const TriMesh& mesh, const VertexScalars& scalars, const PlyLayout& layout,
                   BlockWriter& out) {
   static const SrgbEncoder encode;
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     out.begin_record();
-    if (doubles)
+    if (layout.doubles)
       out.put(mesh.world(i));
     else
       out.put(glm::vec3(mesh.world(i)));
-    if (!mesh.normals.empty()) out.put(mesh.normals[i]);
-    if (!mesh.colours.empty()) {
+    if (layout.normals) out.put(mesh.normals[i]);
+    if (layout.colours) {
       const glm::vec3& linear = mesh.colours[i];
       out.put(std::array{encode(linear.r), encode(linear.g), encode(linear.b)});
     }
-    if (!mesh.confidence.empty()) out.put(mesh.confidence[i]);
+    if (layout.confidence) out.put(mesh.confidence[i]);
     for (const auto& scalar : scalars) out.put(float(scalar.second[i]));
   }
 }
 
-void put_faces(const TriMesh& mesh, BlockWriter& out) {
-  for (const auto& triangle : mesh.triangles) {
+void put_faces(const std::vector<std::array<std::uint32_t, 3>>& triangles, BlockWriter& out) {
+  for (const auto& triangle : triangles) {
     out.begin_record();
     out.put(std::uint8_t(3));
     out.put(triangle);
@@ -145,14 +144,40 @@ void put_faces(const TriMesh& mesh, BlockWriter& out) {
 
 }  // namespace
 
+PlyLayout ply_layout(const TriMesh& mesh) {
+  return {!mesh.normals.empty(), !mesh.colours.empty(), !mesh.confidence.empty(),
+          needs_double(mesh),    mesh.positions.size(), mesh.triangles.size()};
+}
+
+PlyFile::PlyFile(AtomicFile& file, const PlyLayout& layout) : file_(file), layout_(layout) {
+  const std::string text = header(layout, {});
+  file.write(text.data(), text.size());
+}
+
+void PlyFile::add_vertices(const TriMesh& mesh) {
+  check_attributes(mesh, {});
+  PHOTOHULL_CHECK(!layout_.normals || !mesh.normals.empty());
+  PHOTOHULL_CHECK(!layout_.colours || !mesh.colours.empty());
+  PHOTOHULL_CHECK(!layout_.confidence || !mesh.confidence.empty());
+  BlockWriter out(file_);
+  put_vertices(mesh, {}, layout_, out);
+  out.flush();
+}
+
+void PlyFile::add_triangles(const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  BlockWriter out(file_);
+  put_faces(triangles, out);
+  out.flush();
+}
+
 void write_ply(AtomicFile& file, const TriMesh& mesh, const VertexScalars& scalars) {
   check_attributes(mesh, scalars);
-  const bool doubles = needs_double(mesh);
-  const std::string text = header(mesh, scalars, doubles);
+  const PlyLayout layout = ply_layout(mesh);
+  const std::string text = header(layout, scalars);
   file.write(text.data(), text.size());
   BlockWriter out(file);
-  put_vertices(mesh, scalars, doubles, out);
-  put_faces(mesh, out);
+  put_vertices(mesh, scalars, layout, out);
+  put_faces(mesh.triangles, out);
   out.flush();
 }
 

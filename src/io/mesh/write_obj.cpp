@@ -71,7 +71,7 @@ void add_faces(const MeshContents& contents, const MeshPart& part, std::size_t f
       else
         lines.add(" %zu", vertex);
     }
-    lines.add("\n");
+    lines.add("%c", '\n');
   }
 }
 
