@@ -15,9 +15,8 @@ namespace photohull::pipeline {
 namespace {
 
 constexpr int kProbeVoxels =
-    128;  // along the box, of the hull that tells how much surface there is
-constexpr double kFaceVoxels = 1.5;  // from the box's faces, where a part's hull ends
-constexpr int kPlenty = 4;           // times what is usual: no object has so much surface
+    128;                    // along the box, of the hull that tells how much surface there is
+constexpr int kPlenty = 4;  // times what is usual: no object has so much surface
 
 CostQuestion question_of(const ReconstructOptions& options, const Box& box, const GridSpec& grid,
                          std::span<const Camera> cameras, Silhouettes masks) {
@@ -26,7 +25,7 @@ CostQuestion question_of(const ReconstructOptions& options, const Box& box, cons
   question.grid = grid;
   question.method = options.effective_method();
   question.masks = masks;
-  question.part = options.part.has_value();
+  if (options.part) question.part = {1, options.part_bricks};  // photographs are cut
   if (makes_texture(options)) {
     question.texture_bytes = texture_bytes(memory_limit(options));
     question.pixel = carving::pixel_footprint(box, question.cameras);
@@ -41,19 +40,16 @@ MemoryNeed need_of(CostQuestion question) {
   return need;
 }
 
-/// Squares of the lattice's voxels. `part`: where the box cuts the hull off there is no surface.
-double area_of(const Subject& subject, bool part, Hull& hull) {
+/// Squares of the lattice's voxels.
+double area_of(const Subject& subject, Hull& hull) {
   const double voxel =
       std::max(carving::voxel_size_for(subject.box, kProbeVoxels), subject.grid.voxel_size);
   const TriMesh mesh =
       extract_mesh(hull.carve_box(carving::fit_grid(subject.box, voxel), subject.box));
-  Box within = subject.box;
-  if (part) within = {within.min + kFaceVoxels * voxel, within.max - kFaceVoxels * voxel};
   double twice = 0;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const glm::dvec3 p = mesh.world(a), q = mesh.world(b), r = mesh.world(c);
-    if (!part || within.contains((p + q + r) / 3.0)) twice += glm::length(glm::cross(q - p, r - p));
-  }
+  for (const auto& [a, b, c] : mesh.triangles)
+    twice += double(glm::length(
+        glm::cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a])));
   return 0.5 * twice / (subject.grid.voxel_size * subject.grid.voxel_size);
 }
 
@@ -72,7 +68,7 @@ std::int64_t check_room(const ReconstructOptions& options, const Subject& subjec
   const std::int64_t limit = memory_limit(options);
   const bool holds_some = subject.held_bytes > 0;
   if (!holds_some && kPlenty * estimate_cost(question).bytes <= limit) return 0;
-  question.hull_area = area_of(subject, options.part.has_value(), hull);
+  if (!options.part) question.hull_area = area_of(subject, hull);
   MemoryNeed need = need_of(question);
   const std::int64_t left = limit - need.bytes;
   const std::int64_t fewest = holds_some ? fewest_held_bytes(subject.views) : 0;

@@ -12,9 +12,13 @@ namespace {
 constexpr double kBaseBytes = 285e6;        // libraries, the driver's compiler, batches of rays
 constexpr double kPixelBytes = 6.7;         // without silhouettes: colour, twice, and its mip chain
 constexpr double kMaskedPixelBytes = 14.8;  // with: coverage and distances as well
-constexpr double kBesidePixelBytes = 6.5;   // of a part: depths beside it, and the whole's bricks
-constexpr double kHullAreaBytes = 525;      // bricks, mesh and files of a voxel's square
-constexpr double kUsualHull = 0.29;         // area of the hull, of that of the box
+// Of a part: photographs until they are cut; then libraries and all that the process has read,
+// those that are cut and depths beside the part, and bricks that hold its surface.
+constexpr double kUncutPixelBytes = 5, kMaskedUncutPixelBytes = 9;
+constexpr double kPartBaseBytes = 320e6, kPartPixelBytes = 16, kMaskedPartPixelBytes = 24,
+                 kPartBrickBytes = 23.3e3;
+constexpr double kHullAreaBytes = 525;  // bricks, mesh and files of a voxel's square
+constexpr double kUsualHull = 0.29;     // area of the hull, of that of the box
 // While a texture is made:
 constexpr double kTexturePixelBytes = 4, kMapPixelBytes = 5, kTextureFaceBytes = 300;
 constexpr double kTexelsOfPixel = 1.6;  // for each pixel on the box's faces, gaps included
@@ -42,6 +46,17 @@ double bytes_with_texture(const CostQuestion& q, double read_pixels, double face
          std::min(third, kChartTexelBytes * texels) + std::min(third, kPageTexelBytes * texels);
 }
 
+/// While photographs are read, and then; without voxels, while they are read alone.
+double bytes_of_part(const CostQuestion& q, double cut_pixels) {
+  const bool open = q.masks == Silhouettes::kNone;
+  const double reading =
+      kPartBaseBytes + (open ? kUncutPixelBytes : kMaskedUncutPixelBytes) * q.part->pixels;
+  const double cut = kPartBaseBytes +
+                     (open ? kPartPixelBytes : kMaskedPartPixelBytes) * cut_pixels +
+                     kPartBrickBytes * q.part->bricks;
+  return q.grid ? std::max(reading, cut) : reading;
+}
+
 }  // namespace
 
 Cost estimate_cost(const CostQuestion& q) {
@@ -50,7 +65,7 @@ Cost estimate_cost(const CostQuestion& q) {
   const double read_pixels = pixels(read);
   const bool open = q.masks == Silhouettes::kNone;
   double bytes = kBaseBytes + (open ? kPixelBytes : kMaskedPixelBytes) * read_pixels;
-  if (q.part) bytes += kBesidePixelBytes * read_pixels;
+  if (q.part) bytes = bytes_of_part(q, read_pixels);
   Cost cost;
   cost.cpu_seconds = kBaseSeconds + kPixelSeconds * pixels(q.files);
   if (q.masks == Silhouettes::kMade) cost.cpu_seconds += kMadePixelSeconds * read_pixels;
@@ -60,7 +75,7 @@ Cost estimate_cost(const CostQuestion& q) {
     const glm::dvec3 n(q.grid->voxels());
     const double faces = 2 * (n.x * n.y + n.y * n.z + n.z * n.x);
     const double area = q.hull_area.value_or(kUsualHull * faces);
-    bytes += open ? method.unmasked_face_bytes * faces : kHullAreaBytes * area;
+    if (!q.part) bytes += open ? method.unmasked_face_bytes * faces : kHullAreaBytes * area;
     if (q.texture_bytes > 0)
       bytes = std::max(bytes, bytes_with_texture(q, read_pixels, open ? faces : area / kUsualHull));
     cost.cpu_seconds += (open ? method.unmasked_face_seconds : method.face_seconds) * faces;

@@ -14,13 +14,19 @@ namespace photohull::pipeline {
 /// Where the silhouettes come from.
 enum class Silhouettes { kGiven, kMade, kNone };
 
+/// Of a part, whose surface is known, and which knows depths of what lies beside it.
+struct PartCost {
+  double pixels = 0;  ///< of the photographs before they are cut to it
+  double bricks = 0;  ///< that hold its surface
+};
+
 struct CostQuestion {
   std::vector<Intrinsics> files;  ///< sizes of the photographs as they are
   std::vector<Camera> cameras;    ///< of the photographs as they are read, in the same order
   std::optional<GridSpec> grid;   ///< nothing: not known yet, photographs alone count
   Method method = Method::kRefine;
   Silhouettes masks = Silhouettes::kGiven;
-  bool part = false;               ///< is it a part, which knows depths of what lies beside it?
+  std::optional<PartCost> part;    ///< nothing: it is none
   std::int64_t texture_bytes = 0;  ///< that making a texture may take (texture_stage.h); 0: no such
   double pixel = 0;  ///< of the photographs as read, world units at the box's centre; for a texture
   /// Area of the hull, squares of voxels, where masks were seen; nothing: not known yet.

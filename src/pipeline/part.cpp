@@ -174,6 +174,7 @@ Part cut_part(const SparseVolume& whole, const Box& box, const PartNumber& part,
   out.near = within(whole, grown(all, kAbout, whole.grid));
   out.grid = finer(whole.grid, all, levels);
   const int scale = 1 << levels;
+  out.bricks = share_of(whole, all) * double(whole.bricks.size()) * scale * scale;
   out.first_voxel = scale * kBrickEdge * all.first;
   out.own = {scale * (range.first - all.first), scale * (range.end - all.first)};
   const Box filled = out.grid.bounds();

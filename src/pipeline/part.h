@@ -44,6 +44,7 @@ struct Part {
   glm::ivec3 first_voxel{0};  ///< of the whole's grid at such voxels, that `grid` begins with
   BrickRange own;             ///< bricks of `grid` that are the part's own
   Box whole_box;              ///< that the whole was made in
+  double bricks = 0;          ///< about so many of `grid` hold its surface
   Box box;                    ///< that the grid's voxels fill, as far as it lies in the whole's
 };
 

@@ -11,12 +11,14 @@
 #include "pipeline/larger_photographs.h"
 #include "pipeline/methods/method.h"
 #include "pipeline/read_scene.h"
+#include "pipeline/subject.h"
 #include "pipeline/texture_stage.h"
+#include "views/crop.h"
 
 namespace photohull::pipeline {
 namespace {
 
-constexpr double kPartsPhotographs = 0.7;  // of memory that those of a part may take as they are
+constexpr double kPartsPhotographs = 0.85;  // of memory that those of a part may take as they are
 constexpr double kCoarsestHeld = 4;  // voxels that a pixel may be wide where some are held larger
 
 /// Alpha channels are not known before decoding: they count as masks that must be made.
@@ -45,7 +47,14 @@ void count_cost(const Request& request, const Scene& scene, const Box& box, bool
   question.cameras = cameras_at(plan.scales, scene);
   question.method = request.options.effective_method();
   question.masks = silhouettes_of(request.masks, scene);
-  question.part = request.options.part.has_value();
+  if (request.options.part) {
+    question.part = {0, request.options.part_bricks};
+    for (Camera& camera : question.cameras) {
+      Intrinsics& k = camera.intrinsics;
+      question.part->pixels += double(k.width) * k.height;
+      k = cropped_intrinsics(*request.options.carved_box, kCropMargin, camera);
+    }
+  }
   plan.silhouettes = question.masks != Silhouettes::kNone;
   if (with_grid)
     plan.grid =

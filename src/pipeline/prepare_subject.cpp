@@ -68,6 +68,7 @@ ReconstructOptions options_of(const std::optional<Part>& part, ReconstructOption
   options.voxel_size = part->grid.voxel_size;
   options.box.exact = true;
   options.carved_box = part->box;
+  options.part_bricks = part->bricks;
   options.report_page = ReportPage::kOff;
   options.tiles = {};
   return options;

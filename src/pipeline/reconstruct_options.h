@@ -117,6 +117,7 @@ struct ReconstructOptions {
   /// Where it is a part of the scene's box: what of this voxels fill. It is no choice of a user and
   /// not described.
   std::optional<Box> carved_box;
+  double part_bricks = 0;  ///< about so many hold its surface; as carved_box
 
   /// Throws UsageError naming the option.
   void validate() const;
