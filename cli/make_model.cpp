@@ -18,7 +18,6 @@
 #include "pipeline/part.h"
 #include "pipeline/part_options.h"
 #include "pipeline/photographs.h"
-#include "pipeline/stage_clock.h"
 #include "pipeline/write_results.h"
 #include "reconstruct_scene.h"
 #include "volume/write_vdb.h"
@@ -84,7 +83,7 @@ class PartByPart {
     make_whole();
     const std::vector<fs::path> parts = make_parts(problem);
     progress_.stage("join", 1);
-    begin_anew();
+    malloc_trim(0);
     const pipeline::JoinedParts joined =
         pipeline::join_parts(whole_, parts, out_, job_.max_memory, progress_);
     std::error_code ignored;
@@ -99,12 +98,6 @@ class PartByPart {
     if (failure)
       throw Error(concat(folder.string(), ": cannot make this folder: ", failure.message()));
     return folder;
-  }
-
-  /// Peaks of memory are a piece's own.
-  static void begin_anew() {
-    malloc_trim(0);  // the C library keeps what was freed
-    pipeline::forget_peak_memory();
   }
 
   /// On voxels as small as memory has room for.
@@ -130,7 +123,7 @@ class PartByPart {
     for (double room = problem.room(); room > 0;) {
       const std::optional<int> count = pipeline::fewest_parts(surface, finer_, room);
       if (!count) break;
-      progress_.note(concat("made in ", *count, " parts, for ", of_model.what()));
+      progress_.note(concat(of_model.problem(), ": it is made in ", *count, " parts"));
       std::vector<fs::path> made;
       pipeline::PartNumber part{1, *count};
       try {
@@ -158,7 +151,7 @@ class PartByPart {
     if (job.fresh || !steps_.has(name, identity) || !has_results(folder)) {
       PieceProgress progress(progress_, name, share, said_);
       steps_.begin(name);
-      begin_anew();
+      malloc_trim(0);  // the C library keeps what was freed
       pipeline::reconstruct_to_folder(job, pipeline::load_photographs(scene_, load_), folder,
                                       progress);
       steps_.done(name, identity);
@@ -192,7 +185,7 @@ MadeModel make_model(const pipeline::ReconstructOptions& job, const io::LoadScen
   try {
     pipeline::options_of_part(job, {}, 1, out);
   } catch (const UsageError& refused) {
-    throw TooManyVoxels(concat(problem->what(), "; it cannot be made in parts: ", refused.what()),
+    throw TooManyVoxels(problem->problem(), concat("in parts it cannot be made: ", refused.what()),
                         problem->voxel_size(), 0);
   }
   return PartByPart(job, load, scene, out, progress).make(*problem);

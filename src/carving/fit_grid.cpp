@@ -23,8 +23,8 @@ glm::ivec3 bricks_for(const glm::dvec3& voxels, double voxel_size) {
     throw TooManyVoxels(concat("voxel size ", voxel_size, " makes a lattice of ",
                                bricks.x * kBrickEdge, " x ", bricks.y * kBrickEdge, " x ",
                                bricks.z * kBrickEdge, " voxels, whose index alone takes ",
-                               std::ceil(bricks.x * bricks.y * bricks.z * 4 / 1048576),
-                               " MiB; choose a lower ", option_word("resolution"), ", a larger ",
+                               std::ceil(bricks.x * bricks.y * bricks.z * 4 / 1048576), " MiB"),
+                        concat("choose a lower ", option_word("resolution"), ", a larger ",
                                option_word("voxel_size"), " or a smaller ", option_word("box")),
                         voxel_size, 1);
   return glm::ivec3(bricks);

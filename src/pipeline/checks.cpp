@@ -147,8 +147,9 @@ void check_memory(const MemoryNeed& need, std::int64_t limit) {
       double(limit - need.fixed) / double(std::max<std::int64_t>(need.bytes - need.fixed, 1));
   throw TooManyVoxels(
       concat("this job would take about ", text(need.bytes), " of memory, but may take ",
-             text(limit), " (", option_word("max_memory"), "); lower ", option_word("resolution"),
-             " or ", option_word("image_scale"), ", or use fewer ", option_word("views")),
+             text(limit), " (", option_word("max_memory"), ")"),
+      concat("lower ", option_word("resolution"), " or ", option_word("image_scale"),
+             ", or use fewer ", option_word("views")),
       need.voxel_size, room);
 }
 

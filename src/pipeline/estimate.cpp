@@ -12,11 +12,10 @@ namespace {
 constexpr double kBaseBytes = 285e6;        // libraries, the driver's compiler, batches of rays
 constexpr double kPixelBytes = 6.7;         // without silhouettes: colour, twice, and its mip chain
 constexpr double kMaskedPixelBytes = 14.8;  // with: coverage and distances as well
-// Of a part: photographs until they are cut; then libraries and all that the process has read,
-// those that are cut and depths beside the part, and bricks that hold its surface.
+// Of a part: photographs until they are cut; then those that are cut with depths beside the part,
+// and bricks that hold its surface.
 constexpr double kUncutPixelBytes = 5, kMaskedUncutPixelBytes = 9;
-constexpr double kPartBaseBytes = 320e6, kPartPixelBytes = 16, kMaskedPartPixelBytes = 24,
-                 kPartBrickBytes = 23.3e3;
+constexpr double kPartPixelBytes = 21, kMaskedPartPixelBytes = 29, kPartBrickBytes = 22.6e3;
 constexpr double kHullAreaBytes = 525;  // bricks, mesh and files of a voxel's square
 constexpr double kUsualHull = 0.29;     // area of the hull, of that of the box
 // While a texture is made:
@@ -50,9 +49,8 @@ double bytes_with_texture(const CostQuestion& q, double read_pixels, double face
 double bytes_of_part(const CostQuestion& q, double cut_pixels) {
   const bool open = q.masks == Silhouettes::kNone;
   const double reading =
-      kPartBaseBytes + (open ? kUncutPixelBytes : kMaskedUncutPixelBytes) * q.part->pixels;
-  const double cut = kPartBaseBytes +
-                     (open ? kPartPixelBytes : kMaskedPartPixelBytes) * cut_pixels +
+      kBaseBytes + (open ? kUncutPixelBytes : kMaskedUncutPixelBytes) * q.part->pixels;
+  const double cut = kBaseBytes + (open ? kPartPixelBytes : kMaskedPartPixelBytes) * cut_pixels +
                      kPartBrickBytes * q.part->bricks;
   return q.grid ? std::max(reading, cut) : reading;
 }

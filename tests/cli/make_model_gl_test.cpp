@@ -19,6 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
+using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::Not;
@@ -85,10 +86,11 @@ class MakeModel : public SphereScene {
 TEST_F(MakeModel, WhatDoesNotFitIsMadeInPartsAndGoesOnWhereItWasStopped) {
   Progress silent;
   EXPECT_TRUE(make(silent, "one").report);
-  job_.max_memory = bytes_for(0.7);
+  job_.max_memory = bytes_for(0.85);
   Listener stopped("part2of2: refine");
   EXPECT_THROW(make(stopped, "parts"), Cancelled);
-  EXPECT_THAT(stopped.notes, Contains(HasSubstr("parts, for this job would take about")));
+  EXPECT_THAT(stopped.notes, Contains(AllOf(HasSubstr("this job would take about"),
+                                            HasSubstr("it is made in 2 parts"))));
   EXPECT_FALSE(fs::exists(folder_ / "parts/mesh.ply"));
   Listener again;
   const cli::MadeModel made = make(again, "parts");
@@ -115,10 +117,10 @@ TEST_F(MakeModel, SaysWhyPartsDoNotHelp) {
   Progress silent;
   const auto attempt = [&] { make(silent, "out"); };
   job_.exports = {"glb"};
-  job_.max_memory = bytes_for(0.7);
-  EXPECT_THAT(attempt, ThrowsMessage<Error>(testing::AllOf(
-                           HasSubstr("this job would take about"),
-                           HasSubstr("it cannot be made in parts: part=1/1: export"))));
+  job_.max_memory = bytes_for(0.85);
+  EXPECT_THAT(attempt, ThrowsMessage<Error>(
+                           AllOf(HasSubstr("this job would take about"),
+                                 HasSubstr("in parts it cannot be made: part=1/1: export"))));
   job_.exports = {};
   job_.max_memory = std::int64_t(1) << 20;
   EXPECT_THAT(attempt, ThrowsMessage<Error>(HasSubstr("but may take 1 MiB (max_memory)")));
