@@ -87,21 +87,21 @@ TEST_F(MakeModel, WhatDoesNotFitIsMadeInPartsAndGoesOnWhereItWasStopped) {
   Progress silent;
   EXPECT_TRUE(make(silent, "one").report);
   job_.max_memory = bytes_for(0.85);
-  Listener stopped("part2of2: refine");
+  Listener stopped("part2of3: refine");
   EXPECT_THROW(make(stopped, "parts"), Cancelled);
   EXPECT_THAT(stopped.notes, Contains(AllOf(HasSubstr("this job would take about"),
-                                            HasSubstr("it is made in 2 parts"))));
+                                            HasSubstr("it is made in 3 parts"))));
   EXPECT_FALSE(fs::exists(folder_ / "parts/mesh.ply"));
   Listener again;
   const cli::MadeModel made = make(again, "parts");
   EXPECT_THAT(again.stages, Not(Contains(StartsWith("whole: "))));
-  EXPECT_THAT(again.stages, Not(Contains(StartsWith("part1of2: "))));
-  EXPECT_THAT(again.stages, Contains("part2of2: refine"));
+  EXPECT_THAT(again.stages, Not(Contains(StartsWith("part1of3: "))));
+  EXPECT_THAT(again.stages, Contains("part2of3: refine"));
 
   EXPECT_FALSE(made.report);
   EXPECT_EQ(made.views, kViews);
   const json report = json::parse(read_bytes(folder_ / "parts/report.json"));
-  EXPECT_EQ(report["parts"].size(), 2u);
+  EXPECT_EQ(report["parts"].size(), 3u);
   EXPECT_FALSE(fs::exists(folder_ / "parts/parts")) << "they are joined";
   const SparseVolume joined = read_vdb_surface(folder_ / "parts/volume.vdb"),
                      one = read_vdb_surface(folder_ / "one/volume.vdb");
