@@ -80,7 +80,7 @@ class PartByPart {
   MadeModel make(const TooManyVoxels& problem) {
     job_.resolution.reset();
     job_.voxel_size = problem.voxel_size();
-    make_whole();
+    make_whole(problem);
     const std::vector<fs::path> parts = make_parts(problem);
     progress_.stage("join", 1);
     malloc_trim(0);
@@ -100,8 +100,9 @@ class PartByPart {
     return folder;
   }
 
-  /// On voxels as small as memory has room for.
-  void make_whole() {
+  /// On voxels as small as memory has room for. Throws what was the matter with the model where it
+  /// has none.
+  void make_whole(const TooManyVoxels& of_model) {
     pipeline::ReconstructOptions whole;
     for (finer_ = 1;; ++finer_) {
       whole = pipeline::options_of_whole(job_, finer_);
@@ -110,7 +111,11 @@ class PartByPart {
         make_piece("whole", whole, kWholeShare);
         return;
       } catch (const TooManyVoxels& problem) {
-        if (finer_ == kCoarsest || problem.room() <= 0) throw;
+        if (finer_ < kCoarsest && problem.room() > 0) continue;
+        std::error_code ignored;
+        fs::remove_all(folder_, ignored);
+        fs::remove(out_, ignored);  // if nothing else is in it
+        throw of_model;
       }
     }
   }

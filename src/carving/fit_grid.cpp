@@ -86,6 +86,8 @@ GridSpec coarser(const GridSpec& grid) {
   GridSpec out;
   out.voxel_size = 2 * grid.voxel_size;
   out.bricks = (grid.bricks + 1) / 2;
+  out.before = 0.5 * grid.before;
+  out.after = 0.5 * grid.after;
   out.origin = grid.origin + 0.5 * grid.voxel_size;
   return out;
 }

@@ -19,9 +19,15 @@ struct GridSpec {
   glm::dvec3 origin{0.0};  ///< world position of the centre of voxel (0, 0, 0)
   double voxel_size = 0;   ///< world units
   glm::ivec3 bricks{0};    ///< bricks along each axis
+  /// Of a part of a larger lattice: how many of that one's voxels lie before and after it. Only
+  /// frame() goes by them.
+  glm::dvec3 before{0.0}, after{0.0};
 
   glm::ivec3 voxels() const { return bricks * kBrickEdge; }
   glm::dvec3 world(const glm::dvec3& voxel) const { return origin + voxel_size * voxel; }
+  /// The larger lattice, from the centre of its first voxel to that of its last, in voxels of this
+  /// one. What follows from how cameras look at it is the same for all parts.
+  Box frame() const { return {-before, glm::dvec3(voxels() - 1) + after}; }
   /// The world box that the voxels (not only their centres) fill.
   Box bounds() const;
   std::size_t brick_count() const {

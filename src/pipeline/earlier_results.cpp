@@ -77,6 +77,8 @@ EarlierResults read_earlier(const ReconstructOptions& options) {
   if (options.part) {
     WholeReport report = read_whole_report(options.follow);
     out.part = cut_part(volume, report.box, *options.part, options.finer);
+    if (!report.hull_trust.empty())
+      out.part->hull_trust = report.hull_trust[std::size_t(options.finer)];
     out.verdict = std::move(report.verdict);
   } else {
     out.before = {std::move(volume), read_report(options.follow).followed};

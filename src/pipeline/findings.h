@@ -1,6 +1,7 @@
 // What each stage of a reconstruction found out beside its value; the report is made of these.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -143,7 +144,9 @@ struct RefineFitFindings {
 
 struct RefineFindings {
   int resumed_levels = 0;  ///< of the levels, done by an earlier run that was interrupted
-  bool followed = false;   ///< did the first level start from the moment before?
+  /// As refine::RefineReport has it.
+  std::optional<std::array<double, 5>> hull_trust;
+  bool followed = false;  ///< did the first level start from the moment before?
   std::vector<RefineLevelFindings> levels;
   std::vector<RefineFitFindings> fits;
 };

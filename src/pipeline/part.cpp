@@ -70,6 +70,9 @@ GridSpec finer(const GridSpec& whole, const BrickRange& range, int levels) {
   GridSpec out = whole;
   out.origin += whole.voxel_size * glm::dvec3(range.first * kBrickEdge);
   out.bricks = range.end - range.first;
+  const int scale = kBrickEdge << levels;
+  out.before = scale * range.first;
+  out.after = scale * (whole.bricks - range.end);
   for (int level = 0; level < levels; ++level) {
     out.voxel_size /= 2;
     out.origin -= 0.5 * out.voxel_size;

@@ -45,7 +45,8 @@ struct Part {
   BrickRange own;             ///< bricks of `grid` that are the part's own
   Box whole_box;              ///< that the whole was made in
   double bricks = 0;          ///< about so many of `grid` hold its surface
-  Box box;                    ///< that the grid's voxels fill, as far as it lies in the whole's
+  std::optional<double> hull_trust;  ///< of the whole (refine::WholeSurface)
+  Box box;  ///< that the grid's voxels fill, as far as it lies in the whole's
 };
 
 /// `box`: that the whole was made in. `levels`: how often its voxels are halved.

@@ -19,6 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
+constexpr std::size_t kHullTrusts = 5;
 constexpr int kLargestSide = 1 << 20;  // pixels of a photograph
 
 /// report.json, with errors that name it.
@@ -193,7 +194,10 @@ ResultReport read_report(const fs::path& folder) {
 
 WholeReport read_whole_report(const fs::path& folder) {
   const ReportFile report(report_of(folder));
-  return {read_box(report), read_verdict(report)};
+  WholeReport out{read_box(report), read_verdict(report), {}};
+  if (report.root().contains("hull_trust"))
+    out.hull_trust = report.numbers(report.root(), "hull_trust", kHullTrusts);
+  return out;
 }
 
 ResultModel read_result(const fs::path& folder) {

@@ -30,8 +30,9 @@ ResultReport read_report(const std::filesystem::path& folder);
 
 /// What it tells of a whole that parts are made of. Throws as read_result does.
 struct WholeReport {
-  Box box;                  ///< that was reconstructed
-  VerdictFindings verdict;  ///< and as JSON
+  Box box;                         ///< that was reconstructed
+  VerdictFindings verdict;         ///< and as JSON
+  std::vector<double> hull_trust;  ///< RefineFindings::hull_trust; empty: it tells none
 };
 WholeReport read_whole_report(const std::filesystem::path& folder);
 

@@ -95,6 +95,7 @@ void add_sweeps(const SweepFindings& sweep, ordered_json& j) {
 void add_refinement(const RefineFindings& refine, ordered_json& j) {
   j["resumed_levels"] = refine.resumed_levels;
   j["followed"] = refine.followed;
+  if (refine.hull_trust) j["hull_trust"] = *refine.hull_trust;
   j["refine"] = ordered_json::array();
   for (const RefineLevelFindings& level : refine.levels)
     j["refine"].push_back({{"voxel_size", level.voxel_size},

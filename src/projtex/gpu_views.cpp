@@ -23,7 +23,7 @@ GridCamera to_grid(const Camera& camera, const GridSpec& grid) {
 
 double viewing_depth(const GridCamera& camera, const GridSpec& grid) {
   return photohull::viewing_depth(camera.projection, camera.centre, camera.width, camera.height,
-                                  Box{glm::dvec3(0), glm::dvec3(grid.voxels() - 1)});
+                                  grid.frame());
 }
 
 shaders::GpuView to_gpu_view(const GridCamera& camera, const glm::ivec2& array_size,

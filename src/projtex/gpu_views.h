@@ -21,7 +21,7 @@ struct GridCamera {
 
 GridCamera to_grid(const Camera& camera, const GridSpec& grid);
 
-/// Of the grid's box, in voxels (core/viewing_depth.h).
+/// Of the grid's frame, in voxels (core/viewing_depth.h).
 double viewing_depth(const GridCamera& camera, const GridSpec& grid);
 
 /// The same in single precision for images that sit at the origin of layers of an array texture of

@@ -58,8 +58,8 @@ class FitPass {
 
   /// Displacements of the vertices: smooth, near the fitted offsets, and with `seats` such that the
   /// surface touches the silhouettes' outlines.
-  std::vector<float> displacements(const SparseVolume& hull, const SparseVolume& volume,
-                                   bool seats) {
+  std::vector<float> displacements(const SparseVolume& hull, const SparseVolume& volume, bool seats,
+                                   FitReport& report) {
     const std::vector<float> spacings =
         tap_spacings(grid_, positions_, job_.matching(grid_).cameras(), choices_, options_.fit);
     std::vector<Peak> peaks = peaks_of(fits_, spacings, options_.fit);
@@ -74,10 +74,12 @@ class FitPass {
     choices_ = {};
     // What patches cannot be trusted with stays where it is.
     for (std::size_t k = 0; k < peaks.size(); ++k) peaks[k].offset *= trust[k];
-    const double tight =
-        job_.is_bounded()
-            ? pull_to_hull(hull, graph_, positions_, {texture_, trust}, options_.hull_prior, peaks)
-            : 0;
+    double tight = 0;
+    if (job_.is_bounded()) {
+      report.hull_trust =
+          pull_to_hull(hull, graph_, positions_, {texture_, trust}, options_.hull_prior, peaks);
+      tight = options_.hull_prior.trust.value_or(report.hull_trust->front());
+    }
     for (float& t : tight_at) t *= float(tight);
     RegularizeOptions smooth = options_.regularize;
     smooth.membrane = kFitMembrane, smooth.fairing = kFitFairing;
@@ -134,7 +136,7 @@ std::int64_t fit_passes(const RefineJob& job, const SettledBricks& settled, Boun
       }
       best = held.before;
       const std::vector<float> moves =
-          pass.displacements(bounding.volume(), volume, last && job.cones.any());
+          pass.displacements(bounding.volume(), volume, last && job.cones.any(), report);
       if (!last) before = volume;
       move_surface(volume, pass.mesh(), moves);
       for (const float move : moves) report.mean_move += std::abs(move) / double(moves.size());

@@ -31,27 +31,32 @@ std::vector<float> evidence_around(const VertexGraph& graph, const std::vector<P
   return mean;
 }
 
-/// How far the hull may be believed where nothing checks it, [0, 1]: by the share of what
-/// photographs tell surely that lies on it.
-double tightness(const SparseVolume& hull, std::span<const glm::vec3> positions,
-                 const std::vector<Peak>& peaks, const std::vector<float>& evidence) {
-  double sure = kPriorCount, on_hull = kPriorCount;
+/// How far the hull may be believed where nothing checks it: by the share of what photographs tell
+/// surely that lies on it, to within a voxel.
+HullTrust tightness(const SparseVolume& hull, std::span<const glm::vec3> positions,
+                    const std::vector<Peak>& peaks, const std::vector<float>& evidence) {
+  double sure = kPriorCount;
+  HullTrust on_hull;
+  on_hull.fill(kPriorCount);
   for (std::size_t i = 0; i < peaks.size(); ++i) {
     if (!(peaks[i].weight >= kFullWeight && evidence[i] >= kEvidenceAround)) continue;
     sure += 1;
-    on_hull += -hull.interpolated(glm::dvec3(positions[i])) - peaks[i].offset < kReach;
+    const double under = -hull.interpolated(glm::dvec3(positions[i])) - peaks[i].offset;
+    double reach = kReach;
+    for (double& on : on_hull) on += under < reach, reach /= 2;
   }
-  return std::pow(on_hull / sure, 4);
+  for (double& on : on_hull) on = std::pow(on / sure, 4);
+  return on_hull;
 }
 
 }  // namespace
 
-double pull_to_hull(const SparseVolume& hull, const VertexGraph& graph,
-                    std::span<const glm::vec3> positions, const PatchQuality& patches,
-                    const HullPriorOptions& options, std::vector<Peak>& peaks) {
+HullTrust pull_to_hull(const SparseVolume& hull, const VertexGraph& graph,
+                       std::span<const glm::vec3> positions, const PatchQuality& patches,
+                       const HullPriorOptions& options, std::vector<Peak>& peaks) {
   const std::vector<float> evidence = evidence_around(graph, peaks);
-  const double tight = tightness(hull, positions, peaks, evidence);
-  const double strongest = options.weight * tight;
+  const HullTrust tight = tightness(hull, positions, peaks, evidence);
+  const double strongest = options.weight * options.trust.value_or(tight.front());
   tbb::parallel_for(std::size_t(0), peaks.size(), [&](std::size_t i) {
     const float under = float(-hull.interpolated(glm::dvec3(positions[i])));
     const float share = 1 - std::clamp(under, 0.0f, float(kReach)) / float(kReach);

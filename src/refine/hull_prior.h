@@ -1,6 +1,8 @@
 // What silhouettes say where photographs say little.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,8 +13,14 @@
 
 namespace photohull::refine {
 
+/// How far the hull can be believed, [0, 1]: at its own voxels, and, as these tell, where they are
+/// halved once, twice and so on.
+using HullTrust = std::array<double, 5>;
+
 struct HullPriorOptions {
   double weight = 30, evidence = 0.2;
+  /// How far the hull can be believed, where that is known already; it is no choice.
+  std::optional<double> trust;
 };
 
 inline void describe(Described& to, HullPriorOptions& o) {
@@ -35,9 +43,9 @@ struct PatchQuality {
 /// is not believed where they do not: the weight falls with the fourth power of the share of what
 /// they tell surely that lies on it. Nor is it at thin parts, which it makes too thick: the weight
 /// falls with the square of `patches.trust`. `positions` in voxels of the hull's grid.
-/// Returns how far the hull can be believed, [0, 1].
-double pull_to_hull(const SparseVolume& hull, const VertexGraph& graph,
-                    std::span<const glm::vec3> positions, const PatchQuality& patches,
-                    const HullPriorOptions& options, std::vector<Peak>& peaks);
+/// Returns how far the hull can be believed.
+HullTrust pull_to_hull(const SparseVolume& hull, const VertexGraph& graph,
+                       std::span<const glm::vec3> positions, const PatchQuality& patches,
+                       const HullPriorOptions& options, std::vector<Peak>& peaks);
 
 }  // namespace photohull::refine

@@ -97,7 +97,8 @@ class MatchingStep {
     for (std::size_t i = 0; i < peaks_.size(); ++i) peaks_[i].weight *= trust[i];
     // Not at first: what no silhouette shows is still to be found under the hull.
     if (!place_.first_level && job_.is_bounded())
-      pull_to_hull(hull, graph_, positions_, {texture_, trust}, options_.hull_prior, peaks_);
+      counts.hull_trust =
+          pull_to_hull(hull, graph_, positions_, {texture_, trust}, options_.hull_prior, peaks_);
     std::vector<float> moves =
         regularize(graph_, peaks_, positions_, mesh_.normals, trust, options_.regularize);
     const auto told = std::count_if(peaks_.begin(), peaks_.end(),

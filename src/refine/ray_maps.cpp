@@ -84,6 +84,12 @@ glm::dvec3 normal_at(const SparseVolume& surface, const Ray& ray) {
   return glm::dot(slope, ray.direction) < 0 ? glm::normalize(slope) : -ray.direction;
 }
 
+/// In voxels, one more than GridSpec::frame().
+Box frame_of(const GridSpec& grid) {
+  const Box frame = grid.frame();
+  return {frame.min, frame.max + 1.0};
+}
+
 class RayMapper {
  public:
   RayMapper(gpu::Context& context, const SparseVolume& hull, const SparseVolume* surface,
@@ -93,8 +99,8 @@ class RayMapper {
         options_(options),
         clear_(clear_space(hull)),
         cameras_(projtex::to_grid(photographs.cameras, hull.grid)),
-        partners_(choose_partners(cameras_, {glm::dvec3(0), glm::dvec3(hull.grid.voxels())},
-                                  options.nearest_partner, options.tiles)),
+        partners_(
+            choose_partners(cameras_, frame_of(hull.grid), options.nearest_partner, options.tiles)),
         search_(context, photographs.images, cameras_, photographs.noise_sigma, options) {}
 
   RayMap map_of(std::size_t v) const {
@@ -116,7 +122,8 @@ class RayMapper {
  private:
   RayMap empty_map(std::size_t v) const {
     const auto& c = cameras_[v];
-    const double depth = viewing_depth(c.projection, c.centre, c.width, c.height, grid_box());
+    const double depth =
+        viewing_depth(c.projection, c.centre, c.width, c.height, frame_of(hull_.grid));
     RayMap map;
     map.stride = std::max(kLeastStride, options_.ray_spacing * c.focal / std::max(depth, 1.0));
     map.width = int(std::ceil(c.width / map.stride));
@@ -125,8 +132,6 @@ class RayMapper {
     map.weight = map.depth;
     return map;
   }
-
-  Box grid_box() const { return {glm::dvec3(0), glm::dvec3(hull_.grid.voxels())}; }
 
   /// Calls visit(t) for places in the hull along a ray, from `t` voxels on, until it returns false.
   template <typename Visit>

@@ -212,6 +212,15 @@ std::vector<GridSpec> grids_to(const GridSpec& finest, std::span<const Camera> c
 
 }  // namespace
 
+std::optional<HullTrust> RefineReport::hull_trust() const {
+  std::optional<HullTrust> last;
+  for (const LevelReport& level : levels)
+    if (level.hull_trust) last = level.hull_trust;
+  for (const FitReport& fit : fits)
+    if (fit.hull_trust) last = fit.hull_trust;
+  return last;
+}
+
 SparseVolume refine_surface(gpu::Context& context, const RefineScene& scene,
                             const RefineOptions& options, Progress& progress, RefineReport* report,
                             const CheckpointFile* checkpoint) {
@@ -231,7 +240,10 @@ SparseVolume refine_surface(gpu::Context& context, const RefineScene& scene,
                 scene.whole != nullptr};
   const GridSpec& whole = scene.whole ? scene.whole->volume.grid : scene.finest;
   job.options.match = fit_angles(scene.cameras, whole.bounds().center(), options.match);
-  if (scene.whole) job.options.fit.first_voxel = scene.whole->first_voxel;
+  if (scene.whole) {
+    job.options.fit.first_voxel = scene.whole->first_voxel;
+    job.options.hull_prior.trust = scene.whole->hull_trust;
+  }
   std::vector<GridSpec> grids = grids_to(scene.finest, scene.cameras, job.is_bounded(),
                                          scene.whole ? scene.whole->levels : options.levels);
   RefineReport counts;

@@ -143,6 +143,7 @@ struct LevelReport {
   std::int64_t split = 0, settled_pixels = 0, settled_plain = 0, settled_flat = 0;
   double mean_move = 0;  ///< of the last iteration, voxels
   double evidence = 0;   ///< share of its surfels that the photographs say a place for
+  std::optional<HullTrust> hull_trust;  ///< as pull_to_hull returns it; nothing: it was not asked
 };
 
 /// One fit pass of the refinement.
@@ -150,6 +151,7 @@ struct FitReport {
   double seconds = 0;                      ///< wall
   double held_before = 0, held_after = 0;  ///< mean score of the held-out views
   double mean_move = 0;                    ///< voxels
+  std::optional<HullTrust> hull_trust;     ///< as of LevelReport
   bool kept = false;                       ///< did the next pass find the surface better?
 };
 
@@ -158,6 +160,9 @@ struct RefineReport {
   bool followed = false;  ///< did it start from the moment before?
   std::vector<LevelReport> levels;
   std::vector<FitReport> fits;
+
+  /// Of its last step that asked.
+  std::optional<HullTrust> hull_trust() const;
 };
 
 /// Where finished levels are kept until the job is done.
@@ -177,6 +182,7 @@ struct WholeSurface {
   int levels = 1;  ///< by which the part's voxels are finer, each halves them
   /// Of each camera, in world units: what of the surface lies outside the part's grid.
   std::span<const DepthMap> beside;
+  std::optional<double> hull_trust;  ///< at the part's voxels, as the whole's last step tells
 };
 
 /// What a surface is refined from. The parts outlive the call.

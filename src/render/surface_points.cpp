@@ -59,6 +59,8 @@ visibility::DepthMaps occluder_maps(std::span<const Camera> cameras, const GridS
   GridSpec coarse = grid;
   coarse.voxel_size *= shaders::kBakeTexel;
   coarse.bricks = glm::max(grid.bricks / int(shaders::kBakeTexel), 1);
+  coarse.before /= double(shaders::kBakeTexel);
+  coarse.after /= double(shaders::kBakeTexel);
   return visibility::DepthMaps(projtex::to_grid(cameras, coarse), coarse);
 }
 

@@ -127,6 +127,10 @@ TEST_F(MakeModel, SaysWhyPartsDoNotHelp) {
   EXPECT_THAT(attempt, ThrowsMessage<Error>(Not(HasSubstr("parts"))));
   job_.max_memory = bytes_for(0.05);
   EXPECT_THAT(attempt, ThrowsMessage<Error>(HasSubstr("this job would take about")));
+  EXPECT_FALSE(fs::exists(folder_ / "out/report.json"));
+  job_.max_memory.reset();
+  job_.resolution = 200000;
+  EXPECT_THAT(attempt, ThrowsMessage<Error>(HasSubstr("makes a lattice of")));
 }
 
 }  // namespace

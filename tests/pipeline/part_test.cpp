@@ -76,6 +76,25 @@ TEST(Part, MorePartsThanLayersAreRefused) {
   EXPECT_THROW(range_of_part(nothing, {1, 2}), Error);
 }
 
+TEST(Part, AllHaveTheFrameOfTheWhole) {
+  const SparseVolume whole = two_balls();
+  const auto world = [](const GridSpec& grid) {
+    const Box frame = grid.frame();
+    return Box{grid.world(frame.min), grid.world(frame.max)};
+  };
+  for (const int levels : {1, 2}) {
+    const Box all = world(cut_part(whole, box_of(whole), {1, 1}, levels).grid);
+    for (int number = 1; number <= 4; ++number) {
+      const GridSpec grid = cut_part(whole, box_of(whole), {number, 4}, levels).grid;
+      EXPECT_LT(glm::distance(world(grid).min, all.min), 1e-9) << number;
+      EXPECT_LT(glm::distance(world(grid).max, all.max), 1e-9) << number;
+      const GridSpec coarse = carving::coarser(grid);
+      EXPECT_LT(glm::distance(world(coarse).min, world(grid).min), 2 * coarse.voxel_size);
+    }
+    EXPECT_NE(cut_part(whole, box_of(whole), {1, 4}, levels).grid.after, glm::dvec3(0));
+  }
+}
+
 TEST(Part, AsFewPartsAreMadeAsHaveRoom) {
   const SparseVolume whole = two_balls();
   const auto largest = [&](int count) {

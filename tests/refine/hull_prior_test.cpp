@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 
 namespace photohull::refine {
 namespace {
@@ -94,6 +95,31 @@ TEST(PullToHull, AHullThatIsLooseElsewhereIsNotBelieved) {
   };
   EXPECT_NEAR(plain(0.1f), 0.8 * HullPriorOptions().weight, 0.1 * HullPriorOptions().weight);
   EXPECT_LT(plain(3), 0.001 * plain(0.1f));
+}
+
+// Photographs put a thousand vertices so far under the hull.
+TEST(PullToHull, SaysHowFarTheHullIsBelievedAtSmallerVoxels) {
+  const auto trust_of = [](double depth, std::optional<double> known, float& weight) {
+    const std::size_t count = 1001;
+    const std::vector<vec3> positions(count, vec3(12) + 7.8f * glm::normalize(vec3(1, 2, -0.5)));
+    const std::vector<float> texture(count, 0), trust(count, 1);
+    std::vector<Peak> peaks(count, Peak{float(0.2 - depth), 2, 0.9f});
+    peaks[0] = {};
+    const VertexGraph apart{std::vector<std::uint32_t>(count + 1, 0), {}};
+    HullPriorOptions options;
+    options.trust = known;
+    const HullTrust out = pull_to_hull(ball(), apart, positions, {texture, trust}, options, peaks);
+    weight = peaks[0].weight;
+    return out;
+  };
+  float weight = 0, known = 0;
+  const HullTrust trust = trust_of(0.35, std::nullopt, weight);
+  EXPECT_NEAR(trust[0], 1, 1e-12) << "within a voxel";
+  EXPECT_NEAR(trust[1], 1, 1e-12) << "within a half";
+  EXPECT_LT(trust[2], 0.01) << "not within a quarter";
+  EXPECT_EQ(trust[4], trust[2]);
+  EXPECT_EQ(trust_of(0.35, 0.25, known), trust) << "what it sees";
+  EXPECT_NEAR(known, 0.25f * weight, 1e-3f * weight) << "and what it is told";
 }
 
 TEST(PullToHull, NoWeightNoChange) {

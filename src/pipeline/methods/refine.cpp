@@ -54,6 +54,7 @@ SurfaceFindings findings_of(const refine::RefineReport& counts) {
   SurfaceFindings out;
   out.refine.resumed_levels = counts.resumed;
   out.refine.followed = counts.followed;
+  out.refine.hull_trust = counts.hull_trust();
   for (const refine::FitReport& fit : counts.fits)
     out.refine.fits.push_back(
         {fit.seconds, fit.held_before, fit.held_after, fit.mean_move, fit.kept});
@@ -128,8 +129,8 @@ Surface carve(const SurfaceJob& job, SparseVolume) {
   const refine::RefineOptions options = parameters_of(job).refine;
   std::optional<refine::WholeSurface> whole;
   if (job.part)
-    whole.emplace(
-        refine::WholeSurface{job.part->near, job.part->first_voxel, job.options.finer, job.beside});
+    whole.emplace(refine::WholeSurface{job.part->near, job.part->first_voxel, job.options.finer,
+                                       job.beside, job.part->hull_trust});
   const auto shared = shared_work_of(job, {*job.images, cameras, options.noise_sigma}, checkpoint);
   out.volume =
       refine::refine_surface(job.context,
