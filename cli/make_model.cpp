@@ -20,7 +20,6 @@
 #include "pipeline/photographs.h"
 #include "pipeline/write_results.h"
 #include "reconstruct_scene.h"
-#include "volume/write_vdb.h"
 
 namespace photohull::cli {
 namespace {
@@ -122,8 +121,7 @@ class PartByPart {
 
   /// As few as fit. Throws what was the matter with the model, or with a part, where none do.
   std::vector<fs::path> make_parts(const TooManyVoxels& of_model) {
-    SparseVolume surface = read_vdb_surface(whole_ / "volume.vdb");
-    surface.distance = {};  // its bricks are enough to count by
+    const SparseVolume surface = pipeline::bricks_of_whole(whole_);
     TooManyVoxels problem = of_model;
     for (double room = problem.room(); room > 0;) {
       const std::optional<int> count = pipeline::fewest_parts(surface, finer_, room);

@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
 # Usage: scripts/test.sh [--all]
 #
-# Sets photohull up (see scripts/setup.sh) and runs all its tests.
+# Sets photohull up (see scripts/setup.sh) and runs its tests but for those labelled slow.
 #
-#   --all    also check what tests cannot: formatting, scripts, citations, links in the docs,
-#            glTF files (npm installs their validator), installation and the Debian package; and
-#            build once more with clang and the address and undefined-behaviour sanitizers, to run
-#            the unit tests so instead of without them, the fuzzers and clang-tidy
+#   --all    run these, too: every command of the docs, every way to go wrong, faults, random runs,
+#            long ones, cameras by COLMAP. Also check what tests cannot: formatting, scripts,
+#            citations, links in the docs, glTF files (npm installs their validator), installation
+#            and the Debian package; and build once more with clang and the address and
+#            undefined-behaviour sanitizers, to run the unit tests so instead of without them, the
+#            fuzzers and clang-tidy
 #   --help   print this text
 
 # shellcheck source=scripts/common.sh
@@ -176,7 +178,7 @@ started=$SECONDS
 if [ $with_all = yes ]; then
   check_aloud "tests of the program" run_tests release --label-exclude unit
 else
-  check_aloud "tests" run_tests release
+  check_aloud "tests" run_tests release --label-exclude slow
 fi
 if [ $with_all = yes ]; then
   check "clang-format" formatting

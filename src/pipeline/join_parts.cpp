@@ -27,8 +27,9 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-constexpr double kReach = 0.75;           // voxels between vertices of two parts that are the same
-constexpr std::int64_t kVolumeBytes = 2;  // of a joined grid, for each of the surface's
+constexpr double kReach = 0.75;  // voxels between vertices of two parts that are the same
+// Of all volumes' largest grid, colours, and of one part's, for each of the surface's.
+constexpr std::int64_t kVolumeBytes = 5;
 
 /// What is the whole's in its report, and not how it was made.
 constexpr const char* kOfTheWhole[] = {
@@ -122,19 +123,12 @@ ordered_json join_meshes(const std::vector<fs::path>& parts, AtomicFile& file, J
           {"open_edges", stitched.open_edges}};
 }
 
-}  // namespace
-
-JoinedParts join_parts(const fs::path& whole, const std::vector<fs::path>& parts,
-                       const fs::path& folder, const std::optional<std::int64_t>& max_memory,
-                       Progress& progress) {
-  RecordingProgress heard(progress);
-  JoinedParts out;
-  out.verdict = read_whole_report(whole).verdict;
-  const GridSpec grid = joined_grid(volumes_of(parts));
-  out.voxel_size = grid.voxel_size;
+/// What the reports of whole and parts say of the joined one, without its files.
+ordered_json joined_report(const fs::path& whole, const std::vector<fs::path>& parts,
+                           const fs::path& folder, JoinedParts& out) {
   double wall = 0, cpu = 0;
   std::int64_t peak = 0;
-  const auto add_times = [&](const ordered_json& of_piece) {
+  const auto add_costs = [&](const ordered_json& of_piece) {
     wall += of_piece.at("wall_seconds").get<double>();
     cpu += of_piece.at("cpu_seconds").get<double>();
     peak = std::max(peak, of_piece.at("peak_memory_bytes").get<std::int64_t>());
@@ -144,22 +138,37 @@ JoinedParts join_parts(const fs::path& whole, const std::vector<fs::path>& parts
     for (const char* key : kOfTheWhole)
       if (of_whole.contains(key)) kept[key] = of_whole[key];
     out.views = of_whole.at("scene").at("views");
-    add_times(of_whole);
+    add_costs(of_whole);
     return kept;
   });
+  const GridSpec grid = joined_grid(volumes_of(parts));
+  out.voxel_size = grid.voxel_size;
   report["grid"] = {{"origin", {grid.origin.x, grid.origin.y, grid.origin.z}},
                     {"voxel_size", grid.voxel_size},
                     {"voxels", {grid.voxels().x, grid.voxels().y, grid.voxels().z}}};
   report["whole"] = fs::relative(whole, folder).string();
-  for (const fs::path& part : parts) {
+  for (const fs::path& part : parts)
     report["parts"].push_back(told_in(part, [&](const ordered_json& of_part) {
-      add_times(of_part);
+      add_costs(of_part);
       return ordered_json{{"folder", fs::relative(part, folder).string()},
                           {"box", of_part.at("box")},
                           {"triangles", of_part.at("mesh").at("triangles")}};
     }));
-    progress.check_cancelled();
-  }
+  report["wall_seconds"] = wall;
+  report["cpu_seconds"] = cpu;
+  report["peak_memory_bytes"] = peak;
+  return report;
+}
+
+}  // namespace
+
+JoinedParts join_parts(const fs::path& whole, const std::vector<fs::path>& parts,
+                       const fs::path& folder, const std::optional<std::int64_t>& max_memory,
+                       Progress& progress) {
+  RecordingProgress heard(progress);
+  JoinedParts out;
+  out.verdict = read_whole_report(whole).verdict;
+  ordered_json report = joined_report(whole, parts, folder, out);
   const std::int64_t bytes = bytes_of_volumes(parts),
                      limit = max_memory ? *max_memory : default_max_memory();
   out.joined = bytes <= limit;
@@ -178,9 +187,8 @@ JoinedParts join_parts(const fs::path& whole, const std::vector<fs::path>& parts
   progress.update(0.5);
   report["mesh"] = join_meshes(parts, files.open("mesh.ply"), out, heard);
   copy_into(whole / "preview.png", files.open("preview.png"));
-  report["wall_seconds"] = wall;
-  report["cpu_seconds"] = cpu;
-  report["peak_memory_bytes"] = std::max(peak, process_peak_memory());
+  std::int64_t& peak = report["peak_memory_bytes"].get_ref<std::int64_t&>();
+  peak = std::max(peak, process_peak_memory());
   for (const std::string& text : heard.warnings()) report["warnings"].push_back(text);
   report["files"] = names;
   const std::string text =

@@ -13,6 +13,7 @@
 #include "views/crop.h"
 #include "visibility/kernels/depth_maps.h"
 #include "volume/skin.h"
+#include "volume/write_vdb.h"
 
 namespace photohull::pipeline {
 namespace {
@@ -142,6 +143,12 @@ double share_of(const SparseVolume& whole, const BrickRange& range) {
 }
 
 }  // namespace
+
+SparseVolume bricks_of_whole(const std::filesystem::path& folder) {
+  SparseVolume surface = read_vdb_surface(folder / "volume.vdb");
+  surface.distance = {};
+  return surface;
+}
 
 std::optional<int> fewest_parts(const SparseVolume& whole, int levels, double room) {
   for (int count = 2; count <= PartNumber::kMost; count += 1 + count / kFinerSteps) {

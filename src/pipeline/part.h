@@ -2,6 +2,7 @@
 // part.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <vector>
@@ -51,6 +52,10 @@ struct Part {
 
 /// `box`: that the whole was made in. `levels`: how often its voxels are halved.
 Part cut_part(const SparseVolume& whole, const Box& box, const PartNumber& part, int levels);
+
+/// The surface of the whole whose results are in the folder, without its distances: enough for the
+/// two below. Throws as read_vdb_surface does.
+SparseVolume bricks_of_whole(const std::filesystem::path& folder);
 
 /// How few parts the whole has to be cut into, at voxels that are halved so many times, for each to
 /// have at most `room` (> 0) of its surface, that around the part's own included, and to fit into a

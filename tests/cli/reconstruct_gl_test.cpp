@@ -59,7 +59,7 @@ TEST_F(Reconstruct, ReportHasTheDocumentedFields) {
     "hull": {"nodes_tested": 1, "bricks_evaluated": 1},
     "thin_parts": {"line_pixels": 1, "looked_at": 1, "unexplained": 1, "placed": 1, "restored_pixels": 1, "stem_vertices": 1},
     "photo": {"sweeps": 1, "voxels_judged": 1, "voxels_carved": 1, "voxels_undecided": 1},
-    "resumed_levels": 0, "followed": false, "refine": [], "refine_fits": [], "mesh": {"vertices": 1, "triangles": 1, "uniform_triangles": 1,
+    "resumed_levels": 0, "followed": false, "hull_trust": [], "refine": [], "refine_fits": [], "mesh": {"vertices": 1, "triangles": 1, "uniform_triangles": 1,
     "sharpened_vertices": 1, "unseen_share": 0.1}, "up": [], "up_axis": [], "preview_png_shows": "", "cameras": [], "photometric": {"used": true}, "sharpness": [], "inputs": [], "surroundings": [],
     "device_work": {"uploads": 1, "bytes_up": 1, "downloads": 1, "bytes_down": 1}})");
   const json fields = schema.flatten();
