@@ -15,6 +15,7 @@
 #include "core/error.h"
 #include "kept_steps.h"
 #include "make_model.h"
+#include "piece_progress.h"
 #include "pipeline/helper.h"
 #include "pipeline/join_parts.h"
 #include "pipeline/stage_clock.h"
@@ -35,32 +36,6 @@ constexpr std::chrono::seconds kTableEvery(5);
 constexpr std::chrono::milliseconds kAskAgain(1000);  ///< whether others have finished
 constexpr std::chrono::milliseconds kAskSoon(50);     ///< whether they can be helped
 constexpr int kTableShare = 50;  ///< of the time goes into tables at most: one in so many
-
-/// A piece's share of the batch's progress; says whose warnings they are.
-class PieceProgress : public Progress {
- public:
-  PieceProgress(TerminalProgress& whole, std::string name, double weight)
-      : Progress(whole.token()), whole_(whole), name_(std::move(name)), left_(weight) {}
-  void stage(const std::string& name, double weight) override {
-    const double share = std::min(weight, left_);
-    left_ -= share;
-    whole_.stage(name_ + ": " + name, share);
-  }
-  void update(double fraction) override { whole_.update(fraction); }
-  void warn(const std::string& message) override { whole_.warn(name_ + ": " + message); }
-  void note(const std::string& message) override { whole_.note(name_ + ": " + message); }
-  /// What its stages did not use.
-  void finish() {
-    if (left_ <= 0) return;
-    whole_.stage(name_, left_);
-    whole_.update(1);
-  }
-
- private:
-  TerminalProgress& whole_;
-  const std::string name_;
-  double left_;
-};
 
 class Batch {
  public:
@@ -116,8 +91,8 @@ class Batch {
     for (const std::size_t i : some) {
       if (enough()) break;
       progress_.check_cancelled();
-      PieceProgress progress(progress_, pieces_[i].name,
-                             first ? pipeline::total_weight(pieces_[i].job) : 0);
+      const double weight = pipeline::total_weight(pieces_[i].job);
+      PieceProgress progress(progress_, pieces_[i].name, first ? weight : 0, weight);
       if (state(pieces_[i]) != Input::kThere || !work_at(i, progress)) open.push_back(i);
       progress.finish();
       if (Clock::now() > next_table_) write_table();

@@ -2,6 +2,7 @@
 
 #include <malloc.h>
 
+#include <algorithm>
 #include <set>
 #include <string>
 #include <utility>
@@ -9,15 +10,14 @@
 
 #include "core/error.h"
 #include "core/folder_lock.h"
-#include "core/option_word.h"
 #include "core/too_many_voxels.h"
 #include "kept_steps.h"
-#include "pipeline/earlier_results.h"
+#include "piece_progress.h"
 #include "pipeline/join_parts.h"
-#include "pipeline/memory.h"
 #include "pipeline/part.h"
 #include "pipeline/part_options.h"
 #include "pipeline/photographs.h"
+#include "pipeline/stage_weights.h"
 #include "pipeline/write_results.h"
 #include "reconstruct_scene.h"
 
@@ -29,33 +29,6 @@ namespace fs = std::filesystem;
 constexpr int kCoarsest = 4;         // times that the whole's voxels are doubled, at most
 constexpr double kWholeShare = 0.2;  // of the time that all takes
 constexpr double kLessRoom = 0.9;    // than a part had that did not fit
-
-/// One piece's share of the progress. What one of them has warned of, others need not.
-class PieceProgress : public Progress {
- public:
-  PieceProgress(Progress& whole, std::string name, double share, std::set<std::string>& said)
-      : Progress(whole.token()),
-        whole_(whole),
-        name_(std::move(name)),
-        share_(share),
-        said_(said) {}
-  void stage(const std::string& name, double weight) override {
-    whole_.stage(name_ + ": " + name, share_ * weight);
-  }
-  void update(double fraction) override { whole_.update(fraction); }
-  void warn(const std::string& message) override {
-    if (said_.insert(message).second) whole_.warn(name_ + ": " + message);
-  }
-  void note(const std::string& message) override {
-    if (said_.insert(message).second) whole_.note(name_ + ": " + message);
-  }
-
- private:
-  Progress& whole_;
-  const std::string name_;
-  const double share_;
-  std::set<std::string>& said_;
-};
 
 MadeModel of_report(pipeline::Report report) {
   return {report.verdict, int(report.photographs.views), report.grid.voxel_size,
@@ -119,11 +92,10 @@ class PartByPart {
     }
   }
 
-  /// As few as fit. Throws what was the matter with the model, or with a part, where none do.
+  /// As few as fit. Throws what was the matter with the model where none do.
   std::vector<fs::path> make_parts(const TooManyVoxels& of_model) {
     const SparseVolume surface = pipeline::bricks_of_whole(whole_);
-    TooManyVoxels problem = of_model;
-    for (double room = problem.room(); room > 0;) {
+    for (double room = of_model.room(); room > 0;) {
       const std::optional<int> count = pipeline::fewest_parts(surface, finer_, room);
       if (!count) break;
       progress_.note(concat(of_model.problem(), ": it is made in ", *count, " parts"));
@@ -133,12 +105,11 @@ class PartByPart {
         for (; part.number <= part.count; ++part.number) made.push_back(make_part(part));
         return made;
       } catch (const TooManyVoxels& too_many) {
-        problem = too_many;
         room = kLessRoom * std::max(too_many.room(), 0.0) *
                pipeline::share_of_part(surface, part, finer_);
       }
     }
-    throw problem;
+    throw of_model;
   }
 
   fs::path make_part(const pipeline::PartNumber& part) {
@@ -152,7 +123,8 @@ class PartByPart {
     const fs::path folder = folder_ / name;
     const std::string identity = model_identity(job, load_, scene_, folder);
     if (job.fresh || !steps_.has(name, identity) || !has_results(folder)) {
-      PieceProgress progress(progress_, name, share, said_);
+      const double weight = share * pipeline::total_weight(job_);
+      PieceProgress progress(progress_, name, weight, pipeline::total_weight(job), &said_);
       steps_.begin(name);
       malloc_trim(0);  // the C library keeps what was freed
       pipeline::reconstruct_to_folder(job, pipeline::load_photographs(scene_, load_), folder,

@@ -25,7 +25,7 @@ CostQuestion question_of(const ReconstructOptions& options, const Box& box, cons
   question.grid = grid;
   question.method = options.effective_method();
   question.masks = masks;
-  if (options.part) question.part = {1, options.part_bricks};  // photographs are cut
+  if (options.part) question.part = {0, options.part_bricks};
   if (makes_texture(options)) {
     question.texture_bytes = texture_bytes(memory_limit(options));
     question.pixel = carving::pixel_footprint(box, question.cameras);

@@ -13,7 +13,7 @@ constexpr double kBaseBytes = 285e6;        // libraries, the driver's compiler,
 constexpr double kPixelBytes = 6.7;         // without silhouettes: colour, twice, and its mip chain
 constexpr double kMaskedPixelBytes = 14.8;  // with: coverage and distances as well
 // Of a part: photographs until they are cut; then those that are cut with depths beside the part,
-// and bricks that hold its surface.
+// and bricks that hold its surface. Without silhouettes a pixel takes as much less as of a whole.
 constexpr double kUncutPixelBytes = 5, kMaskedUncutPixelBytes = 9;
 constexpr double kPartPixelBytes = 21, kMaskedPartPixelBytes = 29, kPartBrickBytes = 22.6e3;
 constexpr double kHullAreaBytes = 525;  // bricks, mesh and files of a voxel's square

@@ -16,7 +16,7 @@ enum class Silhouettes { kGiven, kMade, kNone };
 
 /// Of a part, whose surface is known, and which knows depths of what lies beside it.
 struct PartCost {
-  double pixels = 0;  ///< of the photographs before they are cut to it
+  double pixels = 0;  ///< of the photographs before they are cut to it; 0: they are cut
   double bricks = 0;  ///< that hold its surface
 };
 

@@ -143,10 +143,10 @@ struct RefineFitFindings {
 };
 
 struct RefineFindings {
+  using HullTrust = std::array<double, 5>;
   int resumed_levels = 0;  ///< of the levels, done by an earlier run that was interrupted
-  /// As refine::RefineReport has it.
-  std::optional<std::array<double, 5>> hull_trust;
-  bool followed = false;  ///< did the first level start from the moment before?
+  std::optional<HullTrust> hull_trust;  ///< as refine::RefineReport has it
+  bool followed = false;                ///< did the first level start from the moment before?
   std::vector<RefineLevelFindings> levels;
   std::vector<RefineFitFindings> fits;
 };

@@ -19,7 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::size_t kHullTrusts = 5;
 constexpr int kLargestSide = 1 << 20;  // pixels of a photograph
 
 /// report.json, with errors that name it.
@@ -196,7 +195,8 @@ WholeReport read_whole_report(const fs::path& folder) {
   const ReportFile report(report_of(folder));
   WholeReport out{read_box(report), read_verdict(report), {}};
   if (report.root().contains("hull_trust"))
-    out.hull_trust = report.numbers(report.root(), "hull_trust", kHullTrusts);
+    out.hull_trust =
+        report.numbers(report.root(), "hull_trust", RefineFindings::HullTrust().size());
   return out;
 }
 

@@ -129,6 +129,40 @@ TEST_F(Parts, TogetherAreTheWholeInOnePiece) {
   EXPECT_EQ(read_bytes(folder_ / name / "mesh.ply"), before);
 }
 
+TEST_F(Parts, BelieveTheHullAsFarAsTheWholeSays) {
+  const Arguments usual = {"--masks", path("cutouts"), "--report-page", "off"};
+  const auto made = [&](Arguments arguments, const std::string& to) {
+    arguments.insert(arguments.begin(), {"reconstruct", scene()});
+    arguments.insert(arguments.end(), usual.begin(), usual.end());
+    arguments.insert(arguments.end(), {"--out", path(to)});
+    return run_photohull(arguments);
+  };
+  ASSERT_EQ(made({"--resolution", "24"}, "whole").code, 0);
+  json whole = report("whole");
+  const std::vector<double> trust = whole["hull_trust"];
+  ASSERT_EQ(trust.size(), 5u);
+  for (std::size_t i = 0; i < trust.size(); ++i) {
+    EXPECT_GE(trust[i], 0);
+    EXPECT_LE(trust[i], i == 0 ? 1 : trust[i - 1]) << "smaller voxels are not nearer to the hull";
+  }
+  const auto mesh_with = [&](const json& told, const std::string& to) {
+    whole["hull_trust"] = told;
+    write_bytes(folder_ / "whole/report.json", whole.dump());
+    const Finished part = made({"--follow", path("whole"), "--part", "1/1"}, to);
+    EXPECT_EQ(part.code, 0) << part.err;
+    return read_bytes(folder_ / to / "mesh.ply");
+  };
+  // Of a whole at half the voxels the second number counts.
+  const std::string none = mesh_with({1, 0, 1, 1, 1}, "none");
+  EXPECT_EQ(mesh_with({0, 0, 0, 0, 0}, "also_none"), none);
+  EXPECT_NE(mesh_with({0, 1, 0, 0, 0}, "all"), none);
+  whole["hull_trust"] = {1, 2};
+  write_bytes(folder_ / "whole/report.json", whole.dump());
+  const Finished damaged = made({"--follow", path("whole"), "--part", "1/1"}, "damaged");
+  EXPECT_EQ(damaged.code, 1);
+  EXPECT_THAT(damaged.err, AllOf(HasSubstr("whole/report.json"), HasSubstr("hull_trust")));
+}
+
 TEST_F(Parts, WithoutTheWholeThereAreNone) {
   write_masks("nothing", 0, 0);
   const Finished run =

@@ -7,6 +7,7 @@
 
 #include "carving/fit_grid.h"
 #include "core/error.h"
+#include "projtex/gpu_views.h"
 #include "support/analytic_volumes.h"
 #include "support/cameras.h"
 #include "volume/extract_mesh.h"
@@ -82,12 +83,19 @@ TEST(Part, AllHaveTheFrameOfTheWhole) {
     const Box frame = grid.frame();
     return Box{grid.world(frame.min), grid.world(frame.max)};
   };
+  const Camera camera = test::look_at({40, 20, 25}, {10, 0, 10}, 300, 400, 300);
+  // World units: rays and texels are spaced by it.
+  const auto depth = [&](const GridSpec& grid) {
+    return projtex::viewing_depth(projtex::to_grid(camera, grid), grid) * grid.voxel_size;
+  };
   for (const int levels : {1, 2}) {
-    const Box all = world(cut_part(whole, box_of(whole), {1, 1}, levels).grid);
+    const GridSpec one = cut_part(whole, box_of(whole), {1, 1}, levels).grid;
+    const Box all = world(one);
     for (int number = 1; number <= 4; ++number) {
       const GridSpec grid = cut_part(whole, box_of(whole), {number, 4}, levels).grid;
       EXPECT_LT(glm::distance(world(grid).min, all.min), 1e-9) << number;
       EXPECT_LT(glm::distance(world(grid).max, all.max), 1e-9) << number;
+      EXPECT_NEAR(depth(grid), depth(one), 1e-9) << number;
       const GridSpec coarse = carving::coarser(grid);
       EXPECT_LT(glm::distance(world(coarse).min, world(grid).min), 2 * coarse.voxel_size);
     }
