@@ -6,7 +6,6 @@
 #include <glm/gtx/hash.hpp>
 #include <map>
 #include <numeric>
-#include <set>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -152,9 +151,6 @@ class Joining {
       Rim& rim = rims_[part];
       const auto first = std::uint32_t(mesh_.positions.size());
       first_.push_back(first);
-      for (const Side& side : border_of(rim.mesh))
-        if (!rim.border[side.from] || !rim.border[side.to])
-          inner_.insert({first + side.from, first + side.to});
       for (std::uint32_t v = 0; v < rim.vertices.size(); ++v)
         if (rim.border[v]) border_.push_back({first + v, part});
       append_mesh(rim.mesh, mesh_);
@@ -178,21 +174,15 @@ class Joining {
     std::erase_if(mesh_.triangles,
                   [](const auto& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
     drop_doubled(mesh_);
-    out.filled = fill_gaps(open_sides(), part_of_, reach, mesh_);
-    for (const Side& side : open_sides())
+    // Where a rim ends within its part there is no other part, and so no gap, and no seam.
+    out.filled = fill_gaps(border_of(mesh_), part_of_, reach, mesh_);
+    for (const Side& side : border_of(mesh_))
       out.open_edges += part_of_[side.from] == kSeam || part_of_[side.to] == kSeam;
     number(out);
     return out;
   }
 
  private:
-  /// But for those where rims end within their parts.
-  std::vector<Side> open_sides() const {
-    std::vector<Side> out = border_of(mesh_);
-    std::erase_if(out, [&](const Side& side) { return inner_.contains({side.from, side.to}); });
-    return out;
-  }
-
   /// Says what becomes of the parts.
   void number(Stitched& out) {
     std::vector<bool> used(mesh_.positions.size(), false);
@@ -207,7 +197,7 @@ class Joining {
       for (std::uint32_t k = 0; k < rim.vertices.size(); ++k) {
         const std::uint32_t v = first_[i] + k;
         numbers[v] = part.first + rim.vertices[k] - std::uint32_t(part.gone.size());
-        if (rim.whole[k] && !used[v]) {
+        if (!used[v]) {
           part.gone.push_back(rim.vertices[k]);
         } else if (part_of_[v] == kSeam) {
           part.moved.push_back(rim.vertices[k]);
@@ -229,8 +219,7 @@ class Joining {
   TriMesh mesh_;
   std::vector<std::uint32_t> first_;  // of each rim, in mesh_
   std::vector<BorderVertex> border_;
-  std::set<std::pair<std::uint32_t, std::uint32_t>> inner_;  // sides where rims end
-  std::vector<std::uint32_t> part_of_;                       // of each vertex
+  std::vector<std::uint32_t> part_of_;  // of each vertex
   std::vector<std::uint32_t> stands_for_;
 };
 
@@ -273,7 +262,6 @@ Rim rim_of(const TriMesh& part) {
     numbers[v] = std::uint32_t(rim.vertices.size());
     rim.vertices.push_back(v);
     rim.border.push_back(border[v]);
-    rim.whole.push_back(near[v]);
     add_vertex(part, v, rim.mesh);
   }
   for (auto& t : rim.mesh.triangles)

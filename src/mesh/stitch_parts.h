@@ -11,12 +11,12 @@
 
 namespace photohull {
 
-/// A part's border and what is near it: all that joining looks at.
+/// A part's border and what is near it: all that joining looks at. Triangles that joining may drop
+/// have a vertex on the border; all others at their vertices are there, too.
 struct Rim {
   TriMesh mesh;
   std::vector<std::uint32_t> vertices;   ///< of the part, in order: those that `mesh` has
   std::vector<bool> border;              ///< of each of them: does it lie on the border?
-  std::vector<bool> whole;               ///< has `mesh` all of its triangles?
   std::vector<std::uint32_t> triangles;  ///< of the part, in order: those that `mesh` has
   std::uint32_t part_vertices = 0, part_triangles = 0;  ///< how many the part has
 };

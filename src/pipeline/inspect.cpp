@@ -71,8 +71,8 @@ void look_ahead(const Scene& scene, const ReconstructOptions& options, io::MaskS
     out.warnings.push_back(
         concat("a reconstruction would take more memory than it may (",
                memory_text(out.memory_limit), "; ", option_word("max_memory"), "): ",
-               method_of(options).follows ? "it would be made in parts, where these fit"
-                                          : concat("lower ", option_word("resolution"))));
+               method_of(options).in_parts ? "it would be made in parts, where these fit"
+                                           : concat("lower ", option_word("resolution"))));
   if (out.grid.voxel_size > carving::voxel_size_for(*scene.box, 2))
     out.warnings.push_back("the box is hardly larger than a pixel: check its units");
   if (out.nearest_angle < kSmallestBaseline && within == 0)

@@ -143,7 +143,7 @@ class Carver {
           concat("without masks the hull is the box clipped by the frusta: give "
                  "masks or use ",
                  option_word("method", "refine")));
-    return hull_.carve(subject_.grid);
+    return part() ? hull_.carve_box(subject_.grid, subject_.box) : hull_.carve(subject_.grid);
   }
 
   void upload() { images_ = std::make_unique<projtex::ImageSet>(subject_.views); }

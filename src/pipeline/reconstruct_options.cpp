@@ -46,6 +46,9 @@ void check_part(const ReconstructOptions& o) {
                             option_word("part"), " or, for a batch, ", option_word("parts")));
   if (!o.part) return;
   const std::string part = option_word("part", to_string(*o.part));
+  if (!method_of(o).in_parts)
+    throw UsageError(concat(part, ": ", option_word("method", method_of(o).name),
+                            " is not made in parts; refine and hull are"));
   if (o.follow.empty())
     throw UsageError(concat(part, ": ", option_word("follow"),
                             " has to name the results of the whole, on coarser voxels"));
@@ -82,7 +85,7 @@ void check_combinations(const ReconstructOptions& o) {
     throw UsageError(concat(option_word("surroundings", "on"), ": ",
                             option_word("method", method_of(o).name),
                             " has none; they are made by ", option_word("method", "refine")));
-  if (!o.follow.empty() && !method_of(o).follows)
+  if (!o.follow.empty() && !o.part && !method_of(o).follows)
     throw UsageError(concat(option_word("follow"), ": ", option_word("method", method_of(o).name),
                             " starts from no surface; give ", option_word("rig"),
                             " for cameras and gains alone"));

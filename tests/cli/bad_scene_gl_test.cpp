@@ -165,7 +165,7 @@ TEST_F(BadScene, AbsurdResolutionSaysTheMemory) {
   quick.timeout_seconds = 20;
   for (const char* resolution : {"100000", "2147483647"})  // too much for parts, too
     fail(1, reconstruct({"--resolution", resolution}), {"MiB", "--resolution"}, quick);
-  fail(1, reconstruct({"--resolution", "4300", "--method", "hull"}),
+  fail(1, reconstruct({"--resolution", "4300", "--method", "space-carving"}),
        {"MiB", "in parts it cannot be made", "--method"}, quick);
   fail(1, reconstruct({"--voxel-size", "1e-300"}), {"--voxel-size"});
   EXPECT_FALSE(fs::exists(out()));

@@ -163,6 +163,26 @@ TEST_F(Parts, BelieveTheHullAsFarAsTheWholeSays) {
   EXPECT_THAT(damaged.err, AllOf(HasSubstr("whole/report.json"), HasSubstr("hull_trust")));
 }
 
+TEST_F(Parts, OfHullsAreTheHullInOnePiece) {
+  succeed({"batch", temple(), "--method", "hull", "--resolution", "100", "--parts", "1",
+           "--report-page", "off", "--out", path("one")});
+  const SparseVolume one = read_vdb_surface(folder_ / "one/templeSparseRing/volume.vdb");
+  const TriMesh whole = read_mesh(folder_ / "one/templeSparseRing/mesh.ply");
+  for (const char* count : {"2", "5"}) {
+    succeed({"batch", temple(), "--method", "hull", "--resolution", "100", "--parts", count,
+             "--report-page", "off", "--out", path(count)});
+    const std::string name = std::string(count) + "/templeSparseRing";
+    const SparseVolume joined = read_vdb_surface(folder_ / name / "volume.vdb");
+    ASSERT_EQ(joined.grid.bricks, one.grid.bricks);
+    EXPECT_LT(difference(joined, one).mean, 1e-3) << count;
+    EXPECT_EQ(difference(joined, one).far, 0) << count;
+    EXPECT_EQ(joined.inside_voxels(), one.inside_voxels()) << count;
+    const TriMesh mesh = read_mesh(folder_ / name / "mesh.ply");
+    EXPECT_EQ(open_edges(mesh), 0u) << count;
+    EXPECT_EQ(mesh.triangles.size(), whole.triangles.size()) << count;
+  }
+}
+
 TEST_F(Parts, WithoutTheWholeThereAreNone) {
   write_masks("nothing", 0, 0);
   const Finished run =
@@ -186,8 +206,9 @@ TEST_F(Parts, WhatGoesWithNoPartsIsRefused) {
               HasSubstr("give --resolution or --voxel-size"));
   EXPECT_THAT(refusal({"plan", scene(), "--parts", "4", "--resolution", "64", "--frames", "1-2"}),
               HasSubstr("--parts and --frames exclude each other"));
-  EXPECT_THAT(refusal({"plan", scene(), "--parts", "4", "--resolution", "64", "--method", "hull"}),
-              HasSubstr("--method hull"));
+  EXPECT_THAT(
+      refusal({"plan", scene(), "--parts", "4", "--resolution", "64", "--method", "space-carving"}),
+      HasSubstr("--method space-carving is not made in parts"));
   EXPECT_THAT(refusal({"plan", scene(), "--parts", "4", "--resolution", "64", "--export", "glb"}),
               HasSubstr("--export"));
   EXPECT_THAT(refusal({"reconstruct", scene(), "--part", "1/2"}), HasSubstr("--follow"));

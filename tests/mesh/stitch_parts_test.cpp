@@ -75,6 +75,7 @@ Joined stitch_parts(const std::vector<TriMesh>& parts, double reach) {
   triangles.insert(triangles.end(), stitched.rim.begin(), stitched.rim.end());
   out.mesh.triangles = std::move(triangles);
   EXPECT_EQ(out.mesh.positions.size(), stitched.vertices);
+  EXPECT_TRUE(out.mesh.colours.empty() || out.mesh.colours.size() == stitched.vertices);
   EXPECT_EQ(out.mesh.triangles.size(), stitched.triangles);
   return out;
 }

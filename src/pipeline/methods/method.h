@@ -71,6 +71,8 @@ struct MethodEntry {
   bool matches_larger;
   /// Can it start from the surface of the moment before (SurfaceJob::before)?
   bool follows;
+  /// Can it carve a part by what its voxels see and what lies beside it (SurfaceJob::part)?
+  bool in_parts;
   /// Does it begin with the hull at the lattice's voxels?
   bool from_hull;
   const char* stage;  ///< its name for progress and the report; null: none, the hull is the result

@@ -75,6 +75,7 @@ constexpr MethodEntry entry(Method method, const char* name) {
           .needs_no_silhouettes = false,
           .matches_larger = false,
           .follows = false,
+          .in_parts = false,
           .from_hull = true,
           .stage = "photo",
           .weight = Weights::kPhoto,
