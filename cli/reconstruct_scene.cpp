@@ -89,6 +89,19 @@ std::string model_identity(const pipeline::ReconstructOptions& given,
   return identity.digest();
 }
 
+/// What print_summary says of a report, from its file.
+void tell_sizes(const json& report) {
+  const json &voxels = report.at("grid").at("voxels"), &size = report.at("grid").at("voxel_size");
+  std::printf("%d views, %d x %d x %d voxels of %g, %lld triangles",
+              report.at("scene").at("views").get<int>(), voxels.at(0).get<int>(),
+              voxels.at(1).get<int>(), voxels.at(2).get<int>(), size.get<double>(),
+              report.at("mesh").at("triangles").get<long long>());
+  if (report.contains("parts")) std::printf(", in %zu parts", report["parts"].size());
+  std::printf("\n%.2f s (%.2f CPU s), peak memory %lld MiB\n",
+              report.at("wall_seconds").get<double>(), report.at("cpu_seconds").get<double>(),
+              report.at("peak_memory_bytes").get<long long>() >> 20);
+}
+
 bool has_results(const fs::path& folder) {
   try {
     const json report = read_report(folder);
@@ -108,6 +121,7 @@ void tell_results(const std::string& out, bool as_json) {
   const auto say = [&](const std::string& line) {
     if (!as_json) std::printf("%s\n", line.c_str());
   };
+  if (!as_json) tell_sizes(report);
   for (const json& file : report.at("files")) say(concat("  ", out, "/", file.get<std::string>()));
   const json& verdict = report.at("verdict");
   const std::string level = verdict.at("level");

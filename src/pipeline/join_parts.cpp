@@ -194,7 +194,7 @@ JoinedParts join_parts(const fs::path& whole, const std::vector<fs::path>& parts
   const std::string text =
       report.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
   files.open("report.json").write(text.data(), text.size());
-  files.commit();
+  files.commit(heard);
   return out;
 }
 

@@ -200,6 +200,15 @@ WholeReport read_whole_report(const fs::path& folder) {
   return out;
 }
 
+std::vector<std::string> listed_files(const fs::path& folder) {
+  try {
+    const ReportFile report(folder / "report.json");
+    return texts(report, report.root(), "files");
+  } catch (const Error&) {
+    return {};
+  }
+}
+
 ResultModel read_result(const fs::path& folder) {
   const ReportFile report(report_of(folder));
   ResultModel out;

@@ -36,6 +36,10 @@ struct WholeReport {
 };
 WholeReport read_whole_report(const std::filesystem::path& folder);
 
+/// Names of the files that a folder's report.json lists; none where there is no report, or it is
+/// damaged.
+std::vector<std::string> listed_files(const std::filesystem::path& folder);
+
 /// The model of a folder that `write` wrote: from mesh.glb where the report says that it has a
 /// texture, else from mesh.ply. Normals are there. Throws Error where there is no such folder,
 /// where one of its files is missing or damaged, and where the report is of a version that told no

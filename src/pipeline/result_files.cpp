@@ -1,7 +1,10 @@
 #include "pipeline/result_files.h"
 
+#include <algorithm>
+
 #include "core/error.h"
 #include "core/option_word.h"
+#include "pipeline/read_result.h"
 
 namespace photohull::pipeline {
 namespace fs = std::filesystem;
@@ -32,8 +35,21 @@ AtomicFile& ResultFiles::open(const std::string& name) {
   return files_.emplace_back(folder_ / name);
 }
 
-void ResultFiles::commit() {
+std::string ResultFiles::names_left_of_older_run() const {
+  std::string out;
+  for (const std::string& name : listed_files(folder_)) {
+    const bool new_one = std::ranges::any_of(
+        files_, [&](const AtomicFile& file) { return file.target() == folder_ / name; });
+    std::error_code ignored;
+    if (new_one || !fs::is_regular_file(folder_ / name, ignored)) continue;
+    out += (out.empty() ? "" : ", ") + name;
+  }
+  return out;
+}
+
+void ResultFiles::commit(Progress& progress) {
   for (const AtomicFile& file : files_) file.flush();  // what a full disk fails, before any change
+  const std::string left = names_left_of_older_run();
   remove_file(files_.back().target());
   try {
     for (AtomicFile& file : files_) file.commit();
@@ -43,6 +59,9 @@ void ResultFiles::commit() {
                        files_.back().target().filename().string(), "."));
   }
   files_.clear();
+  if (!left.empty())
+    progress.note(concat(folder_.string(),
+                         " still has of an earlier run what this one did not make: ", left));
 }
 
 }  // namespace photohull::pipeline

@@ -9,6 +9,7 @@
 
 #include "core/atomic_file.h"
 #include "core/folder_lock.h"
+#include "core/progress.h"
 
 namespace photohull::pipeline {
 
@@ -29,13 +30,16 @@ class ResultFiles {
 
   /// A new file to write to; `name` is one of the names, or a file that goes with one of them.
   AtomicFile& open(const std::string& name);
-  /// Puts the files in place. Throws Error when that fails, and says so when the folder then has
-  /// files of two runs.
-  void commit();
+  /// Puts the files in place. Notes which files an older report there lists that are not replaced.
+  /// Throws Error when it fails, and says so when the folder then has files of two runs.
+  void commit(Progress& progress);
   const std::filesystem::path& folder() const { return folder_; }
   const std::vector<std::string>& names() const { return names_; }
 
  private:
+  /// In one text; empty: none.
+  std::string names_left_of_older_run() const;
+
   std::filesystem::path folder_;
   std::vector<std::string> names_;
   bool made_ = false;  // was there no such folder before?

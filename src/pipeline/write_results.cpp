@@ -125,7 +125,7 @@ Report write_rest(const Reconstruction& result, const ExportChoice& exports, Res
   }
   files.open("report.json").write(text.data(), text.size());
   progress.check_cancelled();
-  files.commit();
+  files.commit(progress);
   return report;
 }
 

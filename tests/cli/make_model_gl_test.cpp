@@ -7,6 +7,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "cli/reconstruct_scene.h"
+#include "core/error.h"
 #include "core/too_many_voxels.h"
 #include "io/mesh/read_mesh.h"
 #include "pipeline/write_results.h"
@@ -111,6 +113,13 @@ TEST_F(MakeModel, WhatDoesNotFitIsMadeInPartsAndGoesOnWhereItWasStopped) {
   const TriMesh mesh = read_mesh(folder_ / "parts/mesh.ply");
   EXPECT_EQ(open_edges(mesh), 0u);
   EXPECT_EQ(std::int64_t(mesh.triangles.size()), made.triangles);
+
+  testing::internal::CaptureStdout();
+  cli::tell_results(path("parts"), false);
+  EXPECT_THAT(testing::internal::GetCapturedStdout(),
+              AllOf(HasSubstr(concat(kViews, " views, ")),
+                    HasSubstr(concat(made.triangles, " triangles, in 3 parts\n")),
+                    HasSubstr("CPU s), peak memory "), HasSubstr("verdict: ")));
 }
 
 TEST_F(MakeModel, SaysWhyPartsDoNotHelp) {
