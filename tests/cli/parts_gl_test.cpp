@@ -164,22 +164,24 @@ TEST_F(Parts, BelieveTheHullAsFarAsTheWholeSays) {
 }
 
 TEST_F(Parts, OfHullsAreTheHullInOnePiece) {
-  succeed({"batch", temple(), "--method", "hull", "--resolution", "100", "--parts", "1",
-           "--report-page", "off", "--out", path("one")});
-  const SparseVolume one = read_vdb_surface(folder_ / "one/templeSparseRing/volume.vdb");
-  const TriMesh whole = read_mesh(folder_ / "one/templeSparseRing/mesh.ply");
+  const auto make = [&](const std::string& count) {
+    succeed({"batch", scene(), "--masks", path("cutouts"), "--method", "hull", "--resolution", "64",
+             "--parts", count, "--report-page", "off", "--out", path(count)});
+    return folder_ / count / fs::path(scene()).filename();
+  };
+  const fs::path one = make("1");
+  const SparseVolume volume = read_vdb_surface(one / "volume.vdb");
+  const TriMesh mesh = read_mesh(one / "mesh.ply");
   for (const char* count : {"2", "5"}) {
-    succeed({"batch", temple(), "--method", "hull", "--resolution", "100", "--parts", count,
-             "--report-page", "off", "--out", path(count)});
-    const std::string name = std::string(count) + "/templeSparseRing";
-    const SparseVolume joined = read_vdb_surface(folder_ / name / "volume.vdb");
-    ASSERT_EQ(joined.grid.bricks, one.grid.bricks);
-    EXPECT_LT(difference(joined, one).mean, 1e-3) << count;
-    EXPECT_EQ(difference(joined, one).far, 0) << count;
-    EXPECT_EQ(joined.inside_voxels(), one.inside_voxels()) << count;
-    const TriMesh mesh = read_mesh(folder_ / name / "mesh.ply");
-    EXPECT_EQ(open_edges(mesh), 0u) << count;
-    EXPECT_EQ(mesh.triangles.size(), whole.triangles.size()) << count;
+    const fs::path folder = make(count);
+    const SparseVolume joined = read_vdb_surface(folder / "volume.vdb");
+    ASSERT_EQ(joined.grid.bricks, volume.grid.bricks);
+    EXPECT_LT(difference(joined, volume).mean, 1e-3) << count;
+    EXPECT_EQ(difference(joined, volume).far, 0) << count;
+    EXPECT_EQ(joined.inside_voxels(), volume.inside_voxels()) << count;
+    const TriMesh stitched = read_mesh(folder / "mesh.ply");
+    EXPECT_EQ(open_edges(stitched), 0u) << count;
+    EXPECT_EQ(stitched.triangles.size(), mesh.triangles.size()) << count;
   }
 }
 
