@@ -21,7 +21,6 @@ namespace {
 using glm::ivec3;
 
 constexpr double kBoxSlack = 0.5;  // voxels that the surface may stand out of the whole's box
-constexpr int kMipPixels = 32;     // of a texel of the sixth mip level: parts see the same ones
 constexpr int kFinerSteps = 8;     // more parts by an eighth are tried next
 constexpr int kAbout = 2;          // bricks of the whole about a part that its surface starts from
 
@@ -199,7 +198,7 @@ std::vector<DepthMap> depths_beside(gpu::Context& context, const Part& part,
                                     std::span<const Camera> cameras) {
   const GridSpec& grid = part.near.grid;
   const std::vector<projtex::GridCamera> on_grid = projtex::to_grid(cameras, grid);
-  visibility::DepthMaps maps(on_grid, grid);
+  visibility::DepthMaps maps(on_grid, grid, projtex::kCutPixels);
   maps.draw(context, on_grid, part.beside);
   std::vector<DepthMap> out;
   for (std::size_t view = 0; view < cameras.size(); ++view) {
@@ -230,7 +229,7 @@ std::vector<PreparedView> views_of(const Part& part, std::vector<PreparedView> v
     throw Error(concat("the part is shown by ", views.size(),
                        views.size() == 1 ? " photograph" : " photographs",
                        ", and nothing can be told of it; make fewer parts"));
-  for (PreparedView& view : views) crop_to_box(part.box, kCropMargin, view, kMipPixels);
+  for (PreparedView& view : views) crop_to_box(part.box, kCropMargin, view, projtex::kCutPixels);
   return views;
 }
 

@@ -146,7 +146,9 @@ class Carver {
     return part() ? hull_.carve_box(subject_.grid, subject_.box) : hull_.carve(subject_.grid);
   }
 
-  void upload() { images_ = std::make_unique<projtex::ImageSet>(subject_.views); }
+  void upload() {
+    images_ = std::make_unique<projtex::ImageSet>(subject_.views, part() ? projtex::kCutPixels : 1);
+  }
 
   PhotometricJob photometric_job() {
     return {run_.options, subject_.noise_sigma, run_.progress, run_.earlier.given_rig()};

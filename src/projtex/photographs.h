@@ -12,6 +12,10 @@
 
 namespace photohull::projtex {
 
+/// Photographs of parts of a scene are cut at multiples of so many pixels, which is the width of a
+/// texel of the sixth mip level, so that the texels of all levels stay.
+inline constexpr int kCutPixels = 32;
+
 /// Images and cameras are in the same order and outlive the object.
 struct Photographs {
   const ImageSet& images;
@@ -20,6 +24,8 @@ struct Photographs {
   /// Of each camera, in world units: what hides from it what is looked at, and is not looked at
   /// itself. Empty: nothing does.
   std::span<const DepthMap> beside{};
+
+  bool are_of_part() const { return !beside.empty(); }
 };
 
 /// The cameras in voxel coordinates of a grid.

@@ -30,6 +30,7 @@ double value_at(const SparseVolume& v, const glm::dvec3& p) { return v.at(glm::i
 constexpr double kAcross =
     0.8;                        // of the distance to the hull's surface, that a step along a ray is
 constexpr int kMostClear = 16;  // bricks
+constexpr int kSeeds = 1024;    // a power of two
 
 /// How far empty space reaches about each brick of a hull: that many bricks to every side, at most
 /// kMostClear, are outside; 0 where the brick is not.
@@ -98,6 +99,8 @@ class RayMapper {
         surface_(surface),
         options_(options),
         clear_(clear_space(hull)),
+        sources_(photographs.cameras),
+        in_parts_(photographs.are_of_part()),
         cameras_(projtex::to_grid(photographs.cameras, hull.grid)),
         partners_(
             choose_partners(cameras_, frame_of(hull.grid), options.nearest_partner, options.tiles)),
@@ -126,11 +129,28 @@ class RayMapper {
         viewing_depth(c.projection, c.centre, c.width, c.height, frame_of(hull_.grid));
     RayMap map;
     map.stride = std::max(kLeastStride, options_.ray_spacing * c.focal / std::max(depth, 1.0));
-    map.width = int(std::ceil(c.width / map.stride));
-    map.height = int(std::ceil(c.height / map.stride));
+    if (in_parts_) {
+      // As many rays, an even number, lie before the principal point as it says, wherever the
+      // photograph was cut.
+      const glm::dvec2 place = principal_place(v, map);
+      map.shift = 2.0 * glm::ceil(0.5 * place) - place;
+    }
+    map.width = int(std::ceil(c.width / map.stride + map.shift.x));
+    map.height = int(std::ceil(c.height / map.stride + map.shift.y));
     map.depth.assign(std::size_t(map.width) * map.height, 0);
     map.weight = map.depth;
     return map;
+  }
+
+  /// Of the principal point, in strides from the image's edges.
+  glm::dvec2 principal_place(std::size_t v, const RayMap& map) const {
+    const Intrinsics& k = sources_[v].intrinsics;
+    return (glm::dvec2(k.cx, k.cy) + 0.5) / map.stride;
+  }
+
+  /// What a ray of a part goes by in place of its number: the same in all parts.
+  int seed_of(const glm::ivec2& from_principal) const {
+    return (31 * from_principal.x + 17 * from_principal.y) & (kSeeds - 1);
   }
 
   /// Calls visit(t) for places in the hull along a ray, from `t` voxels on, until it returns false.
@@ -189,11 +209,13 @@ class RayMapper {
     const auto& c = cameras_[v];
     const glm::dmat3 m(c.projection[0], c.projection[1], c.projection[2]);
     const glm::dmat3 inverse = glm::inverse(m);
+    const glm::ivec2 middle(glm::round(principal_place(v, map) + map.shift));
     std::vector<std::vector<Ray>> rows(std::size_t(map.height));
     tbb::parallel_for(0, map.height, [&](int y) {
       for (int x = 0; x < map.width; ++x) {
-        const glm::dvec3 d = glm::normalize(
-            inverse * glm::dvec3((x + 0.5) * map.stride - 0.5, (y + 0.5) * map.stride - 0.5, 1));
+        const glm::dvec2 pixel = map.pixel(x, y);
+        if (in_parts_ && !sources_[v].on_image(pixel)) continue;
+        const glm::dvec3 d = glm::normalize(inverse * glm::dvec3(pixel, 1));
         double first = -1, last = -1, at = -1;
         walk(c.centre, d, 0, [&](double t) {
           if (first < 0) first = t;
@@ -205,9 +227,14 @@ class RayMapper {
         if (first < 0) continue;
         first -= 1;
         last += 1;
+        int seed = -1;
+        if (in_parts_) {
+          first = std::floor(first), last = std::ceil(last);  // wherever the part's grid begins
+          seed = seed_of(glm::ivec2(x, y) - middle);
+        }
         rows[std::size_t(y)].push_back({x, y, c.centre + first * d, d, last - first, (m * d).z,
                                         at < 0 ? -1 : at - first,
-                                        partners_[v].tile(x, y, map.width, map.height)});
+                                        partners_[v].tile(x, y, map.width, map.height), seed});
       }
     });
     std::vector<Ray> rays;
@@ -296,6 +323,8 @@ class RayMapper {
   const SparseVolume* surface_;
   const VoteOptions& options_;
   std::vector<std::uint8_t> clear_;  // by the hull's table: clear_space
+  std::span<const Camera> sources_;  // world units
+  bool in_parts_;
   std::vector<projtex::GridCamera> cameras_;
   std::vector<ViewPartners> partners_;
   RaySearch search_;
@@ -317,8 +346,8 @@ void forget_hidden(const DepthMap& beside, const projtex::GridCamera& camera, do
   for (int row = 0; row < map.height; ++row)
     for (int column = 0; column < map.width; ++column) {
       const std::size_t i = std::size_t(row) * std::size_t(map.width) + std::size_t(column);
-      const glm::dvec2 pixel = map.stride * (glm::dvec2(column, row) + 0.5) - 0.5;
-      if (map.weight[i] > 0 && is_hidden(pixel, double(map.depth[i]))) map.weight[i] = 0;
+      if (map.weight[i] > 0 && is_hidden(map.pixel(column, row), double(map.depth[i])))
+        map.weight[i] = 0;
     }
   std::erase_if(map.before, hides);
   std::erase_if(map.through, hides);

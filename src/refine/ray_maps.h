@@ -18,10 +18,16 @@ class SharedWork;
 struct RayMap {
   double stride = 1;  ///< pixels between rays
   int width = 0, height = 0;
+  /// Where the image's edges lie on the lattice, in strides, [0, 2): other than 0 for parts of a
+  /// scene, whose photographs are cut, so that rays of all parts are the same.
+  glm::dvec2 shift{0};
   std::vector<float> depth;        ///< voxels along the optical axis, row-major
   std::vector<float> weight;       ///< [0, 1]; 0: the ray says nothing
   std::vector<glm::vec3> before;   ///< what rays found before a known surface, voxels
   std::vector<glm::vec3> through;  ///< where rays passed that found what lies behind it, voxels
+
+  /// Where the ray at a place of the lattice passes through the image.
+  glm::dvec2 pixel(int x, int y) const { return stride * (glm::dvec2(x, y) + 0.5 - shift) - 0.5; }
 };
 
 /// Makes the map of the view with a number. What it was made of outlives it.

@@ -99,7 +99,8 @@ class RayLattice {
     for (const int k : found) add(k, findings, out);
     RayPlane self = findings[i];
     if (self.along < 0) self.along = 0.5 * ray.length, self.normal = -ray.direction;
-    out.fill(self, std::ldexp(1.0, -round), i + std::size_t(round));
+    const std::size_t seed = ray.seed < 0 ? i : std::size_t(ray.seed);
+    out.fill(self, std::ldexp(1.0, -round), seed + std::size_t(round));
     return out;
   }
 

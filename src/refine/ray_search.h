@@ -24,6 +24,7 @@ struct Ray {
   double depth_per_length = 1;  ///< along the optical axis
   double surface = -1;          ///< where it meets a known surface, from `from`; negative: nowhere
   int tile = 0;                 ///< of its view: which views it is matched with
+  int seed = -1;                ///< what its tries go by; negative: its number
 };
 
 /// A small plane across a ray.

@@ -15,6 +15,7 @@ namespace fs = std::filesystem;
 struct Lattice {
   double stride = 1;
   int width = 0, height = 0;
+  glm::dvec2 shift{0};
 };
 
 RayMap read_map(const std::string& bytes) {
@@ -22,6 +23,7 @@ RayMap read_map(const std::string& bytes) {
   RayMap out;
   const auto lattice = reader.one<Lattice>();
   out.stride = lattice.stride, out.width = lattice.width, out.height = lattice.height;
+  out.shift = lattice.shift;
   out.depth = reader.list<float>();
   out.weight = reader.list<float>();
   out.before = reader.list<glm::vec3>();
@@ -99,7 +101,7 @@ RayTask read_ray_task(ListReader& task) {
 std::string bytes_of(const RayMap& map) {
   std::string out;
   ListWriter writer(out);
-  writer.one(Lattice{map.stride, map.width, map.height});
+  writer.one(Lattice{map.stride, map.width, map.height, map.shift});
   writer.list(map.depth);
   writer.list(map.weight);
   writer.list(map.before);

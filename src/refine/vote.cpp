@@ -219,8 +219,10 @@ class Voter {
         const double x = asked.x[i], y = asked.y[i], z = asked.z[i];
         const double q = m[0].z * x + m[1].z * y + m[2].z * z + m[3].z;
         depth[i] = q;
-        column[i] = ((m[0].x * x + m[1].x * y + m[2].x * z + m[3].x) / q + 0.5) / map.stride;
-        row[i] = ((m[0].y * x + m[1].y * y + m[2].y * z + m[3].y) / q + 0.5) / map.stride;
+        column[i] =
+            ((m[0].x * x + m[1].x * y + m[2].x * z + m[3].x) / q + 0.5) / map.stride + map.shift.x;
+        row[i] =
+            ((m[0].y * x + m[1].y * y + m[2].y * z + m[3].y) / q + 0.5) / map.stride + map.shift.y;
       }
       for (std::size_t i = 0; i < asked.count; ++i) {
         if (!(depth[i] > 1 && column[i] >= 0 && row[i] >= 0 && column[i] < map.width &&

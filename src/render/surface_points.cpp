@@ -54,14 +54,15 @@ std::vector<SurfacePoint> points_between(const TriMesh& mesh,
   return points;
 }
 
-visibility::DepthMaps occluder_maps(std::span<const Camera> cameras, const GridSpec& grid) {
+visibility::DepthMaps occluder_maps(std::span<const Camera> cameras, const GridSpec& grid,
+                                    int cut_at) {
   // DepthMaps sizes its texels after voxels: show it larger ones.
   GridSpec coarse = grid;
   coarse.voxel_size *= shaders::kBakeTexel;
   coarse.bricks = glm::max(grid.bricks / int(shaders::kBakeTexel), 1);
   coarse.before /= double(shaders::kBakeTexel);
   coarse.after /= double(shaders::kBakeTexel);
-  return visibility::DepthMaps(projtex::to_grid(cameras, coarse), coarse);
+  return visibility::DepthMaps(projtex::to_grid(cameras, coarse), coarse, cut_at);
 }
 
 }  // namespace photohull::render

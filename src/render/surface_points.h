@@ -30,7 +30,8 @@ std::vector<SurfacePoint> points_between(const TriMesh& mesh,
                                          std::span<const SurfacePoint> vertices);
 
 /// Empty maps with texels wide enough (kBakeTexel) that every one within the mesh's outline holds a
-/// point.
-visibility::DepthMaps occluder_maps(std::span<const Camera> cameras, const GridSpec& grid);
+/// point. `cut_at`: as visibility::DepthMaps has it.
+visibility::DepthMaps occluder_maps(std::span<const Camera> cameras, const GridSpec& grid,
+                                    int cut_at = 0);
 
 }  // namespace photohull::render

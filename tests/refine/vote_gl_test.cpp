@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "bowl_scene.h"
 #include "projtex/gpu_views.h"
+#include "refine/ray_maps.h"
 #include "support/gl_context.h"
 #include "volume/cavities.h"
 
@@ -84,6 +87,58 @@ TEST(VoteFreeSpace, EmptyHull) {
   nothing.grid = scene.grid(2);
   nothing.table.assign(nothing.grid.brick_count(), SparseVolume::kOutside);
   EXPECT_EQ(vote(nothing, scene.views).inside_voxels(), 0u);
+}
+
+/// Without its first columns and rows.
+PreparedView cut(const PreparedView& view, const glm::ivec2& gone) {
+  PreparedView out = view;
+  Intrinsics& k = out.camera.intrinsics;
+  k.width -= gone.x, k.height -= gone.y;
+  k.cx -= gone.x, k.cy -= gone.y;
+  const std::size_t each = std::size_t(view.image.bytes_per_pixel());
+  out.image.width = k.width, out.image.height = k.height;
+  out.image.bytes.clear();
+  for (int y = gone.y; y < view.image.height; ++y) {
+    const auto row = view.image.bytes.begin() +
+                     std::ptrdiff_t((std::size_t(y) * view.image.width + gone.x) * each);
+    out.image.bytes.insert(out.image.bytes.end(), row, row + std::ptrdiff_t(k.width * each));
+  }
+  return out;
+}
+
+TEST(MatchRays, OfPartsAreTheSameWhereverPhotographsAreCut) {
+  const test::BowlScene& scene = test::bowl_scene();
+  const SparseVolume hull = scene.hull(scene.grid(3));
+  const auto maps_of = [&](const std::vector<PreparedView>& views) {
+    const projtex::ImageSet images(views);
+    const std::vector<Camera> cameras = projtex::cameras_of(views);
+    const DepthMap nothing{glm::ivec2(1), 1e-6f, {std::numeric_limits<float>::infinity()}};
+    const std::vector<DepthMap> beside(views.size(), nothing);
+    return match_rays(test::gl_context(), hull, {images, cameras, 0.01, beside}, {});
+  };
+  constexpr glm::ivec2 kGone(4);  // texels of the mip levels in use stay as well
+  std::vector<PreparedView> views;
+  for (const PreparedView& view : scene.views) views.push_back(cut(view, kGone));
+  const std::vector<RayMap> all = maps_of(scene.views), some = maps_of(views);
+  int told = 0, alike = 0;
+  for (std::size_t v = 0; v < all.size(); ++v) {
+    ASSERT_EQ(some[v].stride, all[v].stride);
+    ASSERT_GT(all[v].stride, 1.5) << "rays that pass through each pixel would be the same anyway";
+    const glm::dvec2 strides =
+        (some[v].pixel(0, 0) + glm::dvec2(kGone) - all[v].pixel(0, 0)) / all[v].stride;
+    const glm::ivec2 first(glm::round(strides));
+    EXPECT_LT(glm::distance(strides, glm::dvec2(first)), 1e-9);
+    for (int y = 0; y < some[v].height; ++y)
+      for (int x = 0; x < some[v].width; ++x) {
+        const std::size_t i = std::size_t(y) * some[v].width + x,
+                          j = std::size_t(y + first.y) * all[v].width + x + first.x;
+        if (!(some[v].weight[i] > 0)) continue;
+        ++told;
+        alike += all[v].weight[j] > 0 && std::abs(some[v].depth[i] - all[v].depth[j]) < 0.01;
+      }
+  }
+  EXPECT_GT(told, 1000);
+  EXPECT_GT(alike, 0.95 * told);
 }
 
 SparseVolume label(const SparseVolume& hull, const std::vector<PreparedView>& views) {

@@ -16,20 +16,22 @@ namespace {
 constexpr std::size_t kVoxels = std::size_t(1) << 20;  // drawn at once
 
 /// Texels per pixel such that a voxel at the grid's centre covers one texel; never finer than
-/// pixels.
-double texels_per_pixel(const projtex::GridCamera& camera, const GridSpec& grid) {
+/// pixels. Fewer where `cut_at` pixels would not be a whole number of texels.
+double texels_per_pixel(const projtex::GridCamera& camera, const GridSpec& grid, int cut_at) {
   const double depth = projtex::viewing_depth(camera, grid);
   const double pixels_per_voxel = depth > 1 ? camera.focal / depth : 1.0;
-  return std::clamp(1.0 / pixels_per_voxel, 1.0 / 64, 1.0);
+  const double scale = std::clamp(1.0 / pixels_per_voxel, 1.0 / 64, 1.0);
+  return cut_at > 0 ? std::max(std::floor(scale * cut_at), 1.0) / cut_at : scale;
 }
 
 }  // namespace
 
-DepthMaps::DepthMaps(std::span<const projtex::GridCamera> cameras, const GridSpec& grid) {
+DepthMaps::DepthMaps(std::span<const projtex::GridCamera> cameras, const GridSpec& grid,
+                     int cut_at) {
   std::size_t texels = 0;
   glm::ivec2 largest(1);
   for (std::size_t i = 0; i < cameras.size(); ++i) {
-    const double scale = texels_per_pixel(cameras[i], grid);
+    const double scale = texels_per_pixel(cameras[i], grid, cut_at);
     const int width = std::max(1, int(std::ceil(cameras[i].width * scale)));
     const int height = std::max(1, int(std::ceil(cameras[i].height * scale)));
     infos_.push_back({{width, height, int(texels), int(i)}, {float(scale), 0, 0, 0}});
