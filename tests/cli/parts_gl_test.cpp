@@ -60,8 +60,8 @@ TEST_F(Parts, TogetherAreTheWholeInOnePiece) {
   ASSERT_EQ(joined.grid.bricks, one.grid.bricks);
   EXPECT_LT(glm::distance(joined.grid.origin, one.grid.origin), 1e-9);
   const Difference d = difference(joined, one);
-  EXPECT_LT(d.mean, 0.034);
-  EXPECT_LT(d.far, 0.029);
+  EXPECT_LT(d.mean, 0.012);
+  EXPECT_LT(d.far, 0.01);
   EXPECT_NEAR(double(joined.inside_voxels()), double(one.inside_voxels()),
               0.005 * double(one.inside_voxels()));
   EXPECT_EQ(component_sizes(joined).size(), component_sizes(one).size()) << "dust of parts is gone";

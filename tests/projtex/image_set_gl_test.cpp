@@ -85,6 +85,28 @@ TEST_F(ImageSetTest, MipLevelsOf8BitAreWithinRoundingOfLinearBoxMeans) {
     EXPECT_LT(worst_difference(set, views, level, false), level * 1.0 / 255 + linear_step) << level;
 }
 
+TEST_F(ImageSetTest, MipLevelsAreTheSameWhereverPhotographsAreCut) {
+  constexpr int kCut = 8, kLevel = 3;
+  const ColourImage image = test::random_image(rng_, 43, 29);
+  ColourImage cut = image;
+  cut.width -= kCut;
+  cut.bytes.clear();
+  for (int y = 0; y < image.height; ++y) {
+    const auto row = image.bytes.begin() + 4 * y * image.width;
+    cut.bytes.insert(cut.bytes.end(), row + 4 * kCut, row + 4 * image.width);
+  }
+  const std::vector<PreparedView> whole{view_of(image)}, part{view_of(cut)};
+  const ImageSet of_whole(whole, kCut), of_part(part, kCut);
+  EXPECT_EQ(of_whole.texture().width(), 48);
+  EXPECT_EQ(of_whole.texture().height(), 32);
+  EXPECT_EQ(of_part.texture().width(), 40);
+  const auto a = download(of_whole.texture(), kLevel, false),
+             b = download(of_part.texture(), kLevel, false);
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 5; ++x)
+      EXPECT_LT(glm::distance(b[std::size_t(5 * y + x)], a[std::size_t(6 * y + x + 1)]), 1e-6);
+}
+
 TEST_F(ImageSetTest, OneHalfFloatImageMakesTheSetHalfFloat) {
   const std::vector<PreparedView> views{view_of(test::random_image(rng_, 32, 32)),
                                         view_of(test::to_half(test::random_image(rng_, 20, 32)))};

@@ -218,6 +218,39 @@ TEST_F(DepthMapsTest, TexelsAreAboutAVoxelAndNeverFinerThanPixels) {
   }
 }
 
+TEST_F(DepthMapsTest, TexelsAreTheSameWhereverPhotographsAreCut) {
+  constexpr int kCut = 32;
+  const GridCamera camera = look({-40, 12, 8}, {16, 12, 8}, 300);
+  GridCamera cut = camera;  // without its first columns
+  cut.width -= kCut;
+  for (int column = 0; column < 4; ++column)
+    cut.projection[column].x -= kCut * cut.projection[column].z;
+  std::vector<ivec3> voxels;
+  for (int y = 0; y < 24; ++y)
+    for (int z = 0; z < 16; ++z) voxels.push_back({10 + y / 3, y, z});
+  const auto drawn = [&](const GridCamera& c) {
+    DepthMaps maps(std::span(&c, 1), grid_, kCut);
+    maps.draw(context_, std::span(&c, 1), voxels);
+    return maps.map(0);
+  };
+  const DepthMap whole = drawn(camera), part = drawn(cut);
+  const double plain = double(DepthMaps(std::span(&camera, 1), grid_).infos()[0].scale.x);
+  EXPECT_LT(double(whole.texels_per_pixel), plain);
+  EXPECT_GT(double(whole.texels_per_pixel), plain - 1.0 / kCut);
+  EXPECT_EQ(part.texels_per_pixel, whole.texels_per_pixel);
+  const int gone = int(std::lround(kCut * whole.texels_per_pixel));
+  EXPECT_NEAR(gone, kCut * double(whole.texels_per_pixel), 1e-6);
+  int seen = 0;
+  for (int y = 0; y < part.size.y; ++y)
+    for (int x = 0; x < part.size.x; ++x) {
+      const float a = part.depths[std::size_t(y * part.size.x + x)],
+                  b = whole.depths[std::size_t(y * whole.size.x + x + gone)];
+      seen += std::isfinite(b);
+      EXPECT_TRUE(a == b || std::abs(a - b) < 1e-4f) << x << ' ' << y;
+    }
+  EXPECT_GT(seen, 20);
+}
+
 TEST_F(DepthMapsTest, AWallHidesWhatIsBehindIt) {
   const std::vector<GridCamera> cameras{look({-40, 12, 8}, {16, 12, 8}, 70)};
   std::vector<ivec3> wall;
