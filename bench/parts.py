@@ -57,7 +57,7 @@ def in_parts(photohull: Photohull, options: argparse.Namespace, resolution: str,
                            "--json", *OPTIONS) for run in range(options.repeat)]
     pieces = [json.loads(line) for line in runs[0].output.splitlines()]
     job, name = folder / "0", options.scene.name
-    parts = [report_of(job / part["folder"]) for part in report_of(job / name)["parts"]]
+    parts = [report_of(job / name / part["folder"]) for part in report_of(job / name)["parts"]]
     fine, coarse = score(photohull, job / name / "mesh.ply", options.scene)
     return {"resolution": int(resolution), "parts": count, "cpu_s": median(run.cpu_seconds for run in runs),
             "mib": max(piece["peak_memory_bytes"] for piece in pieces) / 2**20,

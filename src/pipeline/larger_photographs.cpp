@@ -91,6 +91,7 @@ class LargerPhotographs : public projtex::OutOfCorePhotographs {
                     const ReconstructOptions& options, const Progress& progress)
       : reader_(reader),
         box_(subject.box),
+        cut_at_(options.part ? projtex::kCutPixels : 1),
         progress_(progress),
         encoding_(encoding_of(subject.views)) {
     const std::vector<int> lenses = shared_lenses(frames_of(subject.views));
@@ -112,7 +113,7 @@ class LargerPhotographs : public projtex::OutOfCorePhotographs {
     noise_sigma_ = std::max(
         options.noise ? *options.noise / 255 * largest_scale() : measured_noise(), kRoundingNoise);
     // Now, for a device that has no such textures must not tell at the last level.
-    cache_.emplace(cameras_, std::min(most_, int(cameras_.size())), encoding_);
+    cache_.emplace(cameras_, std::min(most_, int(cameras_.size())), encoding_, cut_at_);
   }
 
   std::span<const Camera> cameras() const override { return cameras_; }
@@ -144,7 +145,7 @@ class LargerPhotographs : public projtex::OutOfCorePhotographs {
     out.camera = view.camera;
     out.camera.intrinsics =
         pinhole_intrinsics(k, view.source.distortion, PrepareOptions().max_frame_growth);
-    out.camera.intrinsics = cropped_intrinsics(box_, kCropMargin, out.camera);
+    out.camera.intrinsics = cropped_intrinsics(box_, kCropMargin, out.camera, cut_at_);
     return out;
   }
 
@@ -208,7 +209,7 @@ class LargerPhotographs : public projtex::OutOfCorePhotographs {
                          view.image.height, " now; start the job anew"));
     make_opaque(view.image);
     undistort(view.source.distortion, PrepareOptions().max_frame_growth, view);
-    crop_to_box(box_, kCropMargin, view);
+    crop_to_box(box_, kCropMargin, view, cut_at_);
     if (!entry.gains.views.empty()) {
       const std::span one(&view, 1);
       apply_photometric(entry.gains, frames_of(one), {0}, one);
@@ -218,6 +219,7 @@ class LargerPhotographs : public projtex::OutOfCorePhotographs {
 
   PhotographReader reader_;
   Box box_;
+  int cut_at_;
   const Progress& progress_;
   std::vector<Entry> entries_;
   std::vector<Camera> cameras_;

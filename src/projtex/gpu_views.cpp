@@ -41,11 +41,11 @@ shaders::GpuView to_gpu_view(const GridCamera& camera, const glm::ivec2& array_s
           glm::vec4(sharpness, 0, 0, 0)};
 }
 
-glm::ivec2 array_size(std::span<const Camera> cameras) {
+glm::ivec2 array_size(std::span<const Camera> cameras, int cut_at) {
   glm::ivec2 size(1);
   for (const Camera& c : cameras)
     size = glm::max(size, glm::ivec2(c.intrinsics.width, c.intrinsics.height));
-  return size;
+  return cut_at * ((size + cut_at - 1) / cut_at);
 }
 
 std::vector<Camera> cameras_of(std::span<const PreparedView> views) {

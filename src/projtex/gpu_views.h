@@ -29,8 +29,10 @@ double viewing_depth(const GridCamera& camera, const GridSpec& grid);
 shaders::GpuView to_gpu_view(const GridCamera& camera, const glm::ivec2& array_size,
                              double sharpness = 1);
 
-/// Smallest array texture that holds images of all the sizes.
-glm::ivec2 array_size(std::span<const Camera> cameras);
+/// Smallest array texture that holds images of all the sizes, as wide and high as a multiple of
+/// `cut_at` pixels: where images were cut at multiples of it, texels of mip levels begin there,
+/// too.
+glm::ivec2 array_size(std::span<const Camera> cameras, int cut_at = 1);
 
 std::vector<Camera> cameras_of(std::span<const PreparedView> views);
 

@@ -59,8 +59,7 @@ Encoding encoding_of(std::span<const PreparedView> views) {
 }  // namespace
 
 ImageSet::ImageSet(std::span<const PreparedView> views, int cut_at)
-    : ImageSet(cut_at * ((array_size(cameras_of(views)) + cut_at - 1) / cut_at), int(views.size()),
-               encoding_of(views)) {
+    : ImageSet(array_size(cameras_of(views), cut_at), int(views.size()), encoding_of(views)) {
   for (std::size_t i = 0; i < views.size(); ++i) {
     upload(image_of(views[i]), int(i), texture_);
     sharpness_[i] = usable_sharpness(views[i]);

@@ -15,9 +15,7 @@ namespace photohull::projtex {
 /// anything foreign into them.
 class ImageSet {
  public:
-  /// `cut_at`: pixels at whose multiples the photographs were cut (kCutPixels). The
-  /// array is as wide and high as a multiple of it, so that texels of mip levels begin there, too.
-  /// Throws Error when the device cannot hold the images.
+  /// `cut_at`: as array_size has it. Throws Error when the device cannot hold the images.
   explicit ImageSet(std::span<const PreparedView> views, int cut_at = 1);
   /// Room for images of up to `size` pixels, which put() fills one by one.
   ImageSet(const glm::ivec2& size, int layers, ColourImage::Encoding encoding);

@@ -8,9 +8,9 @@
 namespace photohull::projtex {
 
 PhotographCache::PhotographCache(std::span<const Camera> cameras, int layers,
-                                 ColourImage::Encoding encoding)
+                                 ColourImage::Encoding encoding, int cut_at)
     : cameras_(cameras.begin(), cameras.end()),
-      held_{ImageSet(array_size(cameras), layers, encoding),
+      held_{ImageSet(array_size(cameras, cut_at), layers, encoding),
             std::vector<Camera>(std::size_t(layers), cameras.front()),
             std::vector<int>(cameras.size(), -1)},
       used_(std::size_t(layers), 0) {}

@@ -15,9 +15,10 @@ namespace photohull::projtex {
 class PhotographCache {
  public:
   /// Room for `layers` of the photographs that the cameras took. The texture is as large as for all
-  /// of them: what is sampled does not depend on which are held. Throws Error when the device
-  /// cannot hold it.
-  PhotographCache(std::span<const Camera> cameras, int layers, ColourImage::Encoding encoding);
+  /// of them: what is sampled does not depend on which are held. `cut_at`: as array_size has it.
+  /// Throws Error when the device cannot hold it.
+  PhotographCache(std::span<const Camera> cameras, int layers, ColourImage::Encoding encoding,
+                  int cut_at = 1);
 
   /// Which of these, of which there is room for all, have to be put; the others stay until then.
   std::vector<int> missing(std::span<const int> numbers);

@@ -92,9 +92,9 @@ void crop_to_box(const Box& box, int margin, PreparedView& view, int multiple) {
   cut(frame, k);
 }
 
-Intrinsics cropped_intrinsics(const Box& box, int margin, const Camera& camera) {
+Intrinsics cropped_intrinsics(const Box& box, int margin, const Camera& camera, int multiple) {
   Intrinsics k = camera.intrinsics;
-  cut(kept_frame(box, margin, camera, 1), k);
+  cut(kept_frame(box, margin, camera, multiple), k);
   return k;
 }
 

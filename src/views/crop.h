@@ -15,6 +15,6 @@ namespace photohull {
 void crop_to_box(const Box& box, int margin, PreparedView& view, int multiple = 1);
 
 /// The intrinsics that this gives a view of the camera.
-Intrinsics cropped_intrinsics(const Box& box, int margin, const Camera& camera);
+Intrinsics cropped_intrinsics(const Box& box, int margin, const Camera& camera, int multiple = 1);
 
 }  // namespace photohull
