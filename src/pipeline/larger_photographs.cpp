@@ -14,6 +14,7 @@
 #include "pipeline/place_lattice.h"
 #include "projtex/gpu_views.h"
 #include "projtex/photograph_cache.h"
+#include "projtex/photographs.h"
 #include "views/crop.h"
 #include "views/photometric_samples.h"
 #include "views/prepare_views.h"
