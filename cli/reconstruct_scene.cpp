@@ -1,5 +1,7 @@
 #include "reconstruct_scene.h"
 
+#include <array>
+#include <cstdint>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -19,10 +21,21 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
+/// Without the end of the line.
+void print_sizes(int views, const glm::ivec3& voxels, double voxel_size, std::int64_t triangles) {
+  std::printf("%d views, %d x %d x %d voxels of %g, %lld triangles", views, voxels.x, voxels.y,
+              voxels.z, voxel_size, static_cast<long long>(triangles));
+}
+
+void print_costs(double wall_seconds, double cpu_seconds, std::int64_t bytes) {
+  std::printf("%.2f s (%.2f CPU s), peak memory %lld MiB", wall_seconds, cpu_seconds,
+              static_cast<long long>(bytes >> 20));
+}
+
 void print_summary(const pipeline::Report& report, const std::string& out) {
-  const glm::ivec3 n = report.grid.voxels();
-  std::printf("%d views, %d x %d x %d voxels of %g, %lld triangles\n", report.photographs.views,
-              n.x, n.y, n.z, report.grid.voxel_size, static_cast<long long>(report.mesh.triangles));
+  print_sizes(report.photographs.views, report.grid.voxels(), report.grid.voxel_size,
+              report.mesh.triangles);
+  std::printf("\n");
   if (report.photographs.smallest_scale < 1)
     std::printf("photographs read at %s of their size\n",
                 pipeline::image_scale_text(report.photographs.smallest_scale).c_str());
@@ -34,9 +47,8 @@ void print_summary(const pipeline::Report& report, const std::string& out) {
                 static_cast<long long>(sweep.voxels_judged), sweep.sweeps,
                 static_cast<long long>(sweep.voxels_carved));
   if (!report.photometric.line.empty()) std::printf("%s\n", report.photometric.line.c_str());
-  std::printf("%.2f s (%.2f CPU s), peak memory %lld MiB, on %s\n", report.wall_seconds,
-              report.cpu_seconds, static_cast<long long>(report.peak_memory_bytes >> 20),
-              report.device.c_str());
+  print_costs(report.wall_seconds, report.cpu_seconds, report.peak_memory_bytes);
+  std::printf(", on %s\n", report.device.c_str());
   for (const std::string& file : report.files) std::printf("  %s/%s\n", out.c_str(), file.c_str());
   const assess::Verdict& verdict = report.verdict.verdict;
   std::printf("verdict: %s\n", assess::to_string(verdict.level));
@@ -51,6 +63,18 @@ void throw_failed(const std::string& reason) {
 
 json read_report(const fs::path& folder) {
   return json::parse(read_whole_file(folder / "report.json"));
+}
+
+/// What print_summary says first, from a report's file.
+void print_sizes_and_costs(const json& report) {
+  const json& grid = report.at("grid");
+  const std::array<int, 3> voxels = grid.at("voxels");
+  print_sizes(report.at("scene").at("views"), {voxels[0], voxels[1], voxels[2]},
+              grid.at("voxel_size"), report.at("mesh").at("triangles"));
+  if (report.contains("parts")) std::printf(", in %zu parts", report["parts"].size());
+  std::printf("\n");
+  print_costs(report.at("wall_seconds"), report.at("cpu_seconds"), report.at("peak_memory_bytes"));
+  std::printf("\n");
 }
 
 }  // namespace
@@ -89,19 +113,6 @@ std::string model_identity(const pipeline::ReconstructOptions& given,
   return identity.digest();
 }
 
-/// What print_summary says of a report, from its file.
-void tell_sizes(const json& report) {
-  const json &voxels = report.at("grid").at("voxels"), &size = report.at("grid").at("voxel_size");
-  std::printf("%d views, %d x %d x %d voxels of %g, %lld triangles",
-              report.at("scene").at("views").get<int>(), voxels.at(0).get<int>(),
-              voxels.at(1).get<int>(), voxels.at(2).get<int>(), size.get<double>(),
-              report.at("mesh").at("triangles").get<long long>());
-  if (report.contains("parts")) std::printf(", in %zu parts", report["parts"].size());
-  std::printf("\n%.2f s (%.2f CPU s), peak memory %lld MiB\n",
-              report.at("wall_seconds").get<double>(), report.at("cpu_seconds").get<double>(),
-              report.at("peak_memory_bytes").get<long long>() >> 20);
-}
-
 bool has_results(const fs::path& folder) {
   try {
     const json report = read_report(folder);
@@ -121,7 +132,7 @@ void tell_results(const std::string& out, bool as_json) {
   const auto say = [&](const std::string& line) {
     if (!as_json) std::printf("%s\n", line.c_str());
   };
-  if (!as_json) tell_sizes(report);
+  if (!as_json) print_sizes_and_costs(report);
   for (const json& file : report.at("files")) say(concat("  ", out, "/", file.get<std::string>()));
   const json& verdict = report.at("verdict");
   const std::string level = verdict.at("level");

@@ -79,7 +79,7 @@ ColouredSurface colour_surface(const SurfaceJob& job, TriMesh mesh) {
                                  shaping, mesh, job.progress);
   const auto unseen = std::count(mesh.confidence.begin(), mesh.confidence.end(), 0.0f);
   const double share = double(unseen) / double(mesh.confidence.size());
-  if (share > 0.5)
+  if (share > 0.5 && !job.part)  // the whole has said so
     job.progress.warn(concat(std::lround(100 * share),
                              " % of the surface is seen by no camera: it is the hull's guess"));
   return {std::move(mesh), std::move(baked.evidence), {share}};
@@ -102,7 +102,7 @@ OpenSurface open_unseen(const SurfaceJob& job, const TriMesh& mesh, SeenVertices
                        {&seen.views, &seen.disagreement});
     islands = {std::int64_t(gone.pieces), gone.area_share};
   }
-  if (open.triangles.empty())
+  if (open.triangles.empty() && !job.part)
     throw Error(concat(
         "no surface was found that a camera sees and that is more likely right than wrong; check "
         "the cameras (photohull info), or look at all of it with ",

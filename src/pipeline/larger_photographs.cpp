@@ -105,7 +105,7 @@ class LargerPhotographs : public projtex::OutOfCorePhotographs {
       cameras_.push_back(entry.camera);
       entries_.push_back(std::move(entry));
     }
-    const double pixels = depth_of(encoding_) * pixels_of(projtex::array_size(cameras_));
+    const double pixels = depth_of(encoding_) * pixels_of(projtex::array_size(cameras_, cut_at_));
     slot_ = std::int64_t(kPixelBytes * pixels);
     scratch_.emplace(with_room(options.checkpoint, double(slot_) * double(entries_.size())));
     const std::int64_t left = subject.held_bytes - held_bytes(0, 0, largest_file(subject.views));

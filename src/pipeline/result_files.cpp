@@ -60,8 +60,9 @@ void ResultFiles::commit(Progress& progress) {
   }
   files_.clear();
   if (!left.empty())
-    progress.note(concat(folder_.string(),
-                         " still has of an earlier run what this one did not make: ", left));
+    progress.note(
+        concat(folder_.string(),
+               " still holds files of an earlier run, which this one did not make: ", left));
 }
 
 }  // namespace photohull::pipeline

@@ -26,6 +26,8 @@ struct Photographs {
   std::span<const DepthMap> beside{};
 
   bool are_of_part() const { return !beside.empty(); }
+  /// Pixels at whose multiples they may have been cut; 1: they were not.
+  int cut_at() const { return are_of_part() ? kCutPixels : 1; }
 };
 
 /// The cameras in voxel coordinates of a grid.

@@ -30,7 +30,7 @@ double value_at(const SparseVolume& v, const glm::dvec3& p) { return v.at(glm::i
 constexpr double kAcross =
     0.8;                        // of the distance to the hull's surface, that a step along a ray is
 constexpr int kMostClear = 16;  // bricks
-constexpr int kSeeds = 1024;    // a power of two
+constexpr int kSeeds = 1024;    // of rays of parts; a power of two
 
 /// How far empty space reaches about each brick of a hull: that many bricks to every side, at most
 /// kMostClear, are outside; 0 where the brick is not.
@@ -130,8 +130,8 @@ class RayMapper {
     RayMap map;
     map.stride = std::max(kLeastStride, options_.ray_spacing * c.focal / std::max(depth, 1.0));
     if (in_parts_) {
-      // As many rays, an even number, lie before the principal point as it says, wherever the
-      // photograph was cut.
+      // An even number of rays lies before the principal point, wherever the photograph was cut:
+      // which neighbours a ray looks at depends on whether its place is even.
       const glm::dvec2 place = principal_place(v, map);
       map.shift = 2.0 * glm::ceil(0.5 * place) - place;
     }

@@ -32,6 +32,6 @@ std::vector<SurfacePoint> points_between(const TriMesh& mesh,
 /// Empty maps with texels wide enough (kBakeTexel) that every one within the mesh's outline holds a
 /// point. `cut_at`: as visibility::DepthMaps has it.
 visibility::DepthMaps occluder_maps(std::span<const Camera> cameras, const GridSpec& grid,
-                                    int cut_at = 0);
+                                    int cut_at = 1);
 
 }  // namespace photohull::render

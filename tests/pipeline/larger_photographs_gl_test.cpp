@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 
 #include "core/error.h"
@@ -15,6 +16,7 @@
 #include "pipeline/reconstruct.h"
 #include "pipeline/recording_progress.h"
 #include "projtex/gpu_views.h"
+#include "projtex/photographs.h"
 #include "support/gl_context.h"
 #include "support/ray_cast.h"
 #include "support/scratch_folder.h"
@@ -121,6 +123,21 @@ TEST_F(LargerPhotographs, AreWhatReadingThemLargeAtOnceGives) {
   }
   EXPECT_EQ(some->noise_sigma(), 1.0 / 255);
   EXPECT_EQ(some->most(), fewest_held(kViews)) << "however little room there is";
+}
+
+TEST_F(LargerPhotographs, OfPartsAreCutWhereTexelsOfMipLevelsBegin) {
+  options_.part = {1, 2};
+  box_ = {glm::dvec3(-0.3), glm::dvec3(0.3)};
+  const auto some = larger();
+  const projtex::HeldPhotographs& held = some->hold(std::vector<int>{1, 3});
+  for (const std::size_t n : {1, 3}) {  // those by a lens that does not distort
+    const double left = photographs_.scene.views[n].camera.intrinsics.cx -
+                        held.cameras[std::size_t(held.layers[n])].intrinsics.cx;
+    EXPECT_GT(left, 0);
+    EXPECT_NEAR(std::remainder(left, projtex::kCutPixels), 0, 1e-9);
+  }
+  EXPECT_EQ(held.images.texture().width() % projtex::kCutPixels, 0);
+  EXPECT_EQ(held.images.texture().height() % projtex::kCutPixels, 0);
 }
 
 TEST_F(LargerPhotographs, WhatWasNotAskedForTheLongestGoesFirst) {

@@ -37,9 +37,8 @@ visibility::DepthMaps draw_occluders(gpu::Context& context, const GridSpec& grid
                                      const projtex::Photographs& photographs,
                                      const projtex::DeviceViews& views, const TriMesh& mesh,
                                      std::span<const SurfacePoint> vertices) {
-  visibility::DepthMaps maps =
-      occluder_maps(photographs.cameras, grid, photographs.are_of_part() ? projtex::kCutPixels : 0);
-  if (!photographs.beside.empty()) maps.draw(photographs.beside, 1 / grid.voxel_size);
+  visibility::DepthMaps maps = occluder_maps(photographs.cameras, grid, photographs.cut_at());
+  if (photographs.are_of_part()) maps.draw(photographs.beside, 1 / grid.voxel_size);
   views.bind();
   maps.bind();
   splat(context, maps, views, vertices);

@@ -21,7 +21,7 @@ double texels_per_pixel(const projtex::GridCamera& camera, const GridSpec& grid,
   const double depth = projtex::viewing_depth(camera, grid);
   const double pixels_per_voxel = depth > 1 ? camera.focal / depth : 1.0;
   const double scale = std::clamp(1.0 / pixels_per_voxel, 1.0 / 64, 1.0);
-  return cut_at > 0 ? std::max(std::floor(scale * cut_at), 1.0) / cut_at : scale;
+  return cut_at > 1 ? std::max(std::floor(scale * cut_at), 1.0) / cut_at : scale;
 }
 
 }  // namespace

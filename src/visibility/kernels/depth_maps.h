@@ -19,9 +19,9 @@ class DepthMaps {
  public:
   /// Maps for `cameras` (in the grid's frame) that look at `grid`. Nothing hides anything yet.
   /// `cut_at`: pixels at whose multiples the photographs may have been cut; a texel begins at each
-  /// of them, so that texels are the same wherever that was. 0: they were not.
+  /// of them, so that texels are the same wherever that was. 1: they were not.
   /// Throws Error when the device cannot hold them.
-  DepthMaps(std::span<const projtex::GridCamera> cameras, const GridSpec& grid, int cut_at = 0);
+  DepthMaps(std::span<const projtex::GridCamera> cameras, const GridSpec& grid, int cut_at = 1);
 
   /// Forgets all that was drawn.
   void clear();
