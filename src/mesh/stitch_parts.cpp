@@ -143,6 +143,19 @@ void add_vertex(const TriMesh& from, std::size_t vertex, TriMesh& to) {
   if (!from.confidence.empty()) to.confidence.push_back(from.confidence[vertex]);
 }
 
+/// Of each vertex one that stands for all which triangles join with it.
+std::vector<std::uint32_t> pieces_of(const TriMesh& mesh) {
+  std::vector<std::uint32_t> pieces(mesh.positions.size());
+  std::iota(pieces.begin(), pieces.end(), 0u);
+  const auto root = [&](std::uint32_t v) {
+    while (pieces[v] != v) v = pieces[v] = pieces[pieces[v]];
+    return v;
+  };
+  for (const auto& [a, b, c] : mesh.triangles) pieces[root(a)] = pieces[root(b)] = root(c);
+  for (std::uint32_t v = 0; v < pieces.size(); ++v) pieces[v] = root(v);
+  return pieces;
+}
+
 /// The rims as one mesh, which joining changes.
 class Joining {
  public:
@@ -153,6 +166,7 @@ class Joining {
       first_.push_back(first);
       for (std::uint32_t v = 0; v < rim.vertices.size(); ++v)
         if (rim.border[v]) border_.push_back({first + v, part});
+      on_border_.insert(on_border_.end(), rim.border.begin(), rim.border.end());
       append_mesh(rim.mesh, mesh_);
       part_of_.resize(mesh_.positions.size(), std::uint32_t(part));
       rim.mesh = {};
@@ -176,6 +190,7 @@ class Joining {
     drop_doubled(mesh_);
     // Where a rim ends within its part there is no other part, and so no gap, and no seam.
     out.filled = fill_gaps(border_of(mesh_), part_of_, reach, mesh_);
+    drop_dust();
     for (const Side& side : border_of(mesh_))
       out.open_edges += part_of_[side.from] == kSeam || part_of_[side.to] == kSeam;
     number(out);
@@ -183,6 +198,22 @@ class Joining {
   }
 
  private:
+  /// Drops pieces that end at their part's border and have nothing but what is near it: the part
+  /// beside it has none of them.
+  void drop_dust() {
+    const std::vector<Side> border = border_of(mesh_);
+    enum : std::uint8_t { kClosed, kOpen, kGoesOn };
+    const std::vector<std::uint32_t> pieces = pieces_of(mesh_);
+    std::vector<std::uint8_t> kinds(mesh_.positions.size(), kClosed);
+    for (const Side& side : border) {
+      // Where the rim was cut off its part, it is two triangles from the border.
+      const bool cut = !on_border_[side.from] && !on_border_[side.to];
+      std::uint8_t& kind = kinds[pieces[side.from]];
+      kind = std::max<std::uint8_t>(kind, cut ? kGoesOn : kOpen);
+    }
+    std::erase_if(mesh_.triangles, [&](const auto& t) { return kinds[pieces[t[0]]] == kOpen; });
+  }
+
   /// Says what becomes of the parts.
   void number(Stitched& out) {
     std::vector<bool> used(mesh_.positions.size(), false);
@@ -219,6 +250,7 @@ class Joining {
   TriMesh mesh_;
   std::vector<std::uint32_t> first_;  // of each rim, in mesh_
   std::vector<BorderVertex> border_;
+  std::vector<bool> on_border_;         // of each vertex
   std::vector<std::uint32_t> part_of_;  // of each vertex
   std::vector<std::uint32_t> stands_for_;
 };

@@ -14,7 +14,8 @@ constexpr int kRounds = 10;  // of averaging with the neighbours: three or four 
 constexpr float kFullWeight = 1,
                 kEvidenceAround = 0.7f;  // weights of peaks that the hull is measured by
 constexpr double kReach = 1;             // voxels under the hull: it has lost its say there
-constexpr double kPriorCount = 100;      // of them that lie on it, where none are known
+constexpr double kPriorCount = 100;      // of peaks to begin with, where none are known
+constexpr double kPower = 4;             // of the share of them, that the hull is believed by
 
 /// Weights of the peaks, none counted for more than 1, averaged over the surface around.
 std::vector<float> evidence_around(const VertexGraph& graph, const std::vector<Peak>& peaks) {
@@ -31,13 +32,25 @@ std::vector<float> evidence_around(const VertexGraph& graph, const std::vector<P
   return mean;
 }
 
+/// Shares that are taken to lie on the hull before anything is told: what larger voxels told, or
+/// all.
+HullTrust shares_before(const std::optional<HullTrust>& coarser) {
+  HullTrust shares;
+  shares.fill(1);
+  if (coarser)
+    for (std::size_t i = 0; i < shares.size(); ++i)
+      shares[i] = std::pow((*coarser)[std::min(i + 1, shares.size() - 1)], 1 / kPower);
+  return shares;
+}
+
 /// How far the hull may be believed where nothing checks it: by the share of what photographs tell
 /// surely that lies on it, to within a voxel.
 HullTrust tightness(const SparseVolume& hull, std::span<const glm::vec3> positions,
-                    const std::vector<Peak>& peaks, const std::vector<float>& evidence) {
+                    const std::vector<Peak>& peaks, const std::vector<float>& evidence,
+                    const std::optional<HullTrust>& coarser) {
   double sure = kPriorCount;
-  HullTrust on_hull;
-  on_hull.fill(kPriorCount);
+  HullTrust on_hull = shares_before(coarser);
+  for (double& on : on_hull) on *= kPriorCount;
   for (std::size_t i = 0; i < peaks.size(); ++i) {
     if (!(peaks[i].weight >= kFullWeight && evidence[i] >= kEvidenceAround)) continue;
     sure += 1;
@@ -45,7 +58,7 @@ HullTrust tightness(const SparseVolume& hull, std::span<const glm::vec3> positio
     double reach = kReach;
     for (double& on : on_hull) on += under < reach, reach /= 2;
   }
-  for (double& on : on_hull) on = std::pow(on / sure, 4);
+  for (double& on : on_hull) on = std::pow(on / sure, kPower);
   return on_hull;
 }
 
@@ -55,7 +68,7 @@ HullTrust pull_to_hull(const SparseVolume& hull, const VertexGraph& graph,
                        std::span<const glm::vec3> positions, const PatchQuality& patches,
                        const HullPriorOptions& options, std::vector<Peak>& peaks) {
   const std::vector<float> evidence = evidence_around(graph, peaks);
-  const HullTrust tight = tightness(hull, positions, peaks, evidence);
+  const HullTrust tight = tightness(hull, positions, peaks, evidence, options.coarser);
   const double strongest = options.weight * options.trust.value_or(tight.front());
   tbb::parallel_for(std::size_t(0), peaks.size(), [&](std::size_t i) {
     const float under = float(-hull.interpolated(glm::dvec3(positions[i])));

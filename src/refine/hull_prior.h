@@ -21,6 +21,9 @@ struct HullPriorOptions {
   double weight = 30, evidence = 0.2;
   /// How far the hull can be believed, where that is known already; it is no choice.
   std::optional<double> trust;
+  /// What it returned for voxels twice as large, which counts where little is told at these;
+  /// nothing: it was not asked. No choice either.
+  std::optional<HullTrust> coarser;
 };
 
 inline void describe(Described& to, HullPriorOptions& o) {
@@ -42,8 +45,9 @@ struct PatchQuality {
 /// peaks weak, many that agree still know better. A hull that is loose where photographs check it
 /// is not believed where they do not: the weight falls with the fourth power of the share of what
 /// they tell surely that lies on it. Nor is it at thin parts, which it makes too thick: the weight
-/// falls with the square of `patches.trust`. `positions` in voxels of the hull's grid.
-/// Returns how far the hull can be believed.
+/// falls with the square of `patches.trust`. Where photographs tell little surely, as where voxels
+/// are far smaller than pixels, what they told at larger voxels stands. `positions` in voxels of
+/// the hull's grid. Returns how far the hull can be believed.
 HullTrust pull_to_hull(const SparseVolume& hull, const VertexGraph& graph,
                        std::span<const glm::vec3> positions, const PatchQuality& patches,
                        const HullPriorOptions& options, std::vector<Peak>& peaks);

@@ -75,6 +75,7 @@ class SurfaceRefiner {
   SparseVolume run(const CheckpointFile* checkpoint, RefineReport& report) {
     if (checkpoint) resume(*checkpoint, report);
     for (std::size_t level = report.levels.size(); level < grids_.size(); ++level) {
+      if (level > 0) job_.options.hull_prior.coarser = report.levels.back().hull_trust;
       report.levels.push_back(refine_level(level, report.fits));
       if (checkpoint && !is_last(level))
         keep(*checkpoint, {volume_, settled_, report.levels}, progress_);

@@ -6,8 +6,11 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <map>
+#include <set>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "volume/vdb_file.h"
@@ -20,8 +23,9 @@ using openvdb::Coord;
 using openvdb::FloatGrid;
 using openvdb::Vec3fGrid;
 
-constexpr double kSameSize = 1e-9;     // relative
-constexpr double kWholeVoxels = 1e-3;  // of a voxel: what origins may be off whole bricks
+constexpr double kSameSize = 1e-9;         // relative
+constexpr double kWholeVoxels = 1e-3;      // of a voxel: what origins may be off whole bricks
+constexpr std::size_t kLargestSpeck = 64;  // voxels
 
 /// What a file says of its lattice, without the voxels.
 struct Head {
@@ -92,9 +96,13 @@ GridSpec grid_around(std::span<const fs::path> files, std::span<const Head> head
   return out;
 }
 
-/// What is stored of `part`, moved by `shift`, where nothing is stored yet.
-template <typename Grid>
-void add(const Grid& part, const Coord& shift, Grid& all) {
+/// Which file each brick of the joined grid is of, by its first voxel.
+using BrickFiles = std::map<Coord, std::size_t>;
+
+/// What is stored of `part`, moved by `shift`, where nothing is stored yet; visit(first voxel) of
+/// each brick.
+template <typename Grid, typename Visit>
+void add(const Grid& part, const Coord& shift, Grid& all, const Visit& visit) {
   using Leaf = typename Grid::TreeType::LeafNodeType;
   typename Grid::Accessor accessor = all.getAccessor();
   // Tiles first: leaves lie beside them.
@@ -115,13 +123,55 @@ void add(const Grid& part, const Coord& shift, Grid& all) {
     auto* copy = new Leaf(*leaf);
     copy->setOrigin(at);
     accessor.addLeaf(copy);  // the tree owns it now
+    visit(at);
   }
+}
+
+/// The body's voxels that hold together with one of it, by faces, edges and corners; none where
+/// they are more than a speck has.
+std::vector<Coord> speck_at(const Coord& voxel, FloatGrid::ConstAccessor& surface) {
+  std::set<Coord> seen{voxel};
+  std::vector<Coord> out{voxel};
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (out.size() > kLargestSpeck) return {};
+    for (int k = 0; k < 27; ++k) {
+      const Coord next = out[i] + Coord(k / 9, k / 3 % 3, k % 3) - Coord(1);
+      if (surface.getValue(next) < 0 && seen.insert(next).second) out.push_back(next);
+    }
+  }
+  return out;
+}
+
+/// Takes specks from the body that end at a border between files: what one part has and the one
+/// beside it has nothing of.
+void remove_specks(const BrickFiles& files, FloatGrid& surface) {
+  FloatGrid::ConstAccessor at = surface.getConstAccessor();
+  FloatGrid::Accessor change = surface.getAccessor();
+  for (const auto& [brick, file] : files)
+    for (int face = 0; face < 6; ++face) {
+      const int axis = face / 2, step = face % 2 ? 1 : -1;
+      Coord next = brick;
+      next[axis] += step * kBrickEdge;
+      const auto beside = files.find(next);
+      if (beside != files.end() && beside->second == file) continue;
+      for (int i = 0; i < kBrickEdge * kBrickEdge; ++i) {
+        Coord voxel = brick;
+        voxel[axis] += face % 2 ? kBrickEdge - 1 : 0;
+        voxel[(axis + 1) % 3] += i / kBrickEdge, voxel[(axis + 2) % 3] += i % kBrickEdge;
+        next = voxel;
+        next[axis] += step;
+        if (at.getValue(voxel) >= 0 || at.getValue(next) < 0) continue;
+        for (const Coord& gone : speck_at(voxel, at))
+          change.setValueOff(gone, surface.background());
+      }
+    }
 }
 
 template <typename Grid>
 openvdb::GridBase::Ptr join(const char* name, std::span<const fs::path> files,
                             std::span<const Head> heads, const GridSpec& spec) {
   typename Grid::Ptr all;
+  BrickFiles bricks;
   for (std::size_t i = 0; i < files.size(); ++i)
     with_file(files[i], [&](openvdb::io::File& file) {
       if (!file.hasGrid(name)) return;  // a part without any surface
@@ -134,8 +184,11 @@ openvdb::GridBase::Ptr join(const char* name, std::span<const fs::path> files,
         all->setSaveFloatAsHalf(part->saveFloatAsHalf());
       }
       const glm::ivec3 shift = kBrickEdge * first_brick(spec, heads[i].grid);
-      add(*part, Coord(shift.x, shift.y, shift.z), *all);
+      add(*part, Coord(shift.x, shift.y, shift.z), *all,
+          [&](const Coord& first) { bricks.emplace(first, i); });
     });
+  if constexpr (std::is_same_v<Grid, FloatGrid>)
+    if (all && all->getGridClass() == openvdb::GRID_LEVEL_SET) remove_specks(bricks, *all);
   return all;
 }
 

@@ -18,8 +18,10 @@ GridSpec joined_grid(std::span<const std::filesystem::path> files);
 
 /// Writes the grids of the files as those of one file on the joined grid, for the caller to commit:
 /// `surface`, and `Cd` and `confidence` where a file has them. Of a brick that more than
-/// one file stores, the first one's is taken. One grid of all files is in memory at a time. Equal
-/// files give equal bytes. Throws as joined_grid does, and Error when the file cannot be written.
+/// one file stores, the first one's is taken. Specks of a few voxels that end where the bricks of
+/// their file do are left out: the file beside it tells of none. One grid of all files is in memory
+/// at a time. Equal files give equal bytes. Throws as joined_grid does, and Error when the file
+/// cannot be written.
 void join_vdb(AtomicFile& file, std::span<const std::filesystem::path> files,
               const VdbMetadata& metadata);
 

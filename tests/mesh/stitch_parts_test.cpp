@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -148,6 +149,25 @@ TEST(StitchParts, BordersThatAreNoSeamStay) {
   EXPECT_EQ(stitched.open_edges, 0u);
   EXPECT_GT(open_edges(stitched.mesh), 20u);
   EXPECT_EQ(stitched.filled, 0u);
+}
+
+TEST(StitchParts, WhatOnePartAloneHasAtItsBorderGoes) {
+  const glm::dvec3 at(kCentre.x + 0.2, kCentre.y + 17, kCentre.z);
+  for (const double radius : {1.3, 4.0}) {
+    const auto apart = [&](const glm::dvec3& p) {
+      return std::min(sphere(kCentre, kRadius)(p), sphere(at, radius)(p));
+    };
+    const TriMesh both = extract_mesh(sample_volume({5, 6, 5}, apart));
+    std::vector<TriMesh> parts = parts_of(both, 2, 0), without = parts_of(ball(), 2, 0);
+    const Joined stitched = stitch_parts({parts[0], without[1]}, 0.75);
+    if (radius > 2)
+      EXPECT_GT(open_edges(stitched.mesh), 10u) << "a large piece is no dust";
+    else
+      EXPECT_EQ(stitched.mesh.triangles.size(), ball().triangles.size());
+    EXPECT_EQ(open_edges(stitch_parts(parts, 0.75).mesh), 0u);
+    EXPECT_EQ(stitch_parts(parts, 0.75).mesh.triangles.size(), both.triangles.size())
+        << "what both have stays";
+  }
 }
 
 TEST(StitchParts, EmptyPartsAndFarOnesChangeNothing) {

@@ -138,7 +138,7 @@ TEST(Tune, ReachesEveryField) {
   expect_all_described<refine::LabelOptions>();
   expect_all_described<refine::CloseOptions>();
   expect_all_described<refine::RestoreOptions>();
-  expect_all_described<refine::HullPriorOptions>(1);
+  expect_all_described<refine::HullPriorOptions>(2);
   expect_all_described<refine::ThinHullOptions>();
   expect_all_described<refine::UnprovenOptions>();
   expect_all_described<refine::MatchOptions>();

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -120,6 +121,30 @@ TEST(PullToHull, SaysHowFarTheHullIsBelievedAtSmallerVoxels) {
   EXPECT_EQ(trust[4], trust[2]);
   EXPECT_EQ(trust_of(0.35, 0.25, known), trust) << "what it sees";
   EXPECT_NEAR(known, 0.25f * weight, 1e-3f * weight) << "and what it is told";
+}
+
+// Photographs tell nothing at these voxels, or put a thousand vertices on the hull.
+TEST(PullToHull, WhatLargerVoxelsToldStandsWhereTheseTellLittle) {
+  constexpr HullTrust kCoarser = {1, 0.5, 0.25, 0.125, 0.0625};
+  const auto pulled_to = [&](std::optional<HullTrust> coarser, std::size_t sure, HullTrust& trust) {
+    const std::size_t count = sure + 1;
+    const std::vector<vec3> positions(count, vec3(12) + 7.8f * glm::normalize(vec3(1, 2, -0.5)));
+    const std::vector<float> texture(count, 0), thick(count, 1);
+    std::vector<Peak> peaks(count, Peak{0.2f, 2, 0.9f});
+    peaks[0] = {};
+    const VertexGraph apart{std::vector<std::uint32_t>(count + 1, 0), {}};
+    HullPriorOptions options;
+    options.coarser = coarser;
+    trust = pull_to_hull(ball(), apart, positions, {texture, thick}, options, peaks);
+    return peaks[0].weight;
+  };
+  HullTrust trust{};
+  const float alone = pulled_to(std::nullopt, 0, trust);
+  EXPECT_EQ(trust, HullTrust({1, 1, 1, 1, 1}));
+  EXPECT_NEAR(pulled_to(kCoarser, 0, trust), 0.5f * alone, 1e-4f * alone);
+  for (std::size_t i = 0; i < trust.size(); ++i)
+    EXPECT_NEAR(trust[i], kCoarser[std::min(i + 1, trust.size() - 1)], 1e-9) << i;
+  EXPECT_GT(pulled_to(kCoarser, 1000, trust), 0.9f * alone) << "these tell much";
 }
 
 TEST(PullToHull, NoWeightNoChange) {

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <fstream>
 #include <iterator>
 #include <vector>
@@ -109,6 +111,28 @@ TEST_F(JoinVdb, OfBricksThatTwoHaveTheFirstIsTaken) {
   const SparseVolume found = read_vdb_surface(joined({{a, b}}));
   EXPECT_LT(found.at({24 + 21, 28, 31}), 0) << "in the bricks of both";
   EXPECT_GT(found.at({24, 28, 31 + 21}), 0) << "in those of the second alone";
+}
+
+TEST_F(JoinVdb, SpecksThatOnePartAloneHasAtItsBorderGo) {
+  const Distance ball = sphere({24.3, 27.6, 31.2}, 14);
+  const auto with = [&](const glm::dvec3& centre, double radius) -> Distance {
+    return [=](const glm::dvec3& p) { return std::min(ball(p), sphere(centre, radius)(p)); };
+  };
+  const auto inside = [&](const Distance& first, const Distance& second) {
+    body = first;
+    const fs::path a = part("a.vdb", {0, 0, 0}, {6, 3, 8});
+    body = second;
+    const fs::path b = part("b.vdb", {0, 3, 0}, kBricks);
+    return read_vdb_surface(joined({a, b})).inside_voxels();
+  };
+  const std::size_t alone = inside(ball, ball);
+  const Distance at_border = with({6, 23.5, 6}, 2), within = with({6, 14, 6}, 2),
+                 large = with({6, 23.5, 6}, 5);
+  EXPECT_EQ(inside(at_border, ball), alone);
+  EXPECT_EQ(inside(ball, at_border), alone);
+  EXPECT_GT(inside(at_border, at_border), alone) << "both have it";
+  EXPECT_GT(inside(within, ball), alone) << "it is no matter of the border";
+  EXPECT_GT(inside(large, ball), alone + 100) << "it is no speck";
 }
 
 TEST_F(JoinVdb, OtherVoxelsAreRefusedByName) {
