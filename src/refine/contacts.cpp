@@ -17,6 +17,7 @@ constexpr double kLeastNormal = 0.2;  // length of the mean of an edge's normals
 // Moving along the normal brings a contact to the outline, but for this share of its lack and so
 // many voxels; else the outline runs another way than the surface, and it is none.
 constexpr double kMissedShare = 0.3, kMissed = 0.05;
+constexpr double kMostReach = SparseVolume::kBand - 0.01;  // voxels, whatever the pixels' size
 constexpr double kLongest = 8;  // cells that a triangle's piece of the outline passes
 constexpr double kMadeRim = 1;  // pixels: standard deviation of the outlines of masks that are made
 
@@ -95,7 +96,7 @@ class Finder {
       return out;
     const double scale = p.z / camera_.focal;  // voxels a pixel
     const double lack = -interpolated(distance_, pixel) * scale;
-    if (!(std::abs(lack) <= reach_)) return out;
+    if (!(std::abs(lack) <= std::min(reach_ * std::max(scale, 1.0), kMostReach))) return out;
     const glm::dvec3 q = camera_.projection * glm::dvec4(point + lack * normal, 1);
     out.outline = glm::dvec2(q) / q.z;
     const double missed = std::abs(interpolated(distance_, out.outline)) * scale;

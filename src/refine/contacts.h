@@ -23,7 +23,8 @@ struct Contact {
 
 /// The contacts of a closed mesh, whose vertices' `positions` (voxels of `grid`) and outward unit
 /// `normals` are given aside, with the silhouettes' outlines: all within `reach`
-/// voxels. Sharp edges have contacts, too. Ordered by camera, then by triangle.
+/// voxels, or pixels where these are larger, and less than SparseVolume::kBand voxels. Sharp edges
+/// have contacts, too. Ordered by camera, then by triangle.
 std::vector<Contact> find_contacts(const GridSpec& grid, const TriMesh& mesh,
                                    std::span<const glm::vec3> positions,
                                    std::span<const glm::vec3> normals, const SilhouetteCones& cones,

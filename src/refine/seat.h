@@ -20,7 +20,8 @@ inline void describe(Described& to, SeatOptions& o) {
   to.number("passes", &o.passes, from_to(0, 100), "",
             "passes of finding contacts and moving towards them; 0: nothing is seated");
   to.number("reach", &o.reach, below(0, SparseVolume::kBand), "voxels",
-            "distance that the surface may be short of an outline");
+            "distance that the surface may be short of an outline; as many pixels where these are "
+            "larger");
   to.number("margin", &o.margin, from_to(0, 1), "voxels",
             "how far off interpolated distances to a curved hull may be");
 }

@@ -127,31 +127,37 @@ void add(const Grid& part, const Coord& shift, Grid& all, const Visit& visit) {
   }
 }
 
-/// The body's voxels that hold together with one of it, by faces, edges and corners; none where
-/// they are more than a speck has.
-std::vector<Coord> speck_at(const Coord& voxel, FloatGrid::ConstAccessor& surface) {
+/// The voxels of the body that hold together with one of it, by faces, edges and corners; none
+/// where they are more than a speck has. `large`: voxels of which that is known.
+std::vector<Coord> speck_at(const Coord& voxel, FloatGrid::ConstAccessor& surface,
+                            std::set<Coord>& large) {
   std::set<Coord> seen{voxel};
   std::vector<Coord> out{voxel};
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    if (out.size() > kLargestSpeck) return {};
+  bool is_speck = !large.contains(voxel);
+  for (std::size_t i = 0; i < out.size() && is_speck; ++i)
     for (int k = 0; k < 27; ++k) {
       const Coord next = out[i] + Coord(k / 9, k / 3 % 3, k % 3) - Coord(1);
-      if (surface.getValue(next) < 0 && seen.insert(next).second) out.push_back(next);
+      if (surface.getValue(next) >= 0 || !seen.insert(next).second) continue;
+      out.push_back(next);
+      is_speck &= out.size() <= kLargestSpeck && !large.contains(next);
     }
-  }
-  return out;
+  if (is_speck) return out;
+  large.insert(out.begin(), out.end());
+  return {};
 }
 
 /// Takes specks from the body that end at a border between files: what one part has and the one
 /// beside it has nothing of.
-void remove_specks(const BrickFiles& files, FloatGrid& surface) {
+void remove_specks(const BrickFiles& files, const GridSpec& grid, FloatGrid& surface) {
   FloatGrid::ConstAccessor at = surface.getConstAccessor();
   FloatGrid::Accessor change = surface.getAccessor();
+  std::set<Coord> large;
   for (const auto& [brick, file] : files)
     for (int face = 0; face < 6; ++face) {
       const int axis = face / 2, step = face % 2 ? 1 : -1;
       Coord next = brick;
       next[axis] += step * kBrickEdge;
+      if (next[axis] < 0 || next[axis] >= grid.voxels()[axis]) continue;  // the box cuts it
       const auto beside = files.find(next);
       if (beside != files.end() && beside->second == file) continue;
       for (int i = 0; i < kBrickEdge * kBrickEdge; ++i) {
@@ -161,7 +167,7 @@ void remove_specks(const BrickFiles& files, FloatGrid& surface) {
         next = voxel;
         next[axis] += step;
         if (at.getValue(voxel) >= 0 || at.getValue(next) < 0) continue;
-        for (const Coord& gone : speck_at(voxel, at))
+        for (const Coord& gone : speck_at(voxel, at, large))
           change.setValueOff(gone, surface.background());
       }
     }
@@ -188,7 +194,7 @@ openvdb::GridBase::Ptr join(const char* name, std::span<const fs::path> files,
           [&](const Coord& first) { bricks.emplace(first, i); });
     });
   if constexpr (std::is_same_v<Grid, FloatGrid>)
-    if (all && all->getGridClass() == openvdb::GRID_LEVEL_SET) remove_specks(bricks, *all);
+    if (all && all->getGridClass() == openvdb::GRID_LEVEL_SET) remove_specks(bricks, spec, *all);
   return all;
 }
 

@@ -51,6 +51,15 @@ TEST(FindContacts, WhatIsFarShortIsNone) {
   EXPECT_FALSE(contacts_of(Surface(sphere(kCentre, 8)), views, 2.5).empty());
 }
 
+TEST(FindContacts, PixelsOfTwoVoxelsReachTwiceAsFar) {
+  const BallViews views(test::cameras_around(kCentre, 60, 6, 30, 24, 24));
+  EXPECT_FALSE(contacts_of(Surface(sphere(kCentre, 8)), views).empty());
+  for (const Contact& contact : contacts_of(Surface(sphere(kCentre, 8)), views))
+    EXPECT_NEAR(contact.lack, 2, 0.3);
+  EXPECT_TRUE(contacts_of(Surface(sphere(kCentre, 6.5)), views).empty())
+      << "beyond the volume's band";
+}
+
 TEST(FindContacts, SharpEdgesHaveThem) {
   // A cube of edge 20 seen along z shows more than the ball but at its sides' middles.
   const BallViews views(

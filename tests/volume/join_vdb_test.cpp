@@ -133,6 +133,7 @@ TEST_F(JoinVdb, SpecksThatOnePartAloneHasAtItsBorderGo) {
   EXPECT_GT(inside(at_border, at_border), alone) << "both have it";
   EXPECT_GT(inside(within, ball), alone) << "it is no matter of the border";
   EXPECT_GT(inside(large, ball), alone + 100) << "it is no speck";
+  EXPECT_GT(inside(with({0, 14, 6}, 2), ball), alone) << "the box cuts it, and no part";
 }
 
 TEST_F(JoinVdb, OtherVoxelsAreRefusedByName) {
