@@ -19,6 +19,7 @@
 #include "cameras/features.h"
 #include "cameras/surface_patches.h"
 #include "cameras/triangulate.h"
+#include "core/disjoint_sets.h"
 #include "core/error.h"
 #include "photo/grey_image.h"
 #include "views/undistort.h"
@@ -118,20 +119,15 @@ std::vector<Track> join(const std::vector<Features>& features, const std::vector
   std::vector<int> first(features.size() + 1, 0);
   for (std::size_t i = 0; i < features.size(); ++i)
     first[i + 1] = first[i] + int(features[i].pixels.size());
-  std::vector<int> parent(std::size_t(first.back()));
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
-  for (const Match& m : matches) {
-    const int a = root(first[m.view_a] + m.feature_a), b = root(first[m.view_b] + m.feature_b);
-    parent[std::max(a, b)] = std::min(a, b);
-  }
-  std::vector<Track> by_root(parent.size());
+  DisjointSets joined(std::size_t(first.back()));
+  for (const Match& m : matches)
+    joined.unite(std::uint32_t(first[m.view_a] + m.feature_a),
+                 std::uint32_t(first[m.view_b] + m.feature_b));
+  std::vector<Track> by_root(joined.size());
   for (std::size_t v = 0; v < features.size(); ++v)
     for (std::size_t f = 0; f < features[v].pixels.size(); ++f)
-      by_root[root(first[v] + int(f))].observations.push_back({int(v), features[v].pixels[f]});
+      by_root[joined.root(std::uint32_t(first[v]) + std::uint32_t(f))].observations.push_back(
+          {int(v), features[v].pixels[f]});
   std::vector<Track> tracks;
   for (Track& track : by_root) {
     const auto& o = track.observations;  // in the order of views

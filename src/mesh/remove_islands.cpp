@@ -5,31 +5,15 @@
 #include <cstdint>
 #include <glm/gtx/hash.hpp>
 #include <limits>
-#include <numeric>
 #include <unordered_map>
 #include <vector>
 
+#include "core/disjoint_sets.h"
 #include "core/error.h"
 #include "mesh/simplify_mesh.h"
 
 namespace photohull {
 namespace {
-
-/// Sets of vertices that are joined.
-class Joined {
- public:
-  explicit Joined(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), 0u);
-  }
-  std::uint32_t root(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::uint32_t a, std::uint32_t b) { parent_[root(a)] = root(b); }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 struct Piece {
   double area = 0;     ///< voxels squared
@@ -47,8 +31,8 @@ struct Pieces {
 };
 
 Pieces find_pieces(const TriMesh& mesh, std::span<const float> views, double voxel) {
-  Joined joined(mesh.positions.size());
-  for (const auto& [a, b, c] : mesh.triangles) joined.join(a, b), joined.join(b, c);
+  DisjointSets joined(mesh.positions.size());
+  for (const auto& [a, b, c] : mesh.triangles) joined.unite(a, b), joined.unite(b, c);
   Pieces out;
   std::unordered_map<std::uint32_t, std::uint32_t> number;
   out.of_vertex.resize(mesh.positions.size());
@@ -128,14 +112,14 @@ RemovedIslands remove_islands(TriMesh& mesh, std::span<const float> views,
   }
   const double longest = options.longest_gap * options.voxel_size;
   const Cells cells(mesh, longest);
-  Joined rows(all.size());
+  DisjointSets rows(all.size());
   for (std::uint32_t i = 0; i < all.size(); ++i) {
     if (!supported[i] || all[i].area >= options.least_area) continue;
     for (const std::uint32_t v : all[i].vertices)
       cells.around(mesh.positions[v], [&](std::uint32_t other, double distance) {
         const std::uint32_t j = pieces.of_vertex[other];
         if (j != i && supported[j] && distance <= std::min({longest, all[i].size(), all[j].size()}))
-          rows.join(i, j);
+          rows.unite(i, j);
       });
   }
   std::vector<double> area(all.size());

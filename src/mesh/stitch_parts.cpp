@@ -4,12 +4,14 @@
 #include <array>
 #include <cstdint>
 #include <glm/gtx/hash.hpp>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "core/disjoint_sets.h"
 #include "core/error.h"
 #include "mesh/fill_gaps.h"
 #include "mesh/join_meshes.h"
@@ -17,6 +19,8 @@
 
 namespace photohull {
 namespace {
+
+constexpr double kLargestDust = 8;  // times the reach, from corner to corner
 
 /// Sides that no triangle runs along the other way, in order.
 std::vector<Side> border_of(const TriMesh& mesh) {
@@ -143,19 +147,6 @@ void add_vertex(const TriMesh& from, std::size_t vertex, TriMesh& to) {
   if (!from.confidence.empty()) to.confidence.push_back(from.confidence[vertex]);
 }
 
-/// Of each vertex one that stands for all which triangles join with it.
-std::vector<std::uint32_t> pieces_of(const TriMesh& mesh) {
-  std::vector<std::uint32_t> pieces(mesh.positions.size());
-  std::iota(pieces.begin(), pieces.end(), 0u);
-  const auto root = [&](std::uint32_t v) {
-    while (pieces[v] != v) v = pieces[v] = pieces[pieces[v]];
-    return v;
-  };
-  for (const auto& [a, b, c] : mesh.triangles) pieces[root(a)] = pieces[root(b)] = root(c);
-  for (std::uint32_t v = 0; v < pieces.size(); ++v) pieces[v] = root(v);
-  return pieces;
-}
-
 /// The rims as one mesh, which joining changes.
 class Joining {
  public:
@@ -190,7 +181,7 @@ class Joining {
     drop_doubled(mesh_);
     // Where a rim ends within its part there is no other part, and so no gap, and no seam.
     out.filled = fill_gaps(border_of(mesh_), part_of_, reach, mesh_);
-    drop_dust();
+    drop_dust(reach);
     for (const Side& side : border_of(mesh_))
       out.open_edges += part_of_[side.from] == kSeam || part_of_[side.to] == kSeam;
     number(out);
@@ -198,20 +189,33 @@ class Joining {
   }
 
  private:
-  /// Drops pieces that end at their part's border and have nothing but what is near it: the part
-  /// beside it has none of them.
-  void drop_dust() {
-    const std::vector<Side> border = border_of(mesh_);
-    enum : std::uint8_t { kClosed, kOpen, kGoesOn };
-    const std::vector<std::uint32_t> pieces = pieces_of(mesh_);
-    std::vector<std::uint8_t> kinds(mesh_.positions.size(), kClosed);
-    for (const Side& side : border) {
+  /// Drops pieces within a few edges that end at their part's border: the part beside it has none
+  /// of them.
+  void drop_dust(double reach) {
+    DisjointSets pieces(mesh_.positions.size());
+    for (const auto& [a, b, c] : mesh_.triangles) pieces.unite(a, b), pieces.unite(b, c);
+    struct Piece {
+      bool open = false, goes_on = false;
+      glm::vec3 low{std::numeric_limits<float>::max()}, high{std::numeric_limits<float>::lowest()};
+    };
+    std::vector<Piece> all(mesh_.positions.size());  // at the vertex that stands for each
+    for (const auto& t : mesh_.triangles)
+      for (const std::uint32_t v : t) {
+        Piece& piece = all[pieces.root(v)];
+        piece.low = glm::min(piece.low, mesh_.positions[v]);
+        piece.high = glm::max(piece.high, mesh_.positions[v]);
+      }
+    for (const Side& side : border_of(mesh_)) {
       // Where the rim was cut off its part, it is two triangles from the border.
       const bool cut = !on_border_[side.from] && !on_border_[side.to];
-      std::uint8_t& kind = kinds[pieces[side.from]];
-      kind = std::max<std::uint8_t>(kind, cut ? kGoesOn : kOpen);
+      Piece& piece = all[pieces.root(side.from)];
+      (cut ? piece.goes_on : piece.open) = true;
     }
-    std::erase_if(mesh_.triangles, [&](const auto& t) { return kinds[pieces[t[0]]] == kOpen; });
+    std::erase_if(mesh_.triangles, [&](const auto& t) {
+      const Piece& piece = all[pieces.root(t[0])];
+      return piece.open && !piece.goes_on &&
+             double(glm::distance(piece.low, piece.high)) <= kLargestDust * reach;
+    });
   }
 
   /// Says what becomes of the parts.

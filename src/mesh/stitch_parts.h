@@ -43,8 +43,8 @@ struct Stitched {
 /// Parts of one surface that each end where the next one begins, to within `reach` (world units, >
 /// 0; less than the length of an edge): vertices at their borders that lie so near each other
 /// become one in the middle, the nearest ones first, and never two of the same part. Gaps that are
-/// left between parts, a few edges wide, are filled; pieces as small that end at their part's
-/// border, for the part beside it has none of them, go. Borders elsewhere stay as they are.
+/// left between parts, a few edges wide, are filled; open pieces as small go, which the part
+/// beside theirs has none of. Borders elsewhere stay as they are.
 /// Attributes are those that all parts have; empty parts have a say in nothing.
 Stitched stitch_rims(std::vector<Rim> rims, double reach);
 

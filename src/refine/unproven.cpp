@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
-#include <numeric>
+
+#include "core/disjoint_sets.h"
 
 namespace photohull::refine {
 namespace {
@@ -30,11 +31,10 @@ class Hollows {
           part_[index] = 0;
       }
     });
+    std::uint32_t count = 0;
     for (std::uint32_t& part : part_)
-      if (part != kNone) {
-        part = std::uint32_t(parent_.size());
-        parent_.push_back(part);
-      }
+      if (part != kNone) part = count++;
+    sets_ = DisjointSets(count);
     for (std::size_t slot = 0; slot < volume.bricks.size(); ++slot)
       for (int i = 0; i < kBrickVoxels; ++i) {
         const std::uint32_t own = part_[slot * kBrickVoxels + std::size_t(i)];
@@ -43,14 +43,14 @@ class Hollows {
           ivec3 step(0);
           step[axis] = 1;
           if (const std::uint32_t other = part(voxel_of(slot, i) + step); other != kNone)
-            unite(own, other);
+            sets_.unite(own, other);
         }
       }
     for (std::uint32_t& part : part_)
-      if (part != kNone) part = root(part);
+      if (part != kNone) part = sets_.root(part);
   }
 
-  std::size_t size() const { return parent_.size(); }
+  std::size_t size() const { return sets_.size(); }
   ivec3 voxel_of(std::size_t slot, int i) const {
     return volume_.bricks[slot] * kBrickEdge + ivec3(i >> 6, (i >> 3) & 7, i & 7);
   }
@@ -66,18 +66,9 @@ class Hollows {
   std::uint32_t part(std::size_t index) const { return part_[index]; }
 
  private:
-  std::uint32_t root(std::uint32_t node) {
-    while (parent_[node] != node) node = parent_[node] = parent_[parent_[node]];
-    return node;
-  }
-  void unite(std::uint32_t a, std::uint32_t b) {
-    a = root(a), b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
   const SparseVolume& volume_;
-  std::vector<std::uint32_t> part_;    // of each voxel of the volume's bricks
-  std::vector<std::uint32_t> parent_;  // of each number
+  std::vector<std::uint32_t> part_;  // of each voxel of the volume's bricks
+  DisjointSets sets_;                // of the numbers
 };
 
 }  // namespace

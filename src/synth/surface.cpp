@@ -4,8 +4,8 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <map>
-#include <numeric>
 
+#include "core/disjoint_sets.h"
 #include "core/error.h"
 #include "io/mesh/read_mesh.h"
 
@@ -88,11 +88,6 @@ void set_corner_normals(const Stars& stars, Surface& s) {
   }
 }
 
-std::uint32_t root(std::vector<std::uint32_t>& parent, std::uint32_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
 /// Patches of faces that meet smoothly across edges, numbered in the order of their first face.
 std::vector<std::uint32_t> find_patches(const Surface& s) {
   struct Edge {
@@ -109,20 +104,16 @@ std::vector<std::uint32_t> find_patches(const Surface& s) {
   std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
     return a.key != b.key ? a.key < b.key : a.triangle < b.triangle;
   });
-  std::vector<std::uint32_t> parent(s.mesh.triangles.size());
-  std::iota(parent.begin(), parent.end(), 0u);
+  DisjointSets joined(s.mesh.triangles.size());
   for (std::size_t i = 1; i < edges.size(); ++i) {
     const Edge &a = edges[i - 1], &b = edges[i];
-    if (a.key == b.key && dot(s.face_normals[a.triangle], s.face_normals[b.triangle]) > kSmooth) {
-      const std::uint32_t p = root(parent, a.triangle), q = root(parent, b.triangle);
-      parent[std::max(p, q)] = std::min(p, q);
-    }
+    if (a.key == b.key && dot(s.face_normals[a.triangle], s.face_normals[b.triangle]) > kSmooth)
+      joined.unite(a.triangle, b.triangle);
   }
   std::map<std::uint32_t, std::uint32_t> numbers;
   std::vector<std::uint32_t> patches;
-  for (std::uint32_t i = 0; i < parent.size(); ++i)
-    patches.push_back(
-        numbers.emplace(root(parent, i), std::uint32_t(numbers.size())).first->second);
+  for (std::uint32_t i = 0; i < joined.size(); ++i)
+    patches.push_back(numbers.emplace(joined.root(i), std::uint32_t(numbers.size())).first->second);
   return patches;
 }
 

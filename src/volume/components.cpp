@@ -10,9 +10,9 @@
 #include <cstdint>
 #include <functional>
 #include <map>
-#include <numeric>
 #include <utility>
 
+#include "core/disjoint_sets.h"
 #include "core/error.h"
 
 namespace photohull {
@@ -97,25 +97,6 @@ std::vector<Mask> split(Mask mask) {
   return parts;
 }
 
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), 0u);
-  }
-  std::uint32_t find(std::uint32_t node) {
-    while (parent_[node] != node) node = parent_[node] = parent_[parent_[node]];
-    return node;
-  }
-  void unite(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
 /// The neighbour of a brick as an index into the table; nothing outside the grid.
 constexpr std::size_t kNoBrick = ~std::size_t(0);
 
@@ -140,7 +121,7 @@ class Components {
 
   /// Voxel count of each component at its root node; 0 at other nodes.
   std::vector<std::size_t> root_sizes();
-  std::uint32_t root(std::uint32_t node) { return sets_.find(node); }
+  std::uint32_t root(std::uint32_t node) { return sets_.root(node); }
   /// The nodes in a brick of the table are [first_node(brick), first_node(brick + 1)).
   std::uint32_t first_node(std::size_t brick) const { return first_[brick]; }
   const Mask& mask(std::uint32_t node) const { return masks_[mask_of_node_[node]]; }
@@ -154,7 +135,7 @@ class Components {
   std::vector<std::uint32_t> first_;         ///< per brick of the table, and one past the last
   std::vector<std::uint32_t> mask_of_node_;  ///< index into masks_
   std::vector<Mask> masks_{kFull};           ///< the first one serves all unstored inside bricks
-  DisjointSets sets_{0};
+  DisjointSets sets_;
 };
 
 void Components::find_nodes() {
@@ -192,7 +173,7 @@ void Components::connect() {
 void Components::connect_bricks(std::size_t a, std::size_t b, const glm::ivec3& step) {
   for (std::uint32_t i = first_[a]; i < first_[a + 1]; ++i)
     for (std::uint32_t j = first_[b]; j < first_[b + 1]; ++j) {
-      if (sets_.find(i) == sets_.find(j)) continue;
+      if (sets_.root(i) == sets_.root(j)) continue;
       const bool both_full = mask_of_node_[i] == 0 && mask_of_node_[j] == 0;
       if (both_full || overlap(reach(mask(i), step, 1), mask(j))) sets_.unite(i, j);
     }

@@ -10,7 +10,6 @@
 #include <set>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <vector>
 
 #include "volume/vdb_file.h"
@@ -174,10 +173,10 @@ void remove_specks(const BrickFiles& files, const GridSpec& grid, FloatGrid& sur
 }
 
 template <typename Grid>
-openvdb::GridBase::Ptr join(const char* name, std::span<const fs::path> files,
-                            std::span<const Head> heads, const GridSpec& spec) {
+typename Grid::Ptr join(const char* name, std::span<const fs::path> files,
+                        std::span<const Head> heads, const GridSpec& spec,
+                        BrickFiles* bricks = nullptr) {
   typename Grid::Ptr all;
-  BrickFiles bricks;
   for (std::size_t i = 0; i < files.size(); ++i)
     with_file(files[i], [&](openvdb::io::File& file) {
       if (!file.hasGrid(name)) return;  // a part without any surface
@@ -190,11 +189,18 @@ openvdb::GridBase::Ptr join(const char* name, std::span<const fs::path> files,
         all->setSaveFloatAsHalf(part->saveFloatAsHalf());
       }
       const glm::ivec3 shift = kBrickEdge * first_brick(spec, heads[i].grid);
-      add(*part, Coord(shift.x, shift.y, shift.z), *all,
-          [&](const Coord& first) { bricks.emplace(first, i); });
+      add(*part, Coord(shift.x, shift.y, shift.z), *all, [&](const Coord& first) {
+        if (bricks) bricks->emplace(first, i);
+      });
     });
-  if constexpr (std::is_same_v<Grid, FloatGrid>)
-    if (all && all->getGridClass() == openvdb::GRID_LEVEL_SET) remove_specks(bricks, spec, *all);
+  return all;
+}
+
+FloatGrid::Ptr join_surface(std::span<const fs::path> files, std::span<const Head> heads,
+                            const GridSpec& spec) {
+  BrickFiles bricks;
+  const FloatGrid::Ptr all = join<FloatGrid>("surface", files, heads, spec, &bricks);
+  remove_specks(bricks, spec, *all);
   return all;
 }
 
@@ -217,7 +223,7 @@ void join_vdb(AtomicFile& file, std::span<const fs::path> files, const VdbMetada
     return grid;
   };
   std::vector<MakeGrid> grids = {
-      [&] { return named(join<FloatGrid>("surface", files, heads, spec), "surface"); }};
+      [&] { return named(join_surface(files, heads, spec), "surface"); }};
   if (std::ranges::any_of(heads, &Head::colour))
     grids.push_back([&] { return named(join<Vec3fGrid>("Cd", files, heads, spec), "Cd"); });
   if (std::ranges::any_of(heads, &Head::confidence))

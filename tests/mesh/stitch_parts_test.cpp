@@ -170,6 +170,17 @@ TEST(StitchParts, WhatOnePartAloneHasAtItsBorderGoes) {
   }
 }
 
+TEST(StitchParts, NarrowOpenStripsStay) {
+  // All of its triangles are near its border.
+  TriMesh strip;
+  for (int i = 0; i < 40; ++i)
+    for (int j = 0; j < 2; ++j) strip.positions.emplace_back(float(i), float(j), 0.0f);
+  for (std::uint32_t i = 0; i < 78; i += 2)
+    strip.triangles.push_back({i, i + 2, i + 1}), strip.triangles.push_back({i + 1, i + 2, i + 3});
+  EXPECT_EQ(stitch_parts({strip, ball()}, 0.75).mesh.triangles.size(),
+            strip.triangles.size() + ball().triangles.size());
+}
+
 TEST(StitchParts, EmptyPartsAndFarOnesChangeNothing) {
   const TriMesh whole = ball();
   const Joined alone = stitch_parts({{}, whole, {}}, 0.75);

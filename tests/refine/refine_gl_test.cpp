@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -29,6 +31,20 @@ TEST_F(RefineSurface, WhatIsSettledStaysCoarseAndIsNotMatchedAgain) {
   EXPECT_LT(samples(), 0.2 * double(all));
   EXPECT_LT(double(report_.levels[1].surfels), 0.6 * double(surfels));
   EXPECT_LT(test::mean_error(volume), 0.4) << "the coarse level's surface";
+}
+
+TEST_F(RefineSurface, TheHullIsBelievedByLargerVoxelsWhereTheLastOnesTellNothing) {
+  options_.levels = 3;
+  options_.settle.least_pixels = 3;  // the last level matches nothing
+  run(8);
+  ASSERT_EQ(report_.levels[1].split, 0);
+  const HullTrust larger = report_.levels[1].hull_trust.value();
+  EXPECT_LT(larger[0], 0.9);
+  EXPECT_NE(larger[1], larger[0]);
+  const HullTrust last = report_.levels[2].hull_trust.value();
+  for (std::size_t i = 0; i < last.size(); ++i)
+    EXPECT_NEAR(last[i], larger[std::min(i + 1, last.size() - 1)], 1e-9) << i;
+  EXPECT_EQ(report_.fits.back().hull_trust.value(), last);
 }
 
 TEST_F(RefineSurface, FindsTheBowl) {

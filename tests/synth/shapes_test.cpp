@@ -7,9 +7,9 @@
 #include <cmath>
 #include <functional>
 #include <map>
-#include <numeric>
 #include <random>
 
+#include "core/disjoint_sets.h"
 #include "raycast/ray_scene.h"
 #include "synth/mesh_builder.h"
 #include "synth/surface.h"
@@ -58,18 +58,11 @@ std::vector<int> crossings(const Surface& s, const glm::dvec3& from, const glm::
 
 /// Numbers of the parts that the vertices belong to.
 std::vector<std::uint32_t> parts_of(const TriMesh& mesh) {
-  std::vector<std::uint32_t> parent(mesh.positions.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&](std::uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
-  for (const auto& [a, b, c] : mesh.triangles) {
-    parent[root(b)] = root(a);
-    parent[root(c)] = root(a);
-  }
-  for (std::uint32_t i = 0; i < parent.size(); ++i) parent[i] = root(i);
-  return parent;
+  DisjointSets joined(mesh.positions.size());
+  for (const auto& [a, b, c] : mesh.triangles) joined.unite(a, b), joined.unite(b, c);
+  std::vector<std::uint32_t> parts;
+  for (std::uint32_t i = 0; i < joined.size(); ++i) parts.push_back(joined.root(i));
+  return parts;
 }
 
 /// Edges that run through a triangle of another part: none where parts do not meet.
