@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <thread>
 
 #include "core/error.h"
 #include "gpu/buffer_pool.h"
@@ -13,6 +14,7 @@
 #include "gpu/gl.h"
 #include "gpu/gl_error.h"
 #include "gpu/program.h"
+#include "gpu/texture.h"
 
 namespace photohull::gpu {
 namespace {
@@ -28,6 +30,15 @@ std::int64_t cpu_ns() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return std::int64_t(now.tv_sec) * 1000000000 + now.tv_nsec;
+}
+
+/// Mesa's software rasterizer lets go of what a batch of triangles used when it uses the batch's
+/// memory again, and takes for a new batch the first one that is done. It has 64 at most: as many
+/// small ones take all of them while a large one, which many threads share, keeps them waiting.
+void renew_batches() {
+  const int large = std::thread::hardware_concurrency() > 4 ? 2048 : 1024;
+  TextureArray(TextureFormat::kSrgb8Alpha8, large, large, 1, 2).generate_mipmaps();
+  TextureArray(TextureFormat::kSrgb8Alpha8, 2, 2, 64, 2).generate_mipmaps();
 }
 
 }  // namespace
@@ -87,6 +98,7 @@ void Context::release_deleted() {
   constexpr unsigned kUnits = 8;
   for (unsigned unit = 0; unit < kUnits; ++unit) glBindTextureUnit(unit, 0);
   empty_buffer_pool();
+  if (device_.software) renew_batches();
   Program::compute(*this, "gpu_nothing.comp.glsl")->dispatch(*this, "gpu_nothing", 1);
   malloc_trim(0);
 }

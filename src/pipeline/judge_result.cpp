@@ -10,6 +10,9 @@ namespace photohull::pipeline {
 Judgement judge_result(const SurfaceJob& job, const Judged& judged, bool pictures) {
   const Subject& subject = job.subject;
   const ThinFindings& thin = judged.silhouettes.thin;
+  const double share_beyond = job.hull.share_beyond();
+  job.hull.release_textures();
+  job.context.release_deleted();
   const CheckedResult result{
       .mesh = &judged.mesh,
       .box = &subject.box,
@@ -18,7 +21,7 @@ Judgement judge_result(const SurfaceJob& job, const Judged& judged, bool picture
       .voxel_size = subject.grid.voxel_size,
       .hull = method_of(job.options).by_silhouettes,
       .bounded = job.bounded,
-      .share_beyond = job.hull.share_beyond(),
+      .share_beyond = share_beyond,
       .views = subject.views,
       .mask_confidence = subject.mask_confidence,
       .noise_sigma = subject.noise_sigma,

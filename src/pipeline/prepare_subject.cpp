@@ -1,5 +1,7 @@
 #include "pipeline/prepare_subject.h"
 
+#include <malloc.h>
+
 #include <utility>
 
 #include "pipeline/cameras_stage.h"
@@ -43,6 +45,7 @@ Prepared prepare(Run& run) {
                                         ? std::move(agreeing.views)
                                         : crop_views(std::move(agreeing.views), box.box);
   const bool masks = any_mask(views);
+  malloc_trim(0);  // features, and whole photographs, are gone
   FoundSilhouettes found = run.clock.run("silhouettes", Weights::kSilhouettes, [&] {
     return find_silhouettes({options, box.box, agreeing.right, scene.findings}, std::move(views),
                             progress);

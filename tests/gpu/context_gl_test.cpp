@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include "core/error.h"
 #include "gpu/buffer.h"
@@ -54,6 +55,28 @@ TEST(Context, CountsWhatGoesToTheDeviceAndBack) {
   EXPECT_EQ(after.bytes_up - before.bytes_up, 100 * 4 + 4 * 2 * 8);
   EXPECT_EQ(after.downloads - before.downloads, 1);
   EXPECT_EQ(after.bytes_down - before.bytes_down, 50 * 4);
+}
+
+std::size_t bytes_in_use() {
+  const struct mallinfo2 info = mallinfo2();
+  return info.uordblks + info.hblkhd;
+}
+
+// Its mip levels are drawn in many batches, each of which the software rasterizer lets hold it.
+TEST(Context, DeletedTexturesAreLetGoOf) {
+  Context& context = test::gl_context();
+  if (!context.device().software) GTEST_SKIP() << "the device has memory of its own";
+  context.release_deleted();
+  const std::size_t before = bytes_in_use();
+  constexpr std::size_t kBytes = std::size_t(4) * 512 * 512 * 32;
+  for (int i = 0; i < 3; ++i) {
+    TextureArray texture(TextureFormat::kSrgb8Alpha8, 512, 512, 32, 0);
+    texture.generate_mipmaps();
+    EXPECT_GT(bytes_in_use(), before + kBytes);
+  }
+  // Whether small batches overtake the large one is up to the system's scheduler.
+  for (int i = 0; i < 3 && bytes_in_use() > before + kBytes / 4; ++i) context.release_deleted();
+  EXPECT_LT(bytes_in_use(), before + kBytes / 4);
 }
 
 }  // namespace
