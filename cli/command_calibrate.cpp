@@ -18,6 +18,7 @@
 #include "io/read_lens.h"
 #include "option_flags.h"
 #include "other_board.h"
+#include "photo/for_photographs.h"
 #include "terminal_progress.h"
 
 namespace photohull::cli {
@@ -35,24 +36,21 @@ struct CalibrateArguments {
   bool json = false;
 };
 
-/// Reads pictures one by one and looks for the board, with progress.
-class BoardFinder {
- public:
-  BoardFinder(const BoardSpec& spec, std::size_t pictures) : spec_(spec), pictures_(pictures) {
-    progress_.stage("boards", 1);
-  }
-  BoardView find(const fs::path& image, const std::string& name) {
-    progress_.check_cancelled();
-    progress_.update(double(done_++) / double(pictures_));
-    return find_board(io::read_image(image), spec_, name);
-  }
-  void finish() { progress_.finish(); }
-
- private:
-  BoardSpec spec_;
-  std::size_t pictures_, done_ = 0;
-  TerminalProgress progress_{1};
-};
+/// Looks for the board in pictures, with progress. A path that is empty gives no view.
+std::vector<BoardView> find_boards(const BoardSpec& spec, const std::vector<fs::path>& images,
+                                   const std::vector<std::string>& names) {
+  TerminalProgress progress(1);
+  progress.stage("boards", 1);
+  std::vector<BoardView> views(images.size());
+  const auto find = [&](std::size_t i) {
+    progress.check_cancelled();
+    if (!images[i].empty()) views[i] = find_board(io::read_image(images[i]), spec, names[i]);
+  };
+  for_photographs(images.size(), io::pixels_of_largest(images), find,
+                  [&](std::size_t done) { progress.update(double(done) / double(images.size())); });
+  progress.finish();
+  return views;
+}
 
 /// Degrees of each picture; none where they are to be found.
 std::vector<double> angles_of(const CalibrateArguments& a, std::size_t pictures) {
@@ -117,16 +115,21 @@ void run_rig(const CalibrateArguments& a) {
   if (a.images.size() != 1)
     throw UsageError("--rig: give one folder, in which the pictures are found by their names");
   const io::RigImages images = io::list_rig_images(a.images[0], *a.rig);
-  BoardFinder boards(a.spec, images.cameras.size() * images.moments.size());
+  std::vector<fs::path> pictures;
+  std::vector<std::string> names;
+  for (const std::vector<fs::path>& of_camera : images.images)
+    for (const fs::path& image : of_camera) {
+      pictures.push_back(image);
+      names.push_back(image.lexically_relative(a.images[0]).string());
+    }
+  std::vector<BoardView> boards = find_boards(a.spec, pictures, names);
   std::vector<RigCameraViews> views;
+  std::size_t next = 0;
   for (std::size_t c = 0; c < images.cameras.size(); ++c) {
     views.push_back({images.cameras[c], {}});
-    for (const fs::path& image : images.images[c])
-      views[c].views.push_back(
-          image.empty() ? BoardView()
-                        : boards.find(image, image.lexically_relative(a.images[0]).string()));
+    for (std::size_t i = 0; i < images.images[c].size(); ++i)
+      views[c].views.push_back(std::move(boards[next++]));
   }
-  boards.finish();
   std::vector<fs::path> all;
   for (std::size_t c = 0; c < views.size(); ++c) {
     views[c].known = known_lens(a, views[c].views, views[c].name);
@@ -145,11 +148,9 @@ void run_camera(const CalibrateArguments& a) {
   const LensModel lens = options.lens;
   options.angles = angles_of(a, images.size());
   options.validate(images.size());
-  BoardFinder boards(a.spec, images.size());
-  std::vector<BoardView> views;
-  for (const fs::path& image : images)
-    views.push_back(boards.find(image, image.filename().string()));
-  boards.finish();
+  std::vector<std::string> names;
+  for (const fs::path& image : images) names.push_back(image.filename().string());
+  const std::vector<BoardView> views = find_boards(a.spec, images, names);
   options.known = known_lens(a, views);
   const Calibration calibration =
       with_hint(a, images, lens, [&] { return calibrate(views, options); });

@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "io/image_file.h"
 #include "photo/fine_detail.h"
+#include "photo/for_photographs.h"
 #include "photo/grey_image.h"
 #include "scene_arguments.h"
 #include "terminal_progress.h"
@@ -70,14 +71,20 @@ std::vector<fs::path> take_pictures(const fs::path& film, const fs::path& folder
   const Workspace work(folder / ".pictures");
   const auto stretches = io::extract_stretches(film, work.folder(), options, progress);
   progress.stage("frames", 0.5);
-  std::vector<fs::path> frames;
-  for (std::size_t i = 0; i < stretches.size(); ++i) {
+  std::vector<fs::path> best(stretches.size()), frames;
+  const double pixels = stretches.empty() ? 0 : io::pixels_of_largest(stretches.front());
+  const auto look_at = [&](std::size_t i) {
     progress.check_cancelled();
-    progress.update(double(i) / double(stretches.size()));
+    best[i] = sharpest(stretches[i]);
+  };
+  for_photographs(stretches.size(), pixels, look_at, [&](std::size_t done) {
+    progress.update(double(done) / double(stretches.size()));
+  });
+  for (std::size_t i = 0; i < stretches.size(); ++i) {
     char name[32];
     std::snprintf(name, sizeof name, "%s%04zu.jpg", kFrame, i + 1);
     std::error_code failure;
-    fs::rename(sharpest(stretches[i]), folder / name, failure);
+    fs::rename(best[i], folder / name, failure);
     if (failure)
       throw Error(
           concat((folder / name).string(), ": cannot be written (", failure.message(), ")"));

@@ -1,6 +1,8 @@
 // based on: A. Laurentini, The visual hull concept for silhouette-based image understanding, 1994.
 #include "calib/sheet_hull.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
@@ -79,19 +81,21 @@ class MaskedPhoto {
 
 class CoarseHull {
  public:
-  CoarseHull(const Box& box, const std::vector<MaskedPhoto>& photos) : box_(box) {
+  CoarseHull(const Box& box, const std::vector<std::optional<MaskedPhoto>>& photos) : box_(box) {
     const glm::dvec3 size = box.size();
     cell_ = std::max({size.x, size.y, size.z}) / kCells;
     n_ = glm::max(glm::ivec3(glm::ceil(size / cell_)), glm::ivec3(1));
     const int enough = photos.size() < kPlenty ? 1 : 2;
-    for (int z = 0; z < n_.z; ++z)
+    stands_.resize(std::size_t(n_.x) * std::size_t(n_.y) * std::size_t(n_.z));
+    tbb::parallel_for(0, n_.z, [&](int z) {
       for (int y = 0; y < n_.y; ++y)
         for (int x = 0; x < n_.x; ++x) {
           int out = 0;
           for (std::size_t i = 0; i < photos.size() && out < enough; ++i)
-            out += photos[i].leaves_out(middle({x, y, z}), radius());
-          stands_.push_back(out < enough);
+            out += photos[i]->leaves_out(middle({x, y, z}), radius());
+          stands_[index({x, y, z})] = out < enough;
         }
+    });
   }
 
   cv::Mat shadow(const MaskedPhoto& photo) const {
@@ -112,8 +116,12 @@ class CoarseHull {
   bool stands(const glm::ivec3& at) const {
     if (glm::any(glm::lessThan(at, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(at, n_)))
       return false;
-    return stands_[(std::size_t(at.z) * std::size_t(n_.y) + std::size_t(at.y)) * std::size_t(n_.x) +
-                   std::size_t(at.x)];
+    return stands_[index(at)] != 0;
+  }
+
+  std::size_t index(const glm::ivec3& at) const {
+    return (std::size_t(at.z) * std::size_t(n_.y) + std::size_t(at.y)) * std::size_t(n_.x) +
+           std::size_t(at.x);
   }
 
   /// What is enclosed casts no shadow of its own.
@@ -131,29 +139,30 @@ class CoarseHull {
   Box box_;
   double cell_ = 0;
   glm::ivec3 n_{0};
-  std::vector<bool> stands_;
+  std::vector<char> stands_;
 };
 
 }  // namespace
 
 std::vector<Mask> shadows_of_hull(const PoseResult& result, std::span<const Mask> masks) {
   PHOTOHULL_CHECK_OP(masks.size(), ==, result.photos.size());
-  std::vector<MaskedPhoto> photos;
   std::vector<std::size_t> at;
   for (std::size_t i = 0; i < masks.size(); ++i) {
     if (masks[i].empty()) continue;
     PHOTOHULL_CHECK(result.photos[i].posed);
-    photos.emplace_back(result, i, masks[i]);
     at.push_back(i);
   }
   std::vector<Mask> shadows(masks.size());
-  if (photos.empty()) return shadows;
+  if (at.empty()) return shadows;
+  std::vector<std::optional<MaskedPhoto>> photos(at.size());
+  tbb::parallel_for(std::size_t(0), at.size(),
+                    [&](std::size_t k) { photos[k].emplace(result, at[k], masks[at[k]]); });
   const CoarseHull hull(result.box, photos);
-  for (std::size_t k = 0; k < photos.size(); ++k) {
-    const cv::Mat shadow = hull.shadow(photos[k]);
+  tbb::parallel_for(std::size_t(0), at.size(), [&](std::size_t k) {
+    const cv::Mat shadow = hull.shadow(*photos[k]);
     shadows[at[k]] = {
         shadow.cols, shadow.rows, {shadow.begin<std::uint8_t>(), shadow.end<std::uint8_t>()}};
-  }
+  });
   return shadows;
 }
 

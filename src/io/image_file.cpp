@@ -155,6 +155,16 @@ ImageSize read_image_size(const fs::path& path) {
           orientation >= 1 && orientation <= 8 ? orientation : 1};
 }
 
+double pixels_of_largest(std::span<const fs::path> images) {
+  double most = 0;
+  for (const fs::path& image : images) try {
+      const ImageSize size = read_image_size(image);
+      most = std::max(most, double(size.width) * size.height);
+    } catch (const Error&) {
+    }
+  return most;
+}
+
 ColourImage read_image(const fs::path& path) {
   OpenImage file = open_whole_image(path);
   ColourImage image;

@@ -28,6 +28,10 @@ struct ImageSize {
 /// Size of an image from its header; nothing is decoded. Throws Error as read_image does.
 ImageSize read_image_size(const std::filesystem::path& path);
 
+/// Pixels of the largest of these images, by their headers. What cannot be read counts nothing:
+/// reading the image itself tells why.
+double pixels_of_largest(std::span<const std::filesystem::path> images);
+
 /// Decodes PNG, JPEG, TIFF, OpenEXR, BMP, PNM, and where OpenImageIO can WebP and AVIF; grey, grey
 /// + alpha, RGB or RGBA (further channels are ignored). Pixels stay as they are stored: no EXIF
 /// rotation, no colour profile.

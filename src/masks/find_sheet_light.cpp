@@ -12,6 +12,7 @@
 #include "core/median.h"
 #include "masks/agreeing_light.h"
 #include "masks/mask_evidence.h"
+#include "photo/for_photographs.h"
 
 namespace photohull {
 namespace {
@@ -70,11 +71,14 @@ class Search {
 
   SheetLight run() {
     find_bare();
-    for (std::size_t k = 0; k < photos_.count; ++k) sample(k);
+    samples_.resize(photos_.count);
+    eyes_.resize(photos_.count);
+    for_photographs(
+        photos_.count, photos_.pixels, [&](std::size_t k) { sample(k); }, photos_.read);
     start_exposures();
     for (int round = 0; round < kRounds; ++round) {
       average_free();
-      for (std::size_t k = 0; k < photos_.count; ++k) fit_exposure(k);
+      tbb::parallel_for(std::size_t(0), photos_.count, [&](std::size_t k) { fit_exposure(k); });
     }
     average_free();
     if (std::size_t(std::ranges::count(out_.agreed, 255)) < kFewestFree) return {};
@@ -133,8 +137,8 @@ class Search {
       s.place = std::uint8_t(1 + std::lround(Sample::kSteps * std::min(1.0, r2)));
       if (!photos_.possible(k, at, *p, {taken.cols, taken.rows})) s.place |= Sample::kFree;
     });
-    samples_.push_back(std::move(samples));
-    eyes_.push_back(photos_.eye(k));
+    samples_[k] = std::move(samples);
+    eyes_[k] = photos_.eye(k);
   }
 
   void start_exposures() {
@@ -157,16 +161,21 @@ class Search {
   /// Medians of the photographs that the object cannot hide a place from.
   void average_free() {
     for_each_texel([&](std::size_t i) {
-      std::array<std::vector<double>, 3> values;
+      thread_local std::array<std::vector<float>, 3> values;
+      for (std::vector<float>& channel : values) channel.clear();
       for (std::size_t k = 0; k < photos_.count; ++k)
         if (samples_[k][i].free()) {
           const glm::vec3 l = light(k, i);
-          for (int c = 0; c < 3; ++c) values[std::size_t(c)].push_back(double(l[c]));
+          for (int c = 0; c < 3; ++c) values[std::size_t(c)].push_back(l[c]);
         }
       out_.agreed[i] = values[0].size() >= kFreeEnough ? 255 : 0;
-      if (out_.agreed[i])
-        for (int c = 0; c < 3; ++c)
-          out_.paper[i][c] = float(median(std::move(values[std::size_t(c)])));
+      if (!out_.agreed[i]) return;
+      for (int c = 0; c < 3; ++c) {
+        std::vector<float>& channel = values[std::size_t(c)];
+        const auto middle = channel.begin() + std::ptrdiff_t(channel.size() / 2);
+        std::nth_element(channel.begin(), middle, channel.end());
+        out_.paper[i][c] = *middle;
+      }
     });
   }
 

@@ -11,8 +11,8 @@
 
 namespace photohull {
 
-/// Photographs of one sheet, read when they are asked for. Places and lengths are of the sheet's
-/// frame, millimetres.
+/// Photographs of one sheet, read when they are asked for, several at a time. Places and lengths
+/// are of the sheet's frame, millimetres.
 struct SheetPhotographs {
   std::size_t count = 0;
   std::function<ColourImage(std::size_t)> image;
@@ -25,6 +25,9 @@ struct SheetPhotographs {
   std::function<glm::dvec3(std::size_t)> eye;
   std::function<float(const glm::dvec2& place)> print;  ///< 0 ink, 1 bare paper
   glm::dvec2 lower_left{0.0}, page{0.0};
+  /// Called with the number of photographs that were read, never twice at once.
+  std::function<void(std::size_t)> read = [](std::size_t) {};
+  double pixels = 2e6;  ///< of each, about
   double finest = 0.3;  ///< between lattice points
   double held = 256e6;  ///< bytes of all photographs' samples together
 };

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/median.h"
 #include "masks/mask_evidence.h"
+#include "photo/for_photographs.h"
 
 namespace photohull {
 namespace {
@@ -129,21 +130,28 @@ class StillSearch {
   bool whole() const { return size_ == cv::Size(photos_.width, photos_.height); }
 
   void read() {
-    for (std::size_t k = 0; k < photos_.count; ++k) {
-      Sample sample;
+    samples_.resize(photos_.count);
+    const auto read = [&](std::size_t k) {
+      Sample& sample = samples_[k];
       cv::Mat light = roots(k);
       if (!whole()) cv::resize(light, light, size_, 0, 0, cv::INTER_AREA);
       light.convertTo(sample.light, CV_16UC3, double(kMaxCode));
       sample.covered = covered_by(photos_.look(k, size_.width, size_.height));
       cover_object(photos_.mask(k), sample.covered);
-      if (k > 0) sample.gain = gain_between(samples_.front(), sample);
+    };
+    for_photographs(photos_.count, pixels(), read, [&](std::size_t done) {
+      photos_.progress(double(done) / double(photos_.count) * (whole() ? 1 : 0.5));
+    });
+    tbb::parallel_for(std::size_t(1), samples_.size(), [&](std::size_t k) {
+      Sample& sample = samples_[k];
+      sample.gain = gain_between(samples_.front(), sample);
       cv::multiply(sample.light,
                    cv::Scalar(1 / sample.gain[0], 1 / sample.gain[1], 1 / sample.gain[2]),
                    sample.light);
-      samples_.push_back(std::move(sample));
-      photos_.progress((double(k) + 1) / double(photos_.count) * (whole() ? 1 : 0.5));
-    }
+    });
   }
+
+  double pixels() const { return double(photos_.width) * photos_.height; }
 
   // Is it still?
 
@@ -347,7 +355,7 @@ class StillSearch {
 
   cv::Mat agreeing(const Sample& sample) const {
     cv::Mat out(size_, CV_8U, cv::Scalar(0));
-    for (int y = 0; y < size_.height; ++y)
+    tbb::parallel_for(0, size_.height, [&](int y) {
       for (int x = 0; x < size_.width; ++x) {
         if (!level_.at<std::uint8_t>(y, x)) continue;
         if (!told(sample, y, x, free_.at<std::uint8_t>(y, x) != 0)) continue;
@@ -355,6 +363,7 @@ class StillSearch {
         if (difference(root_at(sample.light, y, x), median_.at<cv::Vec3f>(y, x)) <= limit)
           out.at<std::uint8_t>(y, x) = 255;
       }
+    });
     return out;
   }
 

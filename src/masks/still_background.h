@@ -12,7 +12,7 @@
 
 namespace photohull {
 
-/// Photographs of one size by one camera, read when they are asked for.
+/// Photographs of one size by one camera, read when they are asked for, several at a time.
 struct StillPhotographs {
   std::size_t count = 0;
   int width = 0, height = 0;  ///< pixels
@@ -22,7 +22,8 @@ struct StillPhotographs {
   /// The photograph's mask, of any size; empty: not known.
   std::function<Mask(std::size_t)> mask = [](std::size_t) { return Mask(); };
   double held = 60e6;  ///< pixels of all photographs together that memory holds at once
-  std::function<void(double)> progress = [](double) {};  ///< share that is done
+  /// Share that is done; never called twice at once.
+  std::function<void(double)> progress = [](double) {};
 };
 
 enum class Stillness {

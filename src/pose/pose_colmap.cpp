@@ -1,6 +1,7 @@
 #include "pose/pose_colmap.h"
 
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -8,6 +9,7 @@
 #include "io/photo_lens.h"
 #include "io/write_scene.h"
 #include "photo/fine_detail.h"
+#include "photo/for_photographs.h"
 #include "photo/grey_image.h"
 #include "pose/json_parts.h"
 #include "pose/pose_coverage.h"
@@ -30,17 +32,15 @@ Readable look_at_photographs(const PoseJob& job, const std::vector<fs::path>& ma
                              std::vector<io::ColmapPhotoFound>& all, Progress& progress) {
   Readable readable;
   progress.stage("photographs", 0.1);
-  for (std::size_t i = 0; i < job.images.size(); ++i) {
+  const std::size_t count = job.images.size();
+  std::vector<std::optional<io::PhotoLens>> lenses(count);
+  std::vector<double> sharpness(count, 0.0);
+  const auto look_at = [&](std::size_t i) {
     progress.check_cancelled();
-    progress.update(double(i) / double(job.images.size()));
     try {
       const io::PhotoLens lens = io::read_photo_lens(job.images[i], job.focal);
-      const double sharpness = fine_detail(grey_image(io::read_image(job.images[i])));
-      readable.photos.push_back({job.images[i], masks.empty() ? fs::path() : masks[i], job.names[i],
-                                 lens.name, lens.given ? lens.focal : 0});
-      readable.took_focal |= lens.given;
-      readable.index.push_back(i);
-      readable.looks.push_back({job.names[i], sharpness, lens.exposure});
+      sharpness[i] = fine_detail(grey_image(io::read_image(job.images[i])));
+      lenses[i] = lens;
     } catch (const MemoryError&) {
       throw;
     } catch (const UsageError&) {
@@ -48,6 +48,17 @@ Readable look_at_photographs(const PoseJob& job, const std::vector<fs::path>& ma
     } catch (const Error& failure) {
       all[i].reason = concat("it cannot be read: ", failure.what());
     }
+  };
+  for_photographs(count, io::pixels_of_largest(job.images), look_at,
+                  [&](std::size_t done) { progress.update(double(done) / double(count)); });
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!lenses[i]) continue;
+    const io::PhotoLens& lens = *lenses[i];
+    readable.photos.push_back({job.images[i], masks.empty() ? fs::path() : masks[i], job.names[i],
+                               lens.name, lens.given ? lens.focal : 0});
+    readable.took_focal |= lens.given;
+    readable.index.push_back(i);
+    readable.looks.push_back({job.names[i], sharpness[i], lens.exposure});
   }
   return readable;
 }

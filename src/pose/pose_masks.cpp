@@ -1,5 +1,7 @@
 #include "pose/pose_masks.h"
 
+#include <algorithm>
+#include <atomic>
 #include <set>
 #include <string>
 
@@ -8,6 +10,7 @@
 #include "core/option_word.h"
 #include "io/image_file.h"
 #include "masks/sheet_mask.h"
+#include "photo/for_photographs.h"
 
 namespace photohull::pose {
 namespace {
@@ -27,6 +30,13 @@ std::vector<std::string> mask_names(const std::vector<fs::path>& images) {
   return names;
 }
 
+double pixels_of_largest(const PoseResult& result) {
+  double most = 0;
+  for (const PosedCamera& camera : result.cameras)
+    most = std::max(most, double(camera.intrinsics.width) * camera.intrinsics.height);
+  return most;
+}
+
 }  // namespace
 
 std::vector<fs::path> write_sheet_masks(const fs::path& folder, const std::vector<fs::path>& images,
@@ -39,11 +49,10 @@ std::vector<fs::path> write_sheet_masks(const fs::path& folder, const std::vecto
   const SheetPicture picture = sheet_picture(sheet, kTexelsPerMm);
   const std::vector<std::string> names = mask_names(images);
   std::vector<fs::path> files(images.size());
-  int missing = 0, undecided = 0;
-  for (std::size_t i = 0; i < images.size(); ++i) {
+  std::atomic<int> missing = 0, undecided = 0;
+  const auto write_mask = [&](std::size_t i) {
     progress.check_cancelled();
-    progress.update(double(i) / double(images.size()));
-    if (!result.photos[i].posed) continue;
+    if (!result.photos[i].posed) return;
     SheetLook look =
         look_at_sheet(result, i, sheet, picture, blur_of_edges(edges[i]), scenery.light);
     scenery.narrow(i, look);
@@ -52,14 +61,16 @@ std::vector<fs::path> write_sheet_masks(const fs::path& folder, const std::vecto
     undecided += found.undecided > kMuch;
     if (found.mask.empty()) {
       ++missing;
-      continue;
+      return;
     }
     turntable.keep_to_shadow(i, found.mask);
     if (!scenery.shadows.empty()) keep_parts_in(scenery.shadows[i], found.mask);
     keep_shares(found.mask);
     files[i] = folder / names[i];
     io::write_png(files[i], found.mask.width, found.mask.height, 1, found.mask.coverage);
-  }
+  };
+  for_photographs(images.size(), pixels_of_largest(result), write_mask,
+                  [&](std::size_t done) { progress.update(double(done) / double(images.size())); });
   if (missing > 0)
     result.warnings.push_back(
         concat(missing, " photographs get no mask: too little of the bare sheet is seen"));

@@ -10,6 +10,7 @@
 #include "io/image_file.h"
 #include "masks/find_sheet_light.h"
 #include "masks/sheet_mask.h"
+#include "photo/for_photographs.h"
 
 namespace photohull::pose {
 namespace {
@@ -70,7 +71,8 @@ class Exploration {
   SheetScenery run() {
     out_.shadows.resize(images_.size());
     out_.covered.resize(images_.size());
-    for (const std::size_t i : posed_) out_.covered[i] = covered(i);
+    for_photographs(posed_.size(), kSmall,
+                    [&](std::size_t k) { out_.covered[posed_[k]] = covered(posed_[k]); });
     for (int round = 0; round < kRounds; ++round) {
       find_light(scale_to(kSmall), kCoarse);
       out_.shadows = shadows_of_hull(result_, small_masks(scale_to(kSmall)));
@@ -97,7 +99,6 @@ class Exploration {
 
   void step(std::size_t done) {
     constexpr double kSteps = 2 * kRounds + 1;
-    progress_.check_cancelled();
     progress_.update((steps_ + double(done) / double(posed_.size())) / kSteps);
   }
 
@@ -111,9 +112,10 @@ class Exploration {
     SheetPhotographs photos;
     photos.count = posed_.size();
     photos.image = [&](std::size_t k) {
-      step(k);
+      progress_.check_cancelled();
       return io::read_image(images_[posed_[k]], scale);
     };
+    photos.read = [&](std::size_t count) { step(count); };
     photos.pixel = [&](std::size_t k, const glm::dvec2& place) { return sights[k].pixel(place); };
     photos.possible = [&](std::size_t k, const glm::dvec2& place, const glm::dvec2& pixel,
                           const glm::ivec2& size) {
@@ -168,9 +170,9 @@ class Exploration {
 
   std::vector<Mask> small_masks(double scale) {
     std::vector<Mask> masks(images_.size());
-    for (std::size_t k = 0; k < posed_.size(); ++k) {
+    const auto find_mask = [&](std::size_t k) {
       const std::size_t i = posed_[k];
-      step(k);
+      progress_.check_cancelled();
       const ColourImage image = io::read_image(images_[i], scale);
       SheetLook look = look_at_sheet(scaled(i, image.width, image.height), i, sheet_, picture_,
                                      blur_of_edges(photos_[i].view.edges, scale), out_.light);
@@ -178,7 +180,8 @@ class Exploration {
       masks[i] = mask_from_sheet(image, look).mask;
       for (std::uint8_t& c : masks[i].coverage) c = c >= kMaybe ? 255 : 0;
       if (masks[i].empty()) masks[i] = anywhere(image.width, image.height);
-    }
+    };
+    for_photographs(posed_.size(), kSmall, find_mask, [&](std::size_t done) { step(done); });
     ++steps_;
     return masks;
   }

@@ -1,5 +1,6 @@
 #include "pose/pose_sheet.h"
 
+#include <atomic>
 #include <filesystem>
 
 #include "core/atomic_file.h"
@@ -8,6 +9,7 @@
 #include "io/image_file.h"
 #include "io/photo_lens.h"
 #include "io/write_scene.h"
+#include "photo/for_photographs.h"
 #include "pose/pose_coverage.h"
 #include "pose/pose_json.h"
 #include "pose/pose_masks.h"
@@ -26,31 +28,33 @@ struct ReadPhotos {
 };
 
 ReadPhotos find_all_tags(const PoseJob& job, const Sheet& sheet, Progress& progress) {
-  ReadPhotos read;
+  const std::size_t count = job.images.size();
+  ReadPhotos read{std::vector<PosePhoto>(count), std::vector<std::string>(count), {}, false};
+  for (const std::string& name : job.names) read.looks.push_back({name});
+  std::atomic<bool> took_focal = false;
   progress.stage("tags", 0.4);
-  for (std::size_t i = 0; i < job.images.size(); ++i) {
+  const auto find_in = [&](std::size_t i) {
     progress.check_cancelled();
-    progress.update(double(i) / double(job.images.size()));
-    PosePhoto photo;
+    PosePhoto& photo = read.photos[i];
     photo.view.board.name = job.names[i];
-    read.unreadable.emplace_back();
-    read.looks.push_back({job.names[i]});
     try {
       const io::PhotoLens lens = io::read_photo_lens(job.images[i], job.focal);
       photo.camera = lens.name, photo.focal = lens.focal;
-      read.took_focal |= lens.given;
-      read.looks.back().exposure = lens.exposure;
+      if (lens.given) took_focal = true;
+      read.looks[i].exposure = lens.exposure;
       photo.view = find_tags(io::read_image(job.images[i]), sheet, job.names[i]);
-      if (photo.view.edge_width() > 0) read.looks.back().sharpness = 1 / photo.view.edge_width();
+      if (photo.view.edge_width() > 0) read.looks[i].sharpness = 1 / photo.view.edge_width();
     } catch (const MemoryError&) {
       throw;
     } catch (const UsageError&) {
       throw;
     } catch (const Error& failure) {
-      read.unreadable.back() = concat("it cannot be read: ", failure.what());
+      read.unreadable[i] = concat("it cannot be read: ", failure.what());
     }
-    read.photos.push_back(std::move(photo));
-  }
+  };
+  for_photographs(count, io::pixels_of_largest(job.images), find_in,
+                  [&](std::size_t done) { progress.update(double(done) / double(count)); });
+  read.took_focal = took_focal;
   return read;
 }
 

@@ -10,6 +10,7 @@
 #include "core/scaled_size.h"
 #include "io/image_file.h"
 #include "masks/sheet_mask.h"
+#include "photo/for_photographs.h"
 #include "pose/pose_scenery.h"
 
 namespace photohull::pose {
@@ -27,7 +28,6 @@ class TurntableSearch {
       : job_(job),
         sheet_(sheet),
         result_(result),
-        scaled_(result),
         edges_(edges),
         progress_(progress),
         picture_(sheet_picture(sheet, kTexelsPerMm)) {}
@@ -53,10 +53,12 @@ class TurntableSearch {
   }
 
  private:
-  SheetLook look_at(std::size_t photo, int width, int height, std::span<const LocalBlur> blur) {
+  SheetLook look_at(std::size_t photo, int width, int height,
+                    std::span<const LocalBlur> blur) const {
     const auto c = std::size_t(result_.photos[photo].camera);
-    scaled_.cameras[c].intrinsics = scaled_to(result_.cameras[c].intrinsics, width, height);
-    return look_at_sheet(scaled_, photo, sheet_, picture_, blur);
+    PoseResult scaled = result_;
+    scaled.cameras[c].intrinsics = scaled_to(result_.cameras[c].intrinsics, width, height);
+    return look_at_sheet(scaled, photo, sheet_, picture_, blur);
   }
 
   /// Of all stations, from pictures of that scale and by the shadows there are.
@@ -89,20 +91,19 @@ class TurntableSearch {
 
   std::vector<Mask> small_masks(double scale) {
     std::vector<Mask> masks(job_.images.size());
-    for (std::size_t i = 0; i < masks.size(); ++i) {
+    for_photographs(masks.size(), kSmall, [&](std::size_t i) {
       progress_.check_cancelled();
-      if (out_.station_of(i) < 0) continue;
+      if (out_.station_of(i) < 0) return;
       const ColourImage image = io::read_image(job_.images[i], scale);
       const SheetLook look = look_at(i, image.width, image.height, blur_of_edges(edges_[i], scale));
       masks[i] = mask_from_sheet(image, look, out_.behind(i)).mask;
-    }
+    });
     return masks;
   }
 
   const PoseJob& job_;
   const Sheet& sheet_;
   const PoseResult& result_;
-  PoseResult scaled_;  ///< whose cameras have the pictures' sizes
   const PhotoEdges& edges_;
   Progress& progress_;
   SheetPicture picture_;
