@@ -33,16 +33,27 @@ constexpr double kVignettingSigmas = 3;  // below: not distinguished from none
 glm::dvec3 logarithm(const glm::dvec3& v) { return glm::log(v); }
 
 /// (log colour - log gain - log(1 - v r^2) - log albedo) / sigma, for three channels.
-struct Residual {
-  const PhotometricSample* sample;
-  template <typename T>
-  bool operator()(const T* gain, const T* albedo, const T* vignetting, T* residual) const {
-    using std::log;
-    const T lost = log(1.0 - vignetting[0] * sample->radius2);
+class Residual : public ceres::SizedCostFunction<3, 3, 3, 1> {
+ public:
+  explicit Residual(const PhotometricSample& sample)
+      : seen_(logarithm(sample.colour)), weight_(1.0 / sample.sigma), radius2_(sample.radius2) {}
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override {
+    const double kept = 1 - parameters[2][0] * radius2_, lost = std::log(kept);
     for (int c = 0; c < 3; ++c)
-      residual[c] = (std::log(sample->colour[c]) - gain[c] - lost - albedo[c]) / sample->sigma[c];
+      residuals[c] = weight_[c] * (seen_[c] - parameters[0][c] - lost - parameters[1][c]);
+    if (!jacobians) return true;
+    for (int block = 0; block < 2; ++block)
+      for (int i = 0; jacobians[block] && i < 9; ++i)
+        jacobians[block][i] = i % 4 == 0 ? -weight_[i / 4] : 0;
+    for (int c = 0; jacobians[2] && c < 3; ++c) jacobians[2][c] = weight_[c] * radius2_ / kept;
     return true;
   }
+
+ private:
+  glm::dvec3 seen_, weight_;
+  double radius2_;
 };
 
 /// Holds the mean of all gains' logarithms at 0.
@@ -77,9 +88,14 @@ class Solver {
 
   void run(State& state) {
     width_ = kFirstWidth;
+    ceres::Problem problem;
+    const auto order = std::make_shared<ceres::ParameterBlockOrdering>();
+    auto* loss = new ceres::LossFunctionWrapper(nullptr, ceres::TAKE_OWNERSHIP);  // the problem's
+    set_up(loss, state, problem, *order);
     for (int round = 0; round < kRounds; ++round) {
       progress_.check_cancelled();
-      solve(state);
+      loss->Reset(new ceres::CauchyLoss(width_), ceres::TAKE_OWNERSHIP);
+      solve(order, problem);
       std::vector<double> sizes;
       for_each(state, [&](std::size_t, const PhotometricSample&, const glm::dvec3& r) {
         for (int c = 0; c < 3; ++c) sizes.push_back(std::abs(r[c]));
@@ -152,37 +168,39 @@ class Solver {
       for (const PhotometricSample& s : points_[p].samples) visit(p, s, residual(state, p, s));
   }
 
-  void solve(State& state) {
-    ceres::Problem problem;
-    auto* order = new ceres::ParameterBlockOrdering;
+  void set_up(ceres::LossFunction* loss, State& state, ceres::Problem& problem,
+              ceres::ParameterBlockOrdering& order) const {
     for (std::size_t p = 0; p < points_.size(); ++p) {
       for (const PhotometricSample& s : points_[p].samples)
-        problem.AddResidualBlock(
-            new ceres::AutoDiffCostFunction<Residual, 3, 3, 3, 1>(new Residual{&s}),
-            new ceres::CauchyLoss(width_), &state.gain[std::size_t(s.view)].x, &state.albedo[p].x,
-            &state.vignetting[std::size_t(lens_[std::size_t(s.view)])]);
-      order->AddElementToGroup(&state.albedo[p].x, 0);
+        problem.AddResidualBlock(new Residual(s), loss, &state.gain[std::size_t(s.view)].x,
+                                 &state.albedo[p].x,
+                                 &state.vignetting[std::size_t(lens_[std::size_t(s.view)])]);
+      order.AddElementToGroup(&state.albedo[p].x, 0);
     }
     auto* gauge = new ceres::DynamicAutoDiffCostFunction<Gauge, 12>(new Gauge{int(views_.size())});
     std::vector<double*> gains;
     for (const std::size_t view : views_) {
       gauge->AddParameterBlock(3);
       gains.push_back(&state.gain[view].x);
-      order->AddElementToGroup(gains.back(), 1);
+      order.AddElementToGroup(gains.back(), 1);
     }
     gauge->SetNumResiduals(3);
     problem.AddResidualBlock(gauge, nullptr, gains);
     for (std::size_t l = 0; l < state.vignetting.size(); ++l) {
       double* v = &state.vignetting[l];
       if (!problem.HasParameterBlock(v)) continue;
-      order->AddElementToGroup(v, 1);
+      order.AddElementToGroup(v, 1);
       problem.SetParameterLowerBound(v, 0, kLeastVignetting);
       problem.SetParameterUpperBound(v, 0, kMostVignetting);
       if (!state.vignetting_free[l]) problem.SetParameterBlockConstant(v);
     }
+  }
+
+  static void solve(const std::shared_ptr<ceres::ParameterBlockOrdering>& order,
+                    ceres::Problem& problem) {
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::DENSE_SCHUR;
-    options.linear_solver_ordering.reset(order);
+    options.linear_solver_ordering = order;
     options.max_num_iterations = kIterations;
     options.function_tolerance = kSettled;
     options.num_threads = 1;  // sums are then the same in every run
