@@ -125,6 +125,7 @@ BoardView find_board(const ColourImage& image, const BoardSpec& board, const std
   const cv::Mat grey = grey_bytes(image);
   const cv::Size size(board.columns, board.rows);
   std::vector<cv::Point2f> found;
+  cv::setRNGSeed(1);  // the detectors draw, from numbers of the thread
   try {
     switch (board.kind) {
       case BoardKind::kChess:

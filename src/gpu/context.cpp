@@ -35,10 +35,15 @@ std::int64_t cpu_ns() {
 /// Mesa's software rasterizer lets go of what a batch of triangles used when it uses the batch's
 /// memory again, and takes for a new batch the first one that is done. It has 64 at most: as many
 /// small ones take all of them while a large one, which many threads share, keeps them waiting.
-void renew_batches() {
+/// What the device does not hold stays.
+void renew_batches(const Limits& limits) {
   const int large = std::thread::hardware_concurrency() > 4 ? 2048 : 1024;
-  TextureArray(TextureFormat::kSrgb8Alpha8, large, large, 1, 2).generate_mipmaps();
-  TextureArray(TextureFormat::kSrgb8Alpha8, 2, 2, 64, 2).generate_mipmaps();
+  if (limits.texture_size < large || limits.texture_layers < 64) return;
+  try {
+    TextureArray(TextureFormat::kSrgb8Alpha8, large, large, 1, 2).generate_mipmaps();
+    TextureArray(TextureFormat::kSrgb8Alpha8, 2, 2, 64, 2).generate_mipmaps();
+  } catch (const Error&) {  // there is no memory for what would set some free
+  }
 }
 
 }  // namespace
@@ -98,7 +103,7 @@ void Context::release_deleted() {
   constexpr unsigned kUnits = 8;
   for (unsigned unit = 0; unit < kUnits; ++unit) glBindTextureUnit(unit, 0);
   empty_buffer_pool();
-  if (device_.software) renew_batches();
+  if (device_.software) renew_batches(limits_);
   Program::compute(*this, "gpu_nothing.comp.glsl")->dispatch(*this, "gpu_nothing", 1);
   malloc_trim(0);
 }

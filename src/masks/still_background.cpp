@@ -139,19 +139,16 @@ class StillSearch {
       sample.covered = covered_by(photos_.look(k, size_.width, size_.height));
       cover_object(photos_.mask(k), sample.covered);
     };
-    for_photographs(photos_.count, pixels(), read, [&](std::size_t done) {
-      photos_.progress(double(done) / double(photos_.count) * (whole() ? 1 : 0.5));
+    for_photographs(photos_.count, double(photos_.width) * photos_.height, read,
+                    [&](std::size_t done) {
+                      photos_.progress(double(done) / double(photos_.count) * (whole() ? 1 : 0.5));
+                    });
+    for_photographs(samples_.size(), double(size_.area()), [&](std::size_t k) {
+      if (k > 0) samples_[k].gain = gain_between(samples_[0], samples_[k]);
     });
-    tbb::parallel_for(std::size_t(1), samples_.size(), [&](std::size_t k) {
-      Sample& sample = samples_[k];
-      sample.gain = gain_between(samples_.front(), sample);
-      cv::multiply(sample.light,
-                   cv::Scalar(1 / sample.gain[0], 1 / sample.gain[1], 1 / sample.gain[2]),
-                   sample.light);
-    });
+    for (Sample& s : samples_)
+      cv::multiply(s.light, cv::Scalar(1 / s.gain[0], 1 / s.gain[1], 1 / s.gain[2]), s.light);
   }
-
-  double pixels() const { return double(photos_.width) * photos_.height; }
 
   // Is it still?
 

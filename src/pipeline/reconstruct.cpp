@@ -11,7 +11,6 @@
 #include "core/error.h"
 #include "core/option_word.h"
 #include "core/process_limits.h"
-#include "gpu/buffer_pool.h"
 #include "mesh/join_meshes.h"
 #include "photo/opencv_threads.h"
 #include "pipeline/check_room.h"
@@ -65,7 +64,6 @@ class Carver {
     const bool open = leaves_open(run_.options, bounded_);
     if (open && !bounded_) surface = open_unseen(job(), surface.mesh, std::move(surface.seen));
     const Around around = surround(surface.mesh, open);
-    gpu::empty_buffer_pool();  // photographs lie on the device and the host while they are read
     images_->give_back(subject_.views);
     images_.reset();
     run_.context->release_deleted();
