@@ -89,9 +89,9 @@ class Solver {
   void run(State& state) {
     width_ = kFirstWidth;
     ceres::Problem problem;
-    const auto order = std::make_shared<ceres::ParameterBlockOrdering>();
+    ceres::ParameterBlockOrdering order;
     auto* loss = new ceres::LossFunctionWrapper(nullptr, ceres::TAKE_OWNERSHIP);  // the problem's
-    set_up(loss, state, problem, *order);
+    set_up(loss, state, problem, order);
     for (int round = 0; round < kRounds; ++round) {
       progress_.check_cancelled();
       loss->Reset(new ceres::CauchyLoss(width_), ceres::TAKE_OWNERSHIP);
@@ -196,11 +196,11 @@ class Solver {
     }
   }
 
-  static void solve(const std::shared_ptr<ceres::ParameterBlockOrdering>& order,
-                    ceres::Problem& problem) {
+  static void solve(const ceres::ParameterBlockOrdering& order, ceres::Problem& problem) {
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::DENSE_SCHUR;
-    options.linear_solver_ordering = order;
+    // Of its own: Ceres takes out what is constant.
+    options.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>(order);
     options.max_num_iterations = kIterations;
     options.function_tolerance = kSettled;
     options.num_threads = 1;  // sums are then the same in every run
