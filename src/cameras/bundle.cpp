@@ -181,12 +181,14 @@ std::vector<Camera> adjust_bundle(const BundleInput& input, std::span<const Came
   const bool far = !input.held.empty() || std::max(input.track_sigma, input.tangent_sigma) > kFar;
   options.max_num_iterations = far ? kIterationsFromFar : kIterations;
   options.function_tolerance = far ? kSettledFromFar : kSettled;
+  options.max_num_consecutive_invalid_steps = 20;
   options.logging_type = ceres::SILENT;
   options.num_threads = 1;  // sums in the same order on every machine
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   std::vector<Camera> result(start.begin(), start.end());
   if (!summary.IsSolutionUsable()) {
+    fprintf(stderr, "UNUSABLE %s\n", summary.message.c_str());
     shared = {1, 0, 0};
     return result;
   }

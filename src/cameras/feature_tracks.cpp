@@ -9,7 +9,6 @@
 #include <cmath>
 #include <iterator>
 #include <map>
-#include <numbers>
 #include <numeric>
 #include <opencv2/core.hpp>
 #include <opencv2/core/hal/hal.hpp>
@@ -17,6 +16,7 @@
 
 #include "cameras/described_tracks.h"
 #include "cameras/features.h"
+#include "cameras/near_views.h"
 #include "cameras/surface_patches.h"
 #include "cameras/triangulate.h"
 #include "core/disjoint_sets.h"
@@ -31,21 +31,13 @@ struct Match {
   int view_a, feature_a, view_b, feature_b;
 };
 
-/// Pairs of views that see about the same: each view with those of the most similar direction.
-std::vector<std::pair<int, int>> neighbour_pairs(std::span<const PreparedView> views,
+/// Pairs of views that see about the same.
+std::vector<std::pair<int, int>> neighbour_pairs(std::span<const Camera> cameras,
                                                  const TrackOptions& options) {
-  const double least = std::cos(options.largest_angle * std::numbers::pi / 180);
   std::vector<std::pair<int, int>> pairs;
-  for (int i = 0; i < int(views.size()); ++i) {
-    std::vector<std::pair<double, int>> others;
-    for (int j = 0; j < int(views.size()); ++j) {
-      const double cosine = glm::dot(views[i].camera.forward(), views[j].camera.forward());
-      if (j != i && cosine > least) others.emplace_back(-cosine, j);
-    }
-    std::sort(others.begin(), others.end());
-    others.resize(std::min(others.size(), std::size_t(options.neighbours)));
-    for (const auto& [order, j] : others) pairs.emplace_back(std::min(i, j), std::max(i, j));
-  }
+  for (int i = 0; i < int(cameras.size()); ++i)
+    for (const int j : nearest_views(cameras, i, options.neighbours, options.largest_angle))
+      pairs.emplace_back(std::min(i, j), std::max(i, j));
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   return pairs;
@@ -149,19 +141,18 @@ std::optional<PatchPlace> place_in(const Camera& a, const glm::dvec2& pixel, con
 }
 
 /// Features of neighbouring views that are each other's best matches.
-std::vector<Match> match_all(std::span<const PreparedView> views,
-                             const std::vector<Features>& features, const TrackOptions& options,
-                             Progress& progress) {
+std::vector<Match> match_all(std::span<const Camera> cameras, const std::vector<Features>& features,
+                             const TrackOptions& options, Progress& progress) {
   const std::vector<std::pair<int, int>> pairs =
-      options.pairs.empty() ? neighbour_pairs(views, options) : options.pairs;
+      options.pairs.empty() ? neighbour_pairs(cameras, options) : options.pairs;
   std::vector<std::vector<Match>> found(pairs.size());
   tbb::parallel_for(std::size_t(0), pairs.size(), [&](std::size_t p) {
     if (progress.cancelled()) return;
     const auto [i, j] = pairs[p];
     const std::vector<int> there =
-        best_matches(features[i], features[j], views[i].camera, views[j].camera, options);
+        best_matches(features[i], features[j], cameras[i], cameras[j], options);
     const std::vector<int> back =
-        best_matches(features[j], features[i], views[j].camera, views[i].camera, options);
+        best_matches(features[j], features[i], cameras[j], cameras[i], options);
     for (int f = 0; f < int(there.size()); ++f)
       if (there[f] >= 0 && back[there[f]] == f) found[p].push_back({i, f, j, there[f]});
   });
@@ -214,15 +205,15 @@ std::vector<Track> longest_first(std::vector<Track> tracks, std::size_t views, i
 }
 
 /// Aligns the other views' patches to that of the view in the middle; those that do not agree go.
-void polish(std::span<const PreparedView> views, std::span<const Camera> cameras,
-            const std::vector<Features>& features, const TrackOptions& options, Track& track) {
+void polish(std::span<const Camera> cameras, const std::vector<Features>& features,
+            const TrackOptions& options, Track& track) {
   constexpr double kFarthest = 3;  // pixels from the feature found
   std::vector<Observation>& o = track.observations;
   const auto point = triangulate(cameras, track);
   std::vector<Observation> kept;
   if (point) {
     glm::dvec3 mean(0.0);
-    for (const Observation& x : o) mean += glm::normalize(views[x.view].camera.center() - *point);
+    for (const Observation& x : o) mean += glm::normalize(cameras[x.view].center() - *point);
     const auto middle = std::max_element(o.begin(), o.end(), [&](const auto& a, const auto& b) {
       return glm::dot(glm::normalize(cameras[a.view].center() - *point), mean) <
              glm::dot(glm::normalize(cameras[b.view].center() - *point), mean);
@@ -269,6 +260,9 @@ std::vector<cv::Mat> descriptors_of(std::span<const Track> joined, std::span<con
 std::vector<Track> search_tracks(std::span<const PreparedView> views, const TrackOptions& options,
                                  Progress& progress, std::span<const Track> given, bool search,
                                  std::vector<cv::Mat>* descriptors) {
+  std::vector<Camera> cameras = options.cameras;
+  if (cameras.empty())
+    for (const PreparedView& view : views) cameras.push_back(view.camera);
   std::vector<Features> features(views.size());
   tbb::parallel_for(std::size_t(0), views.size(), [&](std::size_t i) {
     if (!progress.cancelled())
@@ -279,7 +273,7 @@ std::vector<Track> search_tracks(std::span<const PreparedView> views, const Trac
   progress.update(0.3);
   std::vector<Track> tracks(given.begin(), given.end());
   if (search) {
-    std::vector<Track> found = join(features, match_all(views, features, options, progress));
+    std::vector<Track> found = join(features, match_all(cameras, features, options, progress));
     remove_repeated(given, found);
     tracks.insert(tracks.end(), std::make_move_iterator(found.begin()),
                   std::make_move_iterator(found.end()));
@@ -287,10 +281,8 @@ std::vector<Track> search_tracks(std::span<const PreparedView> views, const Trac
   progress.update(0.8);
   if (options.enough > 0) tracks = longest_first(std::move(tracks), views.size(), options.enough);
   const std::vector<Track> joined = descriptors ? tracks : std::vector<Track>();
-  std::vector<Camera> cameras;
-  for (const PreparedView& view : views) cameras.push_back(view.camera);
   tbb::parallel_for(std::size_t(0), tracks.size(), [&](std::size_t t) {
-    if (!progress.cancelled()) polish(views, cameras, features, options, tracks[t]);
+    if (!progress.cancelled()) polish(cameras, features, options, tracks[t]);
   });
   progress.check_cancelled();
   if (descriptors) *descriptors = descriptors_of(joined, tracks, features);

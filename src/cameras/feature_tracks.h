@@ -34,6 +34,7 @@ struct TrackOptions {
   double least_agreement = 0.8;  ///< normalised cross-correlation of patches once they are aligned
   /// Views that are matched, each pair once and ascending; empty: each one with its `neighbours`.
   std::vector<std::pair<int, int>> pairs;
+  std::vector<Camera> cameras;  ///< in place of the views' own; empty: theirs
 };
 
 /// SIFT features [Lowe04] on the object (where views have masks), matched between neighbouring

@@ -32,6 +32,7 @@ Features detect_smaller(const cv::Mat& image, const cv::Mat& mask, int times, in
   if (!mask.empty()) cv::resize(mask, small_mask, small.size(), 0, 0, cv::INTER_NEAREST);
   std::vector<cv::KeyPoint> points;
   Features found;
+  found.times = times;
   cv::SIFT::create(count, 3, kContrast)
       ->detectAndCompute(small, small_mask, points, found.descriptors);
   for (const cv::KeyPoint& p : points) {
@@ -44,7 +45,7 @@ Features detect_smaller(const cv::Mat& image, const cv::Mat& mask, int times, in
 }  // namespace
 
 Features detect_features(const PreparedView& view, int count, FeatureSearch search) {
-  constexpr int kLongest = 1600;  // pixels
+  const int longest = search == FeatureSearch::kCoarse ? 400 : 1600;  // pixels
   GreyImage grey = grey_image(view.image);
   cv::Mat image, mask;
   cv::Mat(grey.height, grey.width, CV_32F, grey.values.data()).convertTo(image, CV_8U);
@@ -57,10 +58,11 @@ Features detect_features(const PreparedView& view, int count, FeatureSearch sear
     mask = mask(part);
   }
   image = image(part);
-  const int times = std::max(1, (std::max(part.width, part.height) + kLongest - 1) / kLongest);
+  const int times = std::max(1, (std::max(part.width, part.height) + longest - 1) / longest);
   Features found;
   if (search == FeatureSearch::kQuick) found = detect_smaller(image, mask, 2 * times, count);
-  if (int(found.pixels.size()) < kEnough) found = detect_smaller(image, mask, times, count);
+  if (search != FeatureSearch::kQuick || int(found.pixels.size()) < kEnough)
+    found = detect_smaller(image, mask, times, count);
   for (glm::dvec2& pixel : found.pixels) pixel += glm::dvec2(part.x, part.y);
   found.grey = smoothed(std::move(grey));
   return found;

@@ -13,11 +13,13 @@ struct Features {
   std::vector<glm::dvec2> pixels;
   cv::Mat descriptors;  ///< a row each
   GreyImage grey;       ///< smoothed a little, for align_patch
+  int times = 1;        ///< how many times smaller the image was that they were found in
 };
 
 enum class FeatureSearch {
   kFull,
   kQuick,  ///< in an image of half the size, where that has 200 or more
+  kCoarse  ///< in an image of about 400 pixels, however few that has
 };
 
 /// The `count` strongest features, on the object where the view has a mask. Of large objects,

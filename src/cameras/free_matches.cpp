@@ -27,9 +27,10 @@ std::vector<int> nearest(const cv::Mat& a, const cv::Mat& b) {
   return best;
 }
 
-PairMatches match(const Features& a, const Features& b, int view_a, int view_b) {
-  PairMatches result{view_a, view_b, {}};
-  if (a.pixels.size() < kFewest || b.pixels.size() < kFewest) return result;
+}  // namespace
+
+PixelPairs match_freely(const Features& a, const Features& b, double tolerance) {
+  if (a.pixels.size() < kFewest || b.pixels.size() < kFewest) return {};
   const std::vector<int> there = nearest(a.descriptors, b.descriptors);
   const std::vector<int> back = nearest(b.descriptors, a.descriptors);
   std::vector<cv::Point2d> in_a, in_b;
@@ -39,18 +40,16 @@ PairMatches match(const Features& a, const Features& b, int view_a, int view_b) 
     in_a.emplace_back(p.x, p.y);
     in_b.emplace_back(q.x, q.y);
   }
-  if (in_a.size() < kFewest) return result;
+  if (in_a.size() < kFewest) return {};
   std::vector<std::uint8_t> inliers;
-  cv::findFundamentalMat(in_a, in_b, cv::FM_RANSAC, kEpipolar, kConfidence, inliers);
+  cv::findFundamentalMat(in_a, in_b, cv::FM_RANSAC, tolerance, kConfidence, inliers);
+  PixelPairs found;
   for (std::size_t i = 0; i < inliers.size(); ++i)
     if (inliers[i])
-      result.pixels.emplace_back(glm::dvec2(in_a[i].x, in_a[i].y),
-                                 glm::dvec2(in_b[i].x, in_b[i].y));
-  if (result.pixels.size() < std::max(kFewest, in_a.size() / 2)) result.pixels.clear();
-  return result;
+      found.emplace_back(glm::dvec2(in_a[i].x, in_a[i].y), glm::dvec2(in_b[i].x, in_b[i].y));
+  if (found.size() < std::max(kFewest, in_a.size() / 2)) found.clear();
+  return found;
 }
-
-}  // namespace
 
 std::vector<PairMatches> match_without_cameras(std::span<const PreparedView> views,
                                                std::span<const std::pair<int, int>> pairs,
@@ -65,7 +64,8 @@ std::vector<PairMatches> match_without_cameras(std::span<const PreparedView> vie
   tbb::parallel_for(std::size_t(0), pairs.size(), [&](std::size_t i) {
     const auto [a, b] = pairs[i];
     if (!progress.cancelled())
-      found[i] = match(features[std::size_t(a)], features[std::size_t(b)], a, b);
+      found[i] = {a, b,
+                  match_freely(features[std::size_t(a)], features[std::size_t(b)], kEpipolar)};
   });
   progress.check_cancelled();
   std::erase_if(found, [](const PairMatches& m) { return m.pixels.empty(); });

@@ -10,6 +10,7 @@
 #include "cameras/bundle.h"
 #include "cameras/frontier.h"
 #include "cameras/gauge.h"
+#include "cameras/look_at_cameras.h"
 #include "cameras/residuals.h"
 #include "cameras/surface_patches.h"
 #include "core/error.h"
@@ -32,7 +33,8 @@ constexpr double kWorthwhile = 0.999;  // of the cost: what a round must leave f
 constexpr int kRounds = 8;             // at most; each one finds outliers and tangents anew
 constexpr double kMostlyShared = 0.5;  // of the residuals: what they fall below by what is shared
 constexpr double kGross = 5;  // pixels: such residuals do not tell poses' errors from shared ones
-constexpr double kNoWorse = 1.2;  // times the residual without what views share
+constexpr double kSearchWidth = 4;  // times what cameras are off in the median
+constexpr double kNoWorse = 1.2;    // times the residual without what views share
 
 using Cameras = std::vector<Camera>;
 
@@ -87,14 +89,14 @@ class CameraRefiner {
  private:
   CameraRefinement refine(SharedIntrinsics intrinsics) {
     Cameras cameras = start_;
-    const double given = spread(judge(given_, nullptr));
+    const double given = spread(judge(given_));
     prior_sigma_ = std::max(kUsualError, 2 * given);
     CameraRefinement result;
     // A turn looks almost like an offset of the principal point: while poses are held, the offset
     // is what all views have in common.
     if (intrinsics != SharedIntrinsics::kNone && try_round(cameras, intrinsics, true, result)) {
       // Poses explain what is left; little is, where they were right.
-      const double left = spread(judge(cameras, nullptr));
+      const double left = spread(judge(cameras));
       const bool right = given < kGross && left < kMostlyShared * given;
       prior_sigma_ = right ? left : 2 * left;
     }
@@ -120,21 +122,27 @@ class CameraRefiner {
   bool try_round(Cameras& cameras, SharedIntrinsics intrinsics, bool hold_poses,
                  CameraRefinement& result) const {
     std::array<double, 3> shared;
-    const Judgement before = judge(cameras, nullptr);
+    const Judgement before = judge(cameras);
     Cameras better = adjust(cameras, intrinsics, hold_poses, shared);
-    const Judgement after = judge(better, &before);
-    if (!(after.cost < before.cost * (1 - 1e-9))) return false;
+    const Judgement after = judge(better);
+    // By the narrower spread: matches that are wrong, which any camera leaves off, do not hide
+    // that the others come to agree.
+    const double track_sigma = std::min(before.track_sigma, after.track_sigma);
+    const double tangent_sigma = std::min(before.tangent_sigma, after.tangent_sigma);
+    const double cost = cost_of(after, track_sigma, tangent_sigma);
+    const double cost_before = cost_of(before, track_sigma, tangent_sigma);
+    if (!(cost < cost_before * (1 - 1e-9))) return false;
     ++result.rounds;
     result.changed = true;
     cameras = std::move(better);
     result.focal_factor *= shared[0];
     result.principal += glm::dvec2(shared[1], shared[2]);
-    return after.cost <= kWorthwhile * before.cost;
+    return cost <= kWorthwhile * cost_before;
   }
 
   struct Judgement {
-    double track_sigma = 1, tangent_sigma = 1, cost = 0;
-    std::vector<FrontierPair> tangents;
+    std::vector<double> tracks, tangents;  // pixels
+    double track_sigma = 1, tangent_sigma = 1;
   };
 
   double spread(const Judgement& j) const {
@@ -172,20 +180,20 @@ class CameraRefiner {
     return chosen;
   }
 
-  /// Held-out residuals, against their spread before (`reference`) where there is one.
-  Judgement judge(const Cameras& cameras, const Judgement* reference) const {
-    Judgement j;
-    std::vector<double> lengths = triangulate_all(cameras, judging_).rms;
-    const std::vector<double> distances = tangent_distances(cameras, tangents(cameras, true));
-    j.track_sigma = std::max(kLeastSigma, spread_of_lengths(lengths));
-    j.tangent_sigma = std::max(kLeastTangentSigma, spread_of_distances(distances));
-    const Judgement& scale = reference ? *reference : j;
-    const double n = double(lengths.size()), m = double(distances.size());
-    if (n + m > 0)
-      j.cost = (n * robust_cost(lengths, scale.track_sigma) +
-                m * robust_cost(distances, scale.tangent_sigma)) /
-               (n + m);
+  /// Residuals of what is held out.
+  Judgement judge(const Cameras& cameras) const {
+    Judgement j{triangulate_all(cameras, judging_).rms,
+                tangent_distances(cameras, tangents(cameras, true))};
+    j.track_sigma = std::max(kLeastSigma, spread_of_lengths(j.tracks));
+    j.tangent_sigma = std::max(kLeastTangentSigma, spread_of_distances(j.tangents));
     return j;
+  }
+
+  static double cost_of(const Judgement& j, double track_sigma, double tangent_sigma) {
+    const double n = double(j.tracks.size()), m = double(j.tangents.size());
+    if (n + m == 0) return 0;
+    return (n * robust_cost(j.tracks, track_sigma) + m * robust_cost(j.tangents, tangent_sigma)) /
+           (n + m);
   }
 
   Cameras adjust(const Cameras& cameras, SharedIntrinsics intrinsics, bool hold_poses,
@@ -328,9 +336,13 @@ CameraRefinement refine_cameras(std::span<const PreparedView> views,
   for (const PreparedView& view : views) given.push_back(view.camera);
   std::span<const Track> others;
   if (options.source != TrackSource::kFound) others = options.given;
-  const std::vector<Track> features =
-      find_tracks(views, options.tracks, progress, others, options.source != TrackSource::kGiven);
-  std::vector<Track> patches;
+  const auto features_by = [&](const TrackOptions& by) {
+    return find_tracks(views, by, progress, others, options.source != TrackSource::kGiven);
+  };
+  TrackOptions tracks = options.tracks;
+  tracks.epipolar = std::max(tracks.epipolar, kSearchWidth * pixels_off(views, progress));
+  const bool are_far = tracks.epipolar > options.tracks.epipolar;
+  std::vector<Track> features = features_by(tracks), patches;
   std::vector<GreyImage> images(views.size());
   const bool with_patches = options.box && has_few(features, views.size(), options.few_features);
   if (with_patches) {
@@ -338,15 +350,23 @@ CameraRefinement refine_cameras(std::span<const PreparedView> views,
                       [&](std::size_t i) { images[i] = smoothed(grey_image(views[i].image)); });
     patches = hull_patches(given, views, images, *options.box, progress);
   }
-  CameraRefinement result =
-      CameraRefiner(views, given, given, options, joined(features, patches), progress).run();
-  if (with_patches && result.changed) {
-    // Better cameras cut a better hull, whose patches are found in more places.
+  const auto refine_from = [&](const Cameras& start, const std::vector<Track>& patches_there) {
+    return CameraRefiner(views, given, start, options, joined(features, patches_there), progress)
+        .run();
+  };
+  CameraRefinement result = refine_from(given, patches);
+  if (result.changed && (with_patches || are_far)) {
+    // Near better cameras fewer matches are wrong, and the hull that they cut has patches in more
+    // places.
+    if (are_far) {
+      tracks = options.tracks;
+      tracks.cameras = result.cameras;
+      features = features_by(tracks);
+    }
     const std::vector<Track> again =
-        hull_patches(result.cameras, views, images, *options.box, progress);
-    CameraRefinement second =
-        CameraRefiner(views, given, result.cameras, options, joined(features, again), progress)
-            .run();
+        with_patches ? hull_patches(result.cameras, views, images, *options.box, progress)
+                     : patches;
+    CameraRefinement second = refine_from(result.cameras, again);
     if (second.changed) {
       second.rounds += result.rounds;
       second.focal_factor *= result.focal_factor;
@@ -358,18 +378,6 @@ CameraRefinement refine_cameras(std::span<const PreparedView> views,
   result.given_tracks = int(others.size());
   result.patches = int(patches.size());
   return result;
-}
-
-double tangent_disagreement(std::span<const PreparedView> views) {
-  Cameras cameras;
-  for (const PreparedView& view : views) cameras.push_back(view.camera);
-  return tangent_disagreement(cameras, outlines_of(views));
-}
-
-double tangent_disagreement(std::span<const Camera> cameras, std::span<const Outline> outlines) {
-  const std::vector<double> distances =
-      tangent_distances(cameras, frontier_pairs(cameras, outlines));
-  return distances.empty() ? NAN : median(distances);
 }
 
 }  // namespace photohull

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "cameras/feature_tracks.h"
-#include "cameras/frontier.h"
 #include "core/box.h"
 #include "core/describe.h"
 
@@ -80,12 +79,5 @@ struct CameraRefinement {
 /// Cancelled, and Error for fewer than three views.
 CameraRefinement refine_cameras(std::span<const PreparedView> views,
                                 const RefineCamerasOptions& options, Progress& progress);
-
-/// Median distance in pixels of the outlines' tangents from each other's epipolar lines, over all
-/// pairs of views with masks (frontier_pairs); NaN where there is no pair. Says in some hundredths
-/// of a second whether refine_cameras may pay.
-double tangent_disagreement(std::span<const PreparedView> views);
-/// The same, of outlines that are known (outlines_of).
-double tangent_disagreement(std::span<const Camera> cameras, std::span<const Outline> outlines);
 
 }  // namespace photohull

@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -39,9 +40,12 @@ std::vector<double> tangent_distances(std::span<const Camera> cameras,
 
 double robust_cost(const std::vector<double>& residuals, double sigma) {
   if (residuals.empty()) return 0;
+  constexpr double kGross = 10;  // spreads: what is farther off, or has no place, is as wrong
   double sum = 0;
-  for (const double r : residuals)
-    sum += std::isfinite(r) ? std::log1p(r * r / (2 * sigma * sigma)) : std::log1p(1e6);
+  for (const double r : residuals) {
+    const double spreads = std::isfinite(r) ? std::min(r / sigma, kGross) : kGross;
+    sum += std::log1p(spreads * spreads / 2);
+  }
   return sum / double(residuals.size());
 }
 

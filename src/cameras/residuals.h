@@ -28,7 +28,8 @@ Triangulated triangulate_all(std::span<const Camera> cameras, std::span<const Tr
 std::vector<double> tangent_distances(std::span<const Camera> cameras,
                                       std::span<const FrontierPair> tangents);
 
-/// Mean of log(1 + r^2 / (2 sigma^2)): what grows with every residual, and with none without bound.
+/// Mean of log(1 + r^2 / (2 sigma^2)), r at most 10 sigma, as which residuals that are not finite
+/// count: matches that were wrong from the start outweigh nothing, wherever they come to lie.
 double robust_cost(const std::vector<double>& residuals, double sigma);
 
 }  // namespace photohull

@@ -8,6 +8,7 @@
 
 #include "cameras/diagnose.h"
 #include "cameras/feature_tracks.h"
+#include "cameras/look_at_cameras.h"
 #include "cameras/refine_cameras.h"
 #include "carving/missing_parts.h"
 #include "carving/object_box.h"
@@ -26,6 +27,7 @@ namespace {
 constexpr int kFewestFeatures = 20;  // held-out ones that confirm a camera
 constexpr double kAgrees = 0.5;      // pixels, of these
 constexpr double kMended = 0.5;      // of what the outlines of views were off
+constexpr double kWorthTelling = 1;  // pixels that features are off, where no cameras fit better
 
 std::string in_common(const CameraRefinement& found) {
   return concat(" (in all views focal lengths times ", std::round(1e4 * found.focal_factor) / 1e4,
@@ -138,6 +140,28 @@ SharedIntrinsics intrinsics_of(const std::optional<RefineCameras>& refine) {
                                          : SharedIntrinsics::kWhereAlike;
 }
 
+void warn_of_wrong_cameras(const CameraRefinement& found, bool used, const CameraFindings& findings,
+                           Progress& progress) {
+  const bool by_features = std::isfinite(findings.features.pixels);
+  const std::string off =
+      by_features ? concat("the cameras have the photographs' features ",
+                           hundredths(findings.features.pixels), " px from where they are")
+                  : concat("the masks' outlines disagree by ",
+                           hundredths(findings.mask_disagreement), " px");
+  if (used)
+    progress.warn(
+        concat(off, ": the cameras were refined",
+               shares_intrinsics(found) ? in_common(found) : std::string(),
+               ", and what they see agrees to ",
+               hundredths(found.all.observations ? found.all.after : found.tangents_after),
+               " px instead of ",
+               hundredths(found.all.observations ? found.all.before : found.tangents_before),
+               how_to_refuse()));
+  else if (findings.features.pixels > kWorthTelling)
+    progress.warn(concat(off, ", and none were found that fit clearly better: check them (",
+                         command_word("info", "cameras"), ")"));
+}
+
 void refine_all(const ReconstructOptions& options, const Scene& scene, AgreeingCameras& out,
                 Progress& progress) {
   const std::optional<RefineCameras>& asked = options.refine_cameras;
@@ -152,20 +176,22 @@ void refine_all(const ReconstructOptions& options, const Scene& scene, AgreeingC
   const bool use = found.changed && (always || (pays(found) && trusted));
   out.findings.refinement = to_json(found, scene, use);
   out.right = confirmed_by_features(found, use, out.views);
+  if (!asked) warn_of_wrong_cameras(found, use, out.findings, progress);
   if (!use) return;
-  if (!asked)
-    progress.warn(
-        concat("the masks' outlines disagree by ", hundredths(out.findings.mask_disagreement),
-               " px: the cameras were refined",
-               shares_intrinsics(found) ? in_common(found) : std::string(),
-               ", and what they see agrees to ",
-               hundredths(found.all.observations ? found.all.after : found.tangents_after),
-               " px instead of ",
-               hundredths(found.all.observations ? found.all.before : found.tangents_before),
-               how_to_refuse()));
   out.findings.moved = found.moved;
   out.findings.moved_alike = found.moved_alike;
   use_cameras(found, out.views);
+}
+
+/// A quick look, by outlines where there are such, else by features.
+bool look_wrong(AgreeingCameras& out, Progress& progress) {
+  constexpr std::size_t kFewestViews = 3;  // that can be refined
+  out.findings.mask_disagreement = tangent_disagreement(out.views);
+  if (std::isfinite(out.findings.mask_disagreement))
+    return out.findings.mask_disagreement > kSuspiciousTangents;
+  if (out.views.size() < kFewestViews) return false;
+  out.findings.features = look_at_features(out.views, progress);
+  return out.findings.features.pixels > kSuspiciousFeatures;
 }
 
 }  // namespace
@@ -173,13 +199,10 @@ void refine_all(const ReconstructOptions& options, const Scene& scene, AgreeingC
 AgreeingCameras agree_cameras(const ReconstructOptions& options, const Scene& scene,
                               std::vector<PreparedView> views, Progress& progress) {
   AgreeingCameras out{std::move(views), {}, {}};
-  if (!options.refine_cameras) {
-    out.findings.mask_disagreement = tangent_disagreement(out.views);
-    if (!(out.findings.mask_disagreement > kSuspiciousTangents)) {
-      const std::vector<double> off = outlines_off(projtex::cameras_of(out.views), out.views);
-      if (sum(off) > 0) refine_those_off(off, scene, out, progress);
-      return out;
-    }
+  if (!options.refine_cameras && !look_wrong(out, progress)) {
+    const std::vector<double> off = outlines_off(projtex::cameras_of(out.views), out.views);
+    if (sum(off) > 0) refine_those_off(off, scene, out, progress);
+    return out;
   }
   refine_all(options, scene, out, progress);
   return out;

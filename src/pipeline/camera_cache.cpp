@@ -95,6 +95,9 @@ void write(const fs::path& file, const std::string& identity, const Kept& kept) 
                     {"right", kept.right},
                     {"warnings", kept.warnings},
                     {"mask_disagreement", number(f.mask_disagreement)},
+                    {"features", number(f.features.pixels)},
+                    {"feature_pairs", f.features.pairs},
+                    {"feature_matches", f.features.matches},
                     {"refinement", f.refinement},
                     {"moved", number(f.moved)},
                     {"moved_alike", number(f.moved_alike)}};
@@ -118,6 +121,8 @@ std::optional<Kept> read(const fs::path& file, const std::string& identity,
     all.at("warnings").get_to(kept.warnings);
     all.at("refinement").get_to(kept.findings.refinement);
     kept.findings.mask_disagreement = number(all.at("mask_disagreement"));
+    kept.findings.features = {number(all.at("features")), all.at("feature_pairs"),
+                              all.at("feature_matches")};
     kept.findings.moved = number(all.at("moved"));
     kept.findings.moved_alike = number(all.at("moved_alike"));
     return kept;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "assess/verdict.h"
+#include "cameras/look_at_cameras.h"
 #include "core/box.h"
 #include "core/camera.h"
 #include "core/scene.h"
@@ -45,11 +46,12 @@ struct ViewFindings {
 };
 
 struct CameraFindings {
-  /// Pixels (cameras/refine_cameras.h, tangent_disagreement); NaN where it was not looked at.
+  /// Pixels (cameras/look_at_cameras.h, tangent_disagreement); NaN where it was not looked at.
   double mask_disagreement = NAN;
-  std::string refinement;  ///< JSON (pipeline/refine_cameras.h); empty: none was tried
-  double moved = 0;        ///< by a refinement that is used, pixels
-  double moved_alike = 0;  ///< of it what all views have in common
+  FeatureAgreement features;  ///< where outlines tell nothing
+  std::string refinement;     ///< JSON (pipeline/refine_cameras.h); empty: none was tried
+  double moved = 0;           ///< by a refinement that is used, pixels
+  double moved_alike = 0;     ///< of it what all views have in common
 };
 
 /// A view whose outline is off what the other views' say.

@@ -71,6 +71,8 @@ void add_views(const Report& r, ordered_json& j) {
                {"voxel_size", r.grid.voxel_size},
                {"voxels", array_of(r.grid.voxels())},
                {"bricks_stored", r.bricks_stored}};
+  if (const FeatureAgreement& f = r.cameras.features; std::isfinite(f.pixels))
+    j["feature_agreement"] = {{"pixels", f.pixels}, {"pairs", f.pairs}, {"matches", f.matches}};
   if (!r.cameras.refinement.empty())
     j["camera_refinement"] = ordered_json::parse(r.cameras.refinement);
   if (!r.photometric.json.empty()) j["photometric"] = ordered_json::parse(r.photometric.json);

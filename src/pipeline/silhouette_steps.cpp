@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "cameras/diagnose.h"
-#include "cameras/refine_cameras.h"
+#include "cameras/look_at_cameras.h"
 #include "carving/missing_parts.h"
 #include "core/error.h"
 #include "masks/mask_bias.h"

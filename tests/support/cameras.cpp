@@ -33,6 +33,19 @@ Camera look_at(const glm::dvec3& eye, const glm::dvec3& target, double focal, in
   return camera;
 }
 
+Camera put_off(const Camera& camera, double pixels, int index) {
+  const double angle = pixels / camera.intrinsics.fx, way = 8.5 + 3.9 * index;
+  const glm::dvec3 turn = angle * glm::dvec3(std::cos(way), std::sin(way), std::cos(3 * way));
+  // Rows of a small turn, made orthonormal.
+  const glm::dvec3 x = glm::normalize(glm::dvec3(1, -turn.z, turn.y));
+  const glm::dvec3 z = glm::normalize(glm::cross(x, glm::dvec3(turn.z, 1, -turn.x)));
+  const glm::dmat3 turned = glm::transpose(glm::dmat3(x, glm::cross(z, x), z));
+  Camera off = camera;
+  off.cam_from_world.rotation = turned * camera.cam_from_world.rotation;
+  off.cam_from_world.translation = turned * camera.cam_from_world.translation;
+  return off;
+}
+
 Camera random_camera(Rng& rng, const Box& box, int width, int height) {
   const double distance = uniform(rng, 1, 3) * box.diagonal();
   const glm::dvec3 eye = box.center() + distance * random_direction(rng);

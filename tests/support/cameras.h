@@ -21,6 +21,9 @@ glm::dvec3 random_direction(Rng& rng);
 Camera look_at(const glm::dvec3& eye, const glm::dvec3& target, double focal, int width, int height,
                const glm::dvec3& down = {0, 0, -1});
 
+/// The camera turned by about so many pixels at the middle of its image, each `index` another way.
+Camera put_off(const Camera& camera, double pixels, int index);
+
 /// A camera of random position, roll, focal length, aspect, skew and principal point that has most
 /// of the box in view, from one to three diagonals away.
 Camera random_camera(Rng& rng, const Box& box, int width, int height);

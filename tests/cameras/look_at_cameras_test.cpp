@@ -1,0 +1,110 @@
+// Photographs of the temple, whose cameras are put off.
+#include "cameras/look_at_cameras.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "cameras/near_views.h"
+#include "cameras/refine_cameras.h"
+#include "core/error.h"
+#include "io/image_file.h"
+#include "io/load_scene.h"
+#include "support/cameras.h"
+#include "support/places.h"
+#include "views/prepare_views.h"
+
+namespace photohull {
+namespace {
+
+std::vector<PreparedView> temple() {
+  Progress progress;
+  const ViewLoader loader{[](const auto& file) { return io::read_image(file); },
+                          [](const auto& file) { return io::read_mask(file); }};
+  Scene scene = io::load_scene(test::in_checkout("datasets/templeSparseRing"));
+  return prepare_views(scene, loader, {}, progress).views;
+}
+
+void put_off(std::vector<PreparedView>& views, double pixels) {
+  for (std::size_t i = 0; i < views.size(); ++i)
+    views[i].camera = test::put_off(views[i].camera, pixels, int(i));
+}
+
+TEST(FeatureAgreement, TellsHowFarCamerasAreOff) {
+  std::vector<PreparedView> views = temple();
+  Progress progress;
+  const FeatureAgreement right = look_at_features(views, progress);
+  EXPECT_LT(right.pixels, kSuspiciousFeatures);
+  EXPECT_GE(right.pairs, 2);
+  EXPECT_GE(right.matches, 8 * right.pairs);
+  put_off(views, 3);
+  EXPECT_NEAR(look_at_features(views, progress).pixels, 3, 1.5);
+  put_off(views, 27);
+  EXPECT_NEAR(look_at_features(views, progress).pixels, 30, 15);
+}
+
+TEST(FeatureAgreement, IsNotKnownWherePhotographsShowNothing) {
+  std::vector<PreparedView> views = temple();
+  for (PreparedView& view : views)
+    std::fill(view.image.bytes.begin(), view.image.bytes.end(), std::uint8_t(90));
+  Progress progress;
+  const FeatureAgreement none = look_at_features(views, progress);
+  EXPECT_TRUE(std::isnan(none.pixels));
+  EXPECT_EQ(none.pairs, 0);
+  EXPECT_TRUE(std::isnan(look_at_features(std::span(views).first(1), progress).pixels));
+}
+
+TEST(FeatureAgreement, StopsWhenCancelled) {
+  const std::vector<PreparedView> views = temple();
+  Progress progress{CancellationToken()};
+  progress.token().cancel();
+  EXPECT_THROW(look_at_features(views, progress), Cancelled);
+}
+
+// Many matches are wrong where columns repeat, and any camera leaves them off.
+TEST(RefineTemple, CamerasThatAreFarOffComeToAgree) {
+  for (const double pixels : {6, 12}) {
+    std::vector<PreparedView> views = temple();
+    put_off(views, pixels);
+    Progress progress;
+    const CameraRefinement found = refine_cameras(views, {}, progress);
+    EXPECT_TRUE(found.changed) << pixels;
+    EXPECT_GT(found.all.before, 0.4 * pixels);
+    EXPECT_LT(found.all.after, 0.3) << pixels;
+    EXPECT_LT(found.tangents_after, 0.3 * found.tangents_before) << pixels;
+  }
+}
+
+Camera looking(const glm::dvec3& center, const glm::dvec3& forward) {
+  return test::look_at(center, center + forward, 500, 640, 480, {0, 1, 0.1});
+}
+
+TEST(NearViews, ADronesAreThoseBesideIt) {
+  // A row of photographs from above, each tilted a little another way.
+  std::vector<Camera> cameras;
+  for (int i = 0; i < 20; ++i)
+    cameras.push_back(
+        looking({i, 0, 10}, {0.05 * std::sin(5.0 * i), 0.05 * std::cos(5.0 * i), -1}));
+  EXPECT_THAT(nearest_views(cameras, 10, 2, 45), testing::UnorderedElementsAre(9, 11));
+  EXPECT_THAT(nearest_views(cameras, 0, 2, 45), testing::ElementsAre(1, 2));
+}
+
+TEST(NearViews, AroundAnObjectAreThoseThatLookAlike) {
+  std::vector<Camera> cameras;
+  for (int i = 0; i < 12; ++i) {
+    const glm::dvec3 center(5 * std::cos(i * std::numbers::pi / 6),
+                            5 * std::sin(i * std::numbers::pi / 6), 1);
+    cameras.push_back(looking(center, -center));
+  }
+  EXPECT_THAT(nearest_views(cameras, 0, 2, 45), testing::UnorderedElementsAre(1, 11));
+  EXPECT_TRUE(nearest_views(cameras, 0, 4, 20).empty());  // the next are 30 degrees away
+  // One that stands beside the first but looks the other way sees something else.
+  cameras.push_back(looking({5, 0.1, 1}, {1, 0, 0}));
+  EXPECT_THAT(nearest_views(cameras, 0, 2, 45), testing::UnorderedElementsAre(1, 11));
+}
+
+}  // namespace
+}  // namespace photohull
