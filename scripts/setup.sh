@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Usage: scripts/setup.sh [--preset NAME] [--target NAME] [--no-install]
+# Usage: scripts/setup.sh [--preset NAME] [--target NAME] [--no-install | --only-install]
 #
 # Installs what photohull needs and this machine lacks (Debian packages, through apt as root or
 # with sudo), then configures and builds it to build/NAME/photohull. Run again, it only builds
@@ -9,6 +9,7 @@
 #   --target NAME   build this alone: photohull (the program without its lab and the tests), installed (all that
 #                   packages hold), unit_tests, program_tests (the program and all other tests)
 #   --no-install    build with what is there; install nothing
+#   --only-install  install, and build nothing
 #   --help          print this text
 
 # shellcheck source=scripts/common.sh
@@ -16,7 +17,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 packages=(
   # Tools: compiler, build, shader check; studies and the test of the docs.
-  g++ cmake ninja-build ccache git glslang-tools python3
+  g++ cmake ninja-build ccache git glslang-tools mold python3
   # OpenGL through EGL, and Mesa's software rasterizer for machines without a GPU.
   libegl-dev libopengl-dev libegl1 libegl-mesa0 libgl1-mesa-dri
   # Volumes; OpenVDB's CMake module asks for Boost.
@@ -36,6 +37,7 @@ packages=(
 preset=release
 target=all
 install=yes
+only_install=no
 while [ $# -gt 0 ]; do
   case $1 in
     --preset)
@@ -49,6 +51,7 @@ while [ $# -gt 0 ]; do
       shift
       ;;
     --no-install) install=no ;;
+    --only-install) only_install=yes ;;
     -h | --help)
       print_help "${BASH_SOURCE[0]}"
       exit 0
@@ -67,6 +70,7 @@ if [ $install = yes ]; then
   install_missing "${packages[@]}"
   if [ "$preset" = asan ]; then install_missing clang lld; fi
 fi
+[ $only_install = no ] || exit 0
 
 # OpenVDB's templates take a compiler more than a gigabyte: fewer jobs than cores where memory is short.
 available_kb=$(awk '/^MemAvailable:/ {print $2}' /proc/meminfo 2>/dev/null || echo 0)

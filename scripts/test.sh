@@ -165,14 +165,26 @@ bundle() {
 install_missing python3-dev python3-numpy python3-pytest pybind11-dev
 
 # Every test runs once: unit tests are built where they run.
+target=all
+tools=(ffmpeg colmap) # films, and cameras without a sheet: 14 MB
 if [ $with_all = yes ]; then
-  scripts/setup.sh --target program_tests
-else
-  scripts/setup.sh
+  target=program_tests
+  tools+=(clang lld clang-format clang-tidy shellcheck dpkg-dev file lintian patchelf xz-utils man-db groff python3
+    chromium python3-pil opencv-doc parallel openmpi-bin slurm-wlm munge)
+  command -v npm >/dev/null || tools+=(npm)
 fi
-install_missing ffmpeg colmap # films, and cameras without a sheet: 14 MB
-[ $with_all = no ] || install_missing clang lld clang-format clang-tidy shellcheck dpkg-dev file lintian patchelf xz-utils man-db groff python3 chromium python3-pil opencv-doc parallel openmpi-bin slurm-wlm munge
-[ $with_all = no ] || command -v npm >/dev/null || install_missing npm
+scripts/setup.sh --only-install
+if [ $interactive = yes ]; then
+  install_missing "${tools[@]}" # may ask for a password
+  scripts/setup.sh --no-install --target $target
+else
+  # While the program is compiled.
+  install_missing "${tools[@]}" >"$scratch/installed" 2>&1 &
+  installing=$!
+  scripts/setup.sh --no-install --target $target
+  wait $installing || die "$(cat "$scratch/installed")"
+  cat "$scratch/installed"
+fi
 started=$SECONDS
 
 if [ $with_all = yes ]; then
