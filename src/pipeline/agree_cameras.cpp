@@ -27,7 +27,7 @@ namespace {
 constexpr int kFewestFeatures = 20;  // held-out ones that confirm a camera
 constexpr double kAgrees = 0.5;      // pixels, of these
 constexpr double kMended = 0.5;      // of what the outlines of views were off
-constexpr double kWorthTelling = 1;  // pixels that features are off, where no cameras fit better
+constexpr double kWorthTelling = 4;  // times what is suspicious, where no cameras fit better
 
 std::string in_common(const CameraRefinement& found) {
   return concat(" (in all views focal lengths times ", std::round(1e4 * found.focal_factor) / 1e4,
@@ -157,7 +157,7 @@ void warn_of_wrong_cameras(const CameraRefinement& found, bool used, const Camer
                " px instead of ",
                hundredths(found.all.observations ? found.all.before : found.tangents_before),
                how_to_refuse()));
-  else if (findings.features.pixels > kWorthTelling)
+  else if (findings.features.pixels > kWorthTelling * findings.features.suspicious)
     progress.warn(concat(off, ", and none were found that fit clearly better: check them (",
                          command_word("info", "cameras"), ")"));
 }
@@ -191,7 +191,7 @@ bool look_wrong(AgreeingCameras& out, Progress& progress) {
     return out.findings.mask_disagreement > kSuspiciousTangents;
   if (out.views.size() < kFewestViews) return false;
   out.findings.features = look_at_features(out.views, progress);
-  return out.findings.features.pixels > kSuspiciousFeatures;
+  return out.findings.features.pixels > out.findings.features.suspicious;
 }
 
 }  // namespace
