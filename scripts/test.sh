@@ -39,17 +39,32 @@ failed=()
 
 # check NAME COMMAND...: runs the command; its output is shown when it fails.
 check() {
-  local name=$1 start=$SECONDS status
+  begin "$@"
+  finish "$1"
+}
+
+# begin NAME COMMAND...: the same, while other things are done; finish NAME waits for it.
+declare -A begun
+begin() {
+  local name=$1
   shift
-  set +e
-  (set -e; "$@") >"$scratch/log" 2>&1
-  status=$?
-  set -e
-  if [ $status -eq 0 ]; then
-    say "ok      $name ($((SECONDS - start)) s)"
+  (
+    local start=$SECONDS status=0
+    set +e
+    (set -e; "$@") >"$scratch/$name.log" 2>&1
+    status=$?
+    echo $((SECONDS - start)) >"$scratch/$name.seconds"
+    exit $status
+  ) &
+  begun[$name]=$!
+}
+finish() {
+  local name=$1
+  if wait "${begun[$name]}"; then
+    say "ok      $name ($(cat "$scratch/$name.seconds") s)"
     passed=$((passed + 1))
   else
-    tail -n 60 "$scratch/log"
+    tail -n 60 "$scratch/$name.log"
     say "FAILED  $name"
     failed+=("$name")
   fi
@@ -197,11 +212,13 @@ if [ $with_all = yes ]; then
   check "shellcheck" shell_scripts
   check "citations" citations
   check "links in the docs" scripts/check_links.py
+  # Packing takes one core; what else there is to check, the other.
+  begin "cpack -G DEB" debian_package
   check "glTF files" scripts/check_glb.sh
   check "USDZ files" scripts/check_usdz.sh
   check "cmake --install" installation
-  check "cpack -G DEB" debian_package
   check "bundle" bundle
+  finish "cpack -G DEB"
   check_aloud "build with sanitizers" scripts/setup.sh --preset asan --target unit_tests
   check_aloud "unit tests with sanitizers" run_tests asan --label-regex unit
   check_aloud "fuzzers" scripts/fuzz.sh --seconds 2
