@@ -29,7 +29,8 @@ std::vector<int> nearest(const cv::Mat& a, const cv::Mat& b) {
 
 }  // namespace
 
-PixelPairs match_freely(const Features& a, const Features& b, double tolerance) {
+PixelPairs match_freely(const Features& a, const Features& b, double tolerance,
+                        double least_motion) {
   if (a.pixels.size() < kFewest || b.pixels.size() < kFewest) return {};
   const std::vector<int> there = nearest(a.descriptors, b.descriptors);
   const std::vector<int> back = nearest(b.descriptors, a.descriptors);
@@ -37,6 +38,7 @@ PixelPairs match_freely(const Features& a, const Features& b, double tolerance) 
   for (std::size_t i = 0; i < there.size(); ++i) {
     if (there[i] < 0 || back[std::size_t(there[i])] != int(i)) continue;
     const glm::dvec2 &p = a.pixels[i], &q = b.pixels[std::size_t(there[i])];
+    if (glm::distance(p, q) < least_motion) continue;
     in_a.emplace_back(p.x, p.y);
     in_b.emplace_back(q.x, q.y);
   }

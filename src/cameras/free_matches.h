@@ -23,8 +23,10 @@ struct PairMatches {
 
 /// Features that are each other's nearest, as far as some fundamental matrix has them within
 /// `tolerance` pixels of its epipolar lines [Hartley04, chapter 11]: no camera is used. Empty where
-/// that leaves fewer than 16, or fewer than half of them.
-PixelPairs match_freely(const Features& a, const Features& b, double tolerance);
+/// that leaves fewer than 16, or fewer than half of them. What moved by less than `least_motion`
+/// pixels does not count.
+PixelPairs match_freely(const Features& a, const Features& b, double tolerance,
+                        double least_motion = 0);
 
 /// SIFT features [Lowe04] of views, matched by match_freely: the views' poses are not used. Pairs
 /// without matches do not appear. Throws Cancelled.

@@ -27,7 +27,8 @@ constexpr int kFeatures = 400;        // a view
 constexpr double kLargestAngle = 45;  // degrees
 constexpr double kSuspiciousFeatures = 0.25;  // pixels of photographs that are no larger
 constexpr double kTolerance = 1.5;            // pixels of the images that features are found in
-constexpr std::size_t kMostAligned = 60;      // of a pair
+constexpr double kStill = 0.5;            // such pixels: the background of a turntable stands still
+constexpr std::size_t kMostAligned = 60;  // of a pair
 constexpr std::size_t kFewestAligned = 8;
 
 std::vector<Camera> cameras_of(std::span<const PreparedView> views) {
@@ -113,7 +114,8 @@ Features features_of(const PreparedView& view, int times) {
 PixelPairs common_places(const PreparedView& view_a, const PreparedView& view_b) {
   const int times_a = times_too_large(view_a), times_b = times_too_large(view_b);
   const Features a = features_of(view_a, times_a), b = features_of(view_b, times_b);
-  PixelPairs places = aligned(match_freely(a, b, kTolerance * std::max(a.times, b.times)), a, b);
+  const double pixel = std::max(a.times, b.times);  // of the images that features are found in
+  PixelPairs places = aligned(match_freely(a, b, kTolerance * pixel, kStill * pixel), a, b);
   for (auto& [p, q] : places) {
     p = (p + 0.5) * double(times_a) - 0.5;
     q = (q + 0.5) * double(times_b) - 0.5;

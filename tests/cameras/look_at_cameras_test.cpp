@@ -38,7 +38,7 @@ TEST(FeatureAgreement, TellsHowFarCamerasAreOff) {
   Progress progress;
   const FeatureAgreement right = look_at_features(views, progress);
   EXPECT_LT(right.pixels, right.suspicious);
-  EXPECT_GE(right.pairs, 2);
+  EXPECT_GE(right.pairs, 1);
   EXPECT_GE(right.matches, 8 * right.pairs);
   put_off(views, 3);
   EXPECT_NEAR(look_at_features(views, progress).pixels, 3, 1.5);
@@ -77,6 +77,29 @@ TEST(FeatureAgreement, IsInPixelsOfLargePhotographs) {
   EXPECT_LT(right.pixels, 4 * 0.4);  // repeated pixels are found less exactly
   put_off(views, 12);
   EXPECT_NEAR(look_at_features(views, progress).pixels, 12, 6);
+}
+
+// The temple stands on a turntable, and the wall behind it moves in no photograph.
+TEST(FeatureAgreement, IsNotMisledByABackgroundThatStandsStill) {
+  std::vector<PreparedView> views = temple();
+  for (PreparedView& view : views) {
+    view.mask = {};
+    std::uint32_t random = 7;
+    std::vector<std::uint8_t> wall(std::size_t(view.image.width / 8 + 1) *
+                                   (view.image.height / 8 + 1));
+    for (std::uint8_t& level : wall)
+      level = std::uint8_t((random = random * 1664525 + 1013904223) >> 24);
+    for (int y = 0; y < view.image.height; ++y)
+      for (int x = 0; x < view.image.width; ++x) {
+        std::uint8_t* pixel = &view.image.bytes[(std::size_t(y) * view.image.width + x) * 4];
+        if (pixel[0] < 40)
+          std::fill(pixel, pixel + 3,
+                    wall[std::size_t(y / 8) * (view.image.width / 8 + 1) + x / 8]);
+      }
+  }
+  Progress progress;
+  const FeatureAgreement found = look_at_features(views, progress);
+  EXPECT_FALSE(found.pixels > found.suspicious) << found.pixels;
 }
 
 TEST(FeatureAgreement, IsNotKnownWherePhotographsShowNothing) {
