@@ -318,6 +318,20 @@ bool has_few(std::span<const Track> tracks, std::size_t views, int few) {
   return median(counts) < few;
 }
 
+/// Tracks without those that stay where they are in all photographs: where there are no masks, they
+/// are of the background before which an object turns.
+std::vector<Track> moving(std::span<const PreparedView> views, std::vector<Track> tracks) {
+  constexpr double kStill = 1;  // pixel
+  if (std::ranges::any_of(views, [](const PreparedView& v) { return !v.mask.empty(); }))
+    return tracks;
+  std::erase_if(tracks, [](const Track& track) {
+    return std::ranges::all_of(track.observations, [&](const Observation& o) {
+      return glm::distance(o.pixel, track.observations.front().pixel) < kStill;
+    });
+  });
+  return tracks;
+}
+
 std::vector<Track> joined(std::vector<Track> a, const std::vector<Track>& b) {
   a.insert(a.end(), b.begin(), b.end());
   return a;
@@ -337,7 +351,8 @@ CameraRefinement refine_cameras(std::span<const PreparedView> views,
   std::span<const Track> others;
   if (options.source != TrackSource::kFound) others = options.given;
   const auto features_by = [&](const TrackOptions& by) {
-    return find_tracks(views, by, progress, others, options.source != TrackSource::kGiven);
+    return moving(views,
+                  find_tracks(views, by, progress, others, options.source != TrackSource::kGiven));
   };
   TrackOptions tracks = options.tracks;
   tracks.epipolar = std::max(tracks.epipolar, kSearchWidth * pixels_off(views, progress));

@@ -79,8 +79,8 @@ TEST(FeatureAgreement, IsInPixelsOfLargePhotographs) {
   EXPECT_NEAR(look_at_features(views, progress).pixels, 12, 6);
 }
 
-// The temple stands on a turntable, and the wall behind it moves in no photograph.
-TEST(FeatureAgreement, IsNotMisledByABackgroundThatStandsStill) {
+/// The temple on a turntable, before a wall that moves in no photograph, and without masks.
+std::vector<PreparedView> temple_before_wall() {
   std::vector<PreparedView> views = temple();
   for (PreparedView& view : views) {
     view.mask = {};
@@ -97,6 +97,11 @@ TEST(FeatureAgreement, IsNotMisledByABackgroundThatStandsStill) {
                     wall[std::size_t(y / 8) * (view.image.width / 8 + 1) + x / 8]);
       }
   }
+  return views;
+}
+
+TEST(FeatureAgreement, IsNotMisledByABackgroundThatStandsStill) {
+  const std::vector<PreparedView> views = temple_before_wall();
   Progress progress;
   const FeatureAgreement found = look_at_features(views, progress);
   EXPECT_FALSE(found.pixels > found.suspicious) << found.pixels;
@@ -136,6 +141,17 @@ TEST(RefineTemple, CamerasThatAreFarOffComeToAgree) {
 
 Camera looking(const glm::dvec3& center, const glm::dvec3& forward) {
   return test::look_at(center, center + forward, 500, 640, 480, {0, 1, 0.1});
+}
+
+TEST(RefineTemple, AWallThatStandsStillDrawsNoCamera) {
+  std::vector<PreparedView> views = temple_before_wall(), without_wall = temple();
+  put_off(views, 3);
+  put_off(without_wall, 3);
+  Progress progress;
+  const double before = look_at_features(without_wall, progress).pixels;
+  const CameraRefinement found = refine_cameras(views, {}, progress);
+  for (std::size_t i = 0; i < views.size(); ++i) without_wall[i].camera = found.cameras[i];
+  EXPECT_LT(look_at_features(without_wall, progress).pixels, 1.5 * before);
 }
 
 TEST(NearViews, ADronesAreThoseBesideIt) {
