@@ -18,6 +18,7 @@ namespace {
 constexpr double kFar = 1;
 constexpr int kIterations = 12, kIterationsFromFar = 30;
 constexpr double kSettled = 1e-5, kSettledFromFar = 1e-7;
+constexpr int kInvalidSteps = 20;  // in a row, with a point behind a camera: then it gives up
 
 using Unit6 = std::array<double, 6>;
 
@@ -181,14 +182,13 @@ std::vector<Camera> adjust_bundle(const BundleInput& input, std::span<const Came
   const bool far = !input.held.empty() || std::max(input.track_sigma, input.tangent_sigma) > kFar;
   options.max_num_iterations = far ? kIterationsFromFar : kIterations;
   options.function_tolerance = far ? kSettledFromFar : kSettled;
-  options.max_num_consecutive_invalid_steps = 20;
+  options.max_num_consecutive_invalid_steps = kInvalidSteps;
   options.logging_type = ceres::SILENT;
   options.num_threads = 1;  // sums in the same order on every machine
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   std::vector<Camera> result(start.begin(), start.end());
   if (!summary.IsSolutionUsable()) {
-    fprintf(stderr, "UNUSABLE %s\n", summary.message.c_str());
     shared = {1, 0, 0};
     return result;
   }

@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "cameras/look_at_cameras.h"
 #include "io/image_file.h"
 #include "io/load_scene.h"
 #include "pipeline/recording_progress.h"
