@@ -1,11 +1,12 @@
-# photohull_module(NAME [VECTOR_ROOTS] [FOLDERS names...] [SOURCES files...] [PUBLIC libs...]
+# photohull_module(NAME [COLD] [FOLDERS names...] [SOURCES files...] [PUBLIC libs...]
 #   [PRIVATE libs...])
 # One static library per folder of src/: all .cpp files that lie there and in FOLDERS inside it, and
 # SOURCES that the build makes. PRIVATE links keep a dependency's headers out of the
 # modules above; the arrows are those of docs/design/architecture.md, and include lines keep to them
-# (CheckIncludes.cmake). VECTOR_ROOTS lets square roots become vector code.
+# (CheckIncludes.cmake). COLD: unit tests spend no time in it, so that the sanitizers' build, which
+# optimization takes twice the time, does without (PHOTOHULL_COLD_OPTIONS).
 function(photohull_module name)
-  cmake_parse_arguments(ARG "VECTOR_ROOTS" "" "FOLDERS;SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "COLD" "" "FOLDERS;SOURCES;PUBLIC;PRIVATE" ${ARGN})
   list(TRANSFORM ARG_FOLDERS APPEND /*.cpp)
   file(GLOB files CONFIGURE_DEPENDS *.cpp ${ARG_FOLDERS})
   add_library(photohull_${name} STATIC ${files} ${ARG_SOURCES})
@@ -14,13 +15,13 @@ function(photohull_module name)
   target_compile_features(photohull_${name} PUBLIC cxx_std_20)
   target_compile_options(photohull_${name} PRIVATE ${PHOTOHULL_WARNINGS})
   target_link_libraries(photohull_${name} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
-  photohull_precompile(photohull_${name} photohull_core
-    <algorithm> <filesystem> <functional> <glm/glm.hpp> <nlohmann/json.hpp> <span> <string> <vector>)
-  if(ARG_VECTOR_ROOTS)
-    target_compile_options(photohull_${name} PRIVATE -fno-math-errno)
-    # Headers precompiled without that flag do not fit.
-    set_target_properties(photohull_${name} PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)
+  set(owner photohull_core)
+  if(ARG_COLD AND PHOTOHULL_COLD_OPTIONS)
+    target_compile_options(photohull_${name} PRIVATE ${PHOTOHULL_COLD_OPTIONS})
+    set(owner photohull_batch)  # the first of them: headers precompiled by other options do not fit
   endif()
+  photohull_precompile(photohull_${name} ${owner}
+    <algorithm> <filesystem> <functional> <glm/glm.hpp> <nlohmann/json.hpp> <span> <string> <vector>)
   photohull_uses(${name} ${ARG_PUBLIC} ${ARG_PRIVATE})
 endfunction()
 

@@ -321,12 +321,12 @@ bool has_few(std::span<const Track> tracks, std::size_t views, int few) {
 /// Tracks without those that stay where they are in all photographs: where there are no masks, they
 /// are of the background before which an object turns.
 std::vector<Track> moving(std::span<const PreparedView> views, std::vector<Track> tracks) {
-  constexpr double kStill = 1;  // pixel
+  constexpr double kLeastMotion = 1;  // pixel
   if (std::ranges::any_of(views, [](const PreparedView& v) { return !v.mask.empty(); }))
     return tracks;
   std::erase_if(tracks, [](const Track& track) {
     return std::ranges::all_of(track.observations, [&](const Observation& o) {
-      return glm::distance(o.pixel, track.observations.front().pixel) < kStill;
+      return glm::distance(o.pixel, track.observations.front().pixel) < kLeastMotion;
     });
   });
   return tracks;
