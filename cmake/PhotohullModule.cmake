@@ -3,8 +3,8 @@
 # One static library per folder of src/: all .cpp files that lie there and in FOLDERS inside it, and
 # SOURCES that the build makes. PRIVATE links keep a dependency's headers out of the
 # modules above; the arrows are those of docs/design/architecture.md, and include lines keep to them
-# (CheckIncludes.cmake). COLD: unit tests spend no time in it, so that the sanitizers' build, which
-# optimization takes twice the time, does without (PHOTOHULL_COLD_OPTIONS).
+# (CheckIncludes.cmake). COLD: unit tests spend no time in it, so that it is
+# compiled as PHOTOHULL_COLD_OPTIONS say: the sanitizers' build saves time by not optimizing it.
 function(photohull_module name)
   cmake_parse_arguments(ARG "COLD" "" "FOLDERS;SOURCES;PUBLIC;PRIVATE" ${ARGN})
   list(TRANSFORM ARG_FOLDERS APPEND /*.cpp)

@@ -115,7 +115,10 @@ PixelPairs common_places(const PreparedView& view_a, const PreparedView& view_b)
   const int times_a = times_too_large(view_a), times_b = times_too_large(view_b);
   const Features a = features_of(view_a, times_a), b = features_of(view_b, times_b);
   const double pixel = std::max(a.times, b.times);  // of the images that features are found in
-  PixelPairs places = aligned(match_freely(a, b, kTolerance * pixel, kStill * pixel), a, b);
+  // Masks keep features off the background.
+  const bool masked = !view_a.mask.empty() && !view_b.mask.empty();
+  const double least_motion = masked ? 0 : kStill * pixel;
+  PixelPairs places = aligned(match_freely(a, b, kTolerance * pixel, least_motion), a, b);
   for (auto& [p, q] : places) {
     p = (p + 0.5) * double(times_a) - 0.5;
     q = (q + 0.5) * double(times_b) - 0.5;

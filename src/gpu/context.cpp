@@ -103,17 +103,8 @@ void Context::release_deleted() {
   constexpr unsigned kUnits = 8;
   for (unsigned unit = 0; unit < kUnits; ++unit) glBindTextureUnit(unit, 0);
   empty_buffer_pool();
-  // Less is not worth the time: a tenth of a second in a small job. One call may let go of nothing,
-  // as the driver's threads have it.
-  constexpr std::int64_t kWorthwhile = 64 << 20;  // bytes
-  constexpr int kCalls = 3;
-  if (traffic_.bytes_deleted - let_go_ >= kWorthwhile) calls_left_ = kCalls;
-  if (calls_left_ > 0) {
-    --calls_left_;
-    if (device_.software) renew_batches(limits_);
-    Program::compute(*this, "gpu_nothing.comp.glsl")->dispatch(*this, "gpu_nothing", 1);
-    let_go_ = traffic_.bytes_deleted;
-  }
+  if (device_.software) renew_batches(limits_);
+  Program::compute(*this, "gpu_nothing.comp.glsl")->dispatch(*this, "gpu_nothing", 1);
   malloc_trim(0);
 }
 

@@ -39,9 +39,8 @@ class Context {
   /// Throws Error naming `where` if GL has an error pending (out of memory, lost context).
   void check_errors(const char* where) const;
 
-  /// Makes the driver let go of deleted textures and buffers that earlier dispatches used, where
-  /// textures took much, and gives the memory back to the system. Worth a call after a stage that
-  /// held much.
+  /// Makes the driver let go of deleted textures and buffers that earlier dispatches used, and
+  /// gives the memory back to the system. Worth a call after a stage that held much.
   void release_deleted();
 
   /// Seconds and count per launch name since the start; kernels add to it through `Launch`.
@@ -57,8 +56,6 @@ class Context {
   Limits limits_;
   std::map<std::string, LaunchStatistics> statistics_;
   Traffic traffic_;
-  std::int64_t let_go_ = 0;  ///< of the bytes that were deleted
-  int calls_left_ = 0;       ///< of release_deleted, for those deleted since
   std::map<std::string, std::shared_ptr<const Program>> programs_;
 };
 

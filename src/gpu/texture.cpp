@@ -85,13 +85,7 @@ TextureArray::TextureArray(TextureFormat format, int width, int height, int laye
 }
 
 TextureArray::~TextureArray() {
-  if (!id_) return;
-  glDeleteTextures(1, &id_);
-  std::size_t texels = 0;
-  for (int level = 0; level < levels_; ++level)
-    texels +=
-        std::size_t(std::max(width_ >> level, 1)) * std::size_t(std::max(height_ >> level, 1));
-  count_deleted(texels * std::size_t(layers_) * info_of(format_).bytes);
+  if (id_) glDeleteTextures(1, &id_);
 }
 
 void TextureArray::swap(TextureArray& other) noexcept {

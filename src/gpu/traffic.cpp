@@ -21,8 +21,4 @@ void count_download(std::size_t bytes) {
   current->bytes_down += std::int64_t(bytes);
 }
 
-void count_deleted(std::size_t bytes) {
-  if (current) current->bytes_deleted += std::int64_t(bytes);
-}
-
 }  // namespace photohull::gpu

@@ -9,7 +9,6 @@ namespace photohull::gpu {
 struct Traffic {
   std::int64_t uploads = 0, bytes_up = 0;      ///< to buffers and textures
   std::int64_t downloads = 0, bytes_down = 0;  ///< each one waits for the device
-  std::int64_t bytes_deleted = 0;              ///< of textures
 };
 
 /// For Context: what is counted for the context that is current on this thread; null: nothing.
@@ -18,6 +17,5 @@ void set_current_traffic(Traffic* traffic);
 /// Adds to the current context's.
 void count_upload(std::size_t bytes);
 void count_download(std::size_t bytes);
-void count_deleted(std::size_t bytes);
 
 }  // namespace photohull::gpu

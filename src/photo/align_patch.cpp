@@ -22,19 +22,19 @@ struct Sample {
   double value, dx, dy;
 };
 
-Sample sample(const GreyImage& image, const glm::dvec2& at) {
-  const int i = int(at.x), j = int(at.y), width = image.width;
-  const double u = at.x - i, v = at.y - j;
+/// What five calls of GreyImage::at give, to the last bit, but where a coordinate passes a power of
+/// two from one pixel to the next.
+Sample sample(const GreyImage& image, const glm::dvec2& place) {
+  const int i = int(place.x), j = int(place.y), width = image.width;
+  const double u = place.x - i, v = place.y - j;
   const float* p = &image.values[std::size_t(j) * width + i];
-  // Across, in the rows above, at, below the place and the one below that.
   const auto across = [u](const float* q) { return (1 - u) * q[0] + u * q[1]; };
-  const auto difference = [u](const float* q) {
-    return (1 - u) * (double(q[1]) - q[-1]) + u * (double(q[2]) - q[0]);
-  };
-  const double above = across(p - width), upper = across(p), lower = across(p + width),
-               below = across(p + 2 * width);
-  return {(1 - v) * upper + v * lower, 0.5 * ((1 - v) * difference(p) + v * difference(p + width)),
-          0.5 * ((1 - v) * (lower - above) + v * (below - upper))};
+  const auto down = [v](double upper, double lower) { return (1 - v) * upper + v * lower; };
+  const double row = across(p), next = across(p + width);
+  return {down(row, next),
+          0.5 * (down(across(p + 1), across(p + width + 1)) -
+                 down(across(p - 1), across(p + width - 1))),
+          0.5 * (down(next, across(p + 2 * width)) - down(across(p - width), row))};
 }
 
 }  // namespace
@@ -54,11 +54,11 @@ std::optional<AlignedPatch> align_patch(const GreyImage& image, const glm::dvec2
   std::vector<double> values;  // of the source's pixels, row by row
   for (int y = -radius; y <= radius; ++y)
     for (int x = -radius; x <= radius; ++x) values.push_back(image.at(source.x + x, source.y + y));
-  // Of each pixel the derivatives by center, shape, gain and offset, and what is left to explain.
+  // Of each pixel the derivatives by center, shape, gain and offset.
   Eigen::Matrix<double, 8, Eigen::Dynamic> jacobian(8, values.size());
-  Eigen::VectorXd residual(values.size());
   for (int step = 0; step <= kSteps && !converged; ++step) {
     if (!holds_patch(other, place, r)) return std::nullopt;
+    Vector right = Vector::Zero();
     Eigen::Index i = 0;
     double n = 0, s = 0, t = 0, ss = 0, tt = 0, st = 0;
     for (int y = -radius; y <= radius; ++y)
@@ -66,11 +66,10 @@ std::optional<AlignedPatch> align_patch(const GreyImage& image, const glm::dvec2
         const auto [b, bx, by] = sample(other, place.center + place.shape * glm::dvec2(x, y));
         const double a = values[std::size_t(i)];
         jacobian.col(i) << bx, by, bx * x, bx * y, by * x, by * y, -a, -1.0;
-        residual[i] = gain * a + offset - b;
+        right += jacobian.col(i) * (gain * a + offset - b);
         n += 1, s += a, t += b, ss += a * a, tt += b * b, st += a * b;
       }
     const Eigen::Matrix<double, 8, 8> normal = jacobian * jacobian.transpose();
-    const Vector right = jacobian * residual;
     const double variance = (n * ss - s * s) * (n * tt - t * t);
     agreement = variance > 0 ? (n * st - s * t) / std::sqrt(variance) : 0;
     // The weaker of the gradient's two directions must stand out of 8-bit rounding.
