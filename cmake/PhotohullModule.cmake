@@ -49,17 +49,23 @@ function(photohull_precompile target owner)
   endif()
 endfunction()
 
-# photohull_test(NAME SOURCES files... LIBS libs... [LABELS labels...] [SHARDS count])
+# photohull_test(NAME [HOT] SOURCES files... LIBS libs... [LABELS labels...] [SHARDS count])
 # One test program. ctest runs it whole, or in SHARDS parts that may run side by side: loading the
 # libraries takes a program half a second, which a process for every TEST would pay each time.
+# HOT: it spends much time itself, so that it is optimized where cold modules are not.
 # Labels: unit, gl, golden, slow. The target unit_tests builds those of the first, program_tests the
 # others and the program.
 function(photohull_test name)
-  cmake_parse_arguments(ARG "" "SHARDS" "SOURCES;LIBS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "HOT" "SHARDS" "SOURCES;LIBS;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_compile_options(${name} PRIVATE ${PHOTOHULL_TEST_OPTIONS})
   target_link_libraries(${name} PRIVATE ${ARG_LIBS} GTest::gtest_main GTest::gmock)
-  photohull_precompile(${name} photohull_test_support)
+  set(owner photohull_test_support)
+  if(PHOTOHULL_COLD_OPTIONS AND NOT ARG_HOT)
+    target_compile_options(${name} PRIVATE ${PHOTOHULL_COLD_OPTIONS})
+    set(owner photohull_test_places)
+  endif()
+  photohull_precompile(${name} ${owner})
   if("unit" IN_LIST ARG_LABELS)
     add_dependencies(unit_tests ${name})
   else()

@@ -27,7 +27,7 @@ constexpr Limits kUnconfirmed{0.27, INFINITY};
 constexpr double kUnsureWeight = 0.7;  // of what has little confidence, beside what is not found
 constexpr double kGoesOn = 0.15;       // of a hull's surface, beyond the box's sides
 constexpr double kGuessed = 0.2;       // of the surface, unseen: worth saying what to do
-constexpr double kAlike = 0.6;         // of the views' movement, in common
+constexpr double kAlike = 0.7;         // of the views' movement, in common: half of its square
 constexpr double kHullOff = 0.18;      // of a hull's matches that are far off
 constexpr double kHullUnconfirmed = 0.36;  // of a hull's textured surface
 constexpr double kHullPatches = 0.19;      // of a hull's surface, in patches where most is so

@@ -73,16 +73,15 @@ glm::dvec3 gradient(const Field& field, const glm::dvec3& p, double step) {
   return g;
 }
 
-/// Newton's method along the gradient.
+/// Newton's method along the gradient where the vertex was: it is near enough for later steps, too.
 void project(const Field& field, double step, TriMesh& mesh) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.positions.size(), 1024),
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       for (std::size_t i = range.begin(); i < range.end(); ++i) {
                         glm::dvec3 p = mesh.world(i);
-                        for (int round = 0; round < 3; ++round) {
-                          const glm::dvec3 g = gradient(field, p, step);
-                          p -= field(p) / dot(g, g) * g;
-                        }
+                        const glm::dvec3 g = gradient(field, p, step);
+                        const glm::dvec3 along = g / dot(g, g);
+                        for (int round = 0; round < 3; ++round) p -= field(p) * along;
                         mesh.positions[i] = glm::vec3(p - mesh.origin);
                       }
                     });

@@ -10,6 +10,7 @@
 namespace photohull::assess {
 namespace {
 
+using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -59,6 +60,13 @@ TEST(Verdict, ResidualsCountByWhatTheyCoverOfTheObject) {
   EXPECT_EQ(judged(s).level, Level::kGood);
   s.match.views[12].pixel_size = 0.01;
   expect(judged(s), Level::kDoubtful, "view12 disagree with the rest by up to 0.8 px");
+}
+
+TEST(Verdict, CamerasWithErrorsOfTheirOwnAreNotOffAlike) {
+  // Of 0.65 of the motion's length two fifths of its square are in common.
+  const Verdict found = with([](Signals& s) { s.cameras_moved = 6, s.cameras_moved_alike = 3.9; });
+  ASSERT_FALSE(found.reasons.empty());
+  EXPECT_THAT(found.reasons, Each(Not(HasSubstr("off alike"))));
 }
 
 TEST(Verdict, EveryFaultHasItsReason) {

@@ -24,7 +24,8 @@ DRAFT = {
 # Tags want more pixels.
 SHEET = {"--size": "640x480", "--views": "8"}
 # Values that fit the stand-in, for options that are there.
-FITTING = {"--voxel-size": "0.08", "--box": BOX, "--samples": "2000", "--frames": "4", "--parts": "2"}
+FITTING = {"--voxel-size": "0.08", "--box": BOX, "--samples": "2000", "--frames": "4", "--parts": "2", "--views": "0,3,6,9",
+           "--hold-out": "0,3,6,9"}
 SIZED = {"--voxel-size", "--part"}  # say how large voxels are
 WRITES = ("reconstruct", "synthesize", "masks", "chart", "stress")  # want --out, also where sentences leave it out
 READS = ("reconstruct", "masks", "info")  # want a scene

@@ -12,7 +12,7 @@ SPEC = {
     "image": {"width": 96, "height": 72, "samples": 1, "maps": False},
     "background": {"plates": True},
     "truth_samples": 2000,
-    "cameras": {"rings": [{"count": 24, "elevation": 0}, {"count": 24, "elevation": 35, "phase": 0.5}]},
+    "cameras": {"rings": [{"count": 8, "elevation": 0}, {"count": 8, "elevation": 35, "phase": 0.5}]},
 }
 
 # Words of the pages, and what is written for them. Scenes are copies of the stand-in under the page's own names.
@@ -50,7 +50,7 @@ endsolid corner
 
 
 def make_scene(program: str, folder: Path) -> Path:
-    """The stand-in: 48 views of a chess piece, with masks, plates, exact mesh and cameras in several formats; beside it
+    """The stand-in: 16 views of a chess piece, with masks, plates, exact mesh and cameras in several formats; beside it
     lies a model of it."""
     spec, scene = folder / "stand_in.json", folder / "stand-in"
     spec.write_text(json.dumps(SPEC), encoding="utf-8")

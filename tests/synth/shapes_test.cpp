@@ -23,6 +23,14 @@ ShapeValues defaults(const Shape& shape) {
   return values;
 }
 
+/// With the default values; made once.
+const TriMesh& usual_shape(const std::string& name) {
+  static std::map<std::string, TriMesh> made;
+  const auto [it, is_new] = made.try_emplace(name);
+  if (is_new) it->second = make_shape(*find_shape(name));
+  return it->second;
+}
+
 double volume(const TriMesh& mesh) {
   double sum = 0;
   for (const auto& [a, b, c] : mesh.triangles)
@@ -90,14 +98,14 @@ int meeting_edges(const Surface& s) {
 class EveryShape : public testing::TestWithParam<std::string> {};
 
 TEST_P(EveryShape, IsClosedAndFacesOutward) {
-  const TriMesh mesh = make_shape(*find_shape(GetParam()));
+  const TriMesh& mesh = usual_shape(GetParam());
   EXPECT_GT(mesh.triangles.size(), 20u);
   EXPECT_EQ(open_edges(mesh), 0);
   EXPECT_GT(volume(mesh), 0);
 }
 
 TEST_P(EveryShape, HidesNoSurfaceInside) {
-  const Surface s = make_surface(make_shape(*find_shape(GetParam())), GetParam());
+  const Surface s = make_surface(usual_shape(GetParam()), GetParam());
   std::mt19937 engine(3);
   std::uniform_real_distribution<double> share(0, 1);
   const auto in_box = [&] {
@@ -158,7 +166,7 @@ TEST(WireShapes, PartsDoNotMeet) {
 TEST(WireShapes, FacetsFollowTheirCurves) {
   // Middles of the facets of the first part, less than 1e-4 of the diagonal off.
   const auto worst = [](const char* name, const std::function<double(const glm::dvec3&)>& off) {
-    const TriMesh mesh = make_shape(*find_shape(name));
+    const TriMesh& mesh = usual_shape(name);
     const std::vector<std::uint32_t> part = parts_of(mesh);
     double most = 0;
     for (const auto& [a, b, c] : mesh.triangles)
@@ -187,13 +195,13 @@ INSTANTIATE_TEST_SUITE_P(Shapes, EveryShape, testing::ValuesIn(shape_names()),
 TEST(Shapes, SphereAndTorusLieOnTheirFormulas) {
   for (const glm::vec3& p : make_shape(*find_shape("sphere"), {{"radius", 2.0}}).positions)
     ASSERT_NEAR(length(glm::dvec3(p)), 2.0, 1e-6);
-  for (const glm::vec3& p : make_shape(*find_shape("torus")).positions)
+  for (const glm::vec3& p : usual_shape("torus").positions)
     ASSERT_NEAR(std::hypot(std::hypot(double(p.x), double(p.y)) - 1.0, double(p.z)), 0.4, 1e-6);
 }
 
 TEST(Shapes, SphereVolumeIsThatOfABall) {
   const double exact = 4 * M_PI / 3;
-  const double found = volume(make_shape(*find_shape("sphere")));
+  const double found = volume(usual_shape("sphere"));
   EXPECT_LT(found, exact);
   EXPECT_NEAR(found, exact, 3e-4 * exact);
 }
@@ -202,7 +210,7 @@ TEST(Shapes, GyroidVerticesAreZerosOfItsFunction) {
   const Shape& shape = *find_shape("gyroid");
   const ShapeValues values = defaults(shape);
   double worst = 0;
-  for (const glm::vec3& p : make_shape(shape).positions)
+  for (const glm::vec3& p : usual_shape("gyroid").positions)
     worst = std::max(worst, std::abs(gyroid_field(glm::dvec3(p), values)));
   EXPECT_LT(worst, 1e-6);
 }
@@ -266,7 +274,7 @@ TEST(Figure, PhaseIsPeriodicAndThePlinthStandsStill) {
 }
 
 TEST(Shapes, BlockHasExactPlanesAndHole) {
-  const TriMesh mesh = make_shape(*find_shape("block"));
+  const TriMesh& mesh = usual_shape("block");
   for (const glm::vec3& p : mesh.positions) {
     const bool corner = std::abs(std::abs(p.y) - 0.6f) < 1e-6f;
     const double on_hole = std::hypot(p.x + 0.5, double(p.y));
@@ -279,7 +287,7 @@ TEST(Shapes, BlockHasExactPlanesAndHole) {
 
 TEST(Shapes, FacetsFollowTheirCurves) {
   // Edge midpoints of ball and ring against the formula: less than 1e-4 of the diagonal.
-  const TriMesh ball = make_shape(*find_shape("sphere"));
+  const TriMesh& ball = usual_shape("sphere");
   for (const auto& [a, b, c] : ball.triangles) {
     const glm::dvec3 middle = (glm::dvec3(ball.positions[a]) + glm::dvec3(ball.positions[b]) +
                                glm::dvec3(ball.positions[c])) /
