@@ -18,7 +18,7 @@ MACRO = re.compile(r"^#define (\w+)", re.MULTILINE)
 TYPE = re.compile(r"^(?:template <.*>\s)?(?:struct|class|enum class|enum|union) (\w+)", re.MULTILINE)
 # Files may have the same alias for the same type, and a using-declaration may be repeated.
 ALIAS = re.compile(r"^(?:template <.*>\s)?using (\w+) = ([^;]*);", re.MULTILINE)
-OTHER = re.compile(r"^(?!TEST|INSTANTIATE|static_assert|using |namespace |struct |class |enum |union )\w[^\n;={(]*?(\w+)\s*[;={(\[]",
+OTHER = re.compile(r"^(?:\[\[\w+\]\] )?(?!TEST|INSTANTIATE|static_assert|using |namespace |struct |class |enum |union )\w[^\n;={(]*?(\w+)\s*[;={(\[]",
                    re.MULTILINE)
 CONSTANTS = re.compile(r"^constexpr .*$", re.MULTILINE)
 

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Lattice {
+struct SentLattice {
   double stride = 1;
   int width = 0, height = 0;
   glm::dvec2 shift{0};
@@ -21,7 +21,7 @@ struct Lattice {
 RayMap read_map(const std::string& bytes) {
   ListReader reader(bytes);
   RayMap out;
-  const auto lattice = reader.one<Lattice>();
+  const auto lattice = reader.one<SentLattice>();
   out.stride = lattice.stride, out.width = lattice.width, out.height = lattice.height;
   out.shift = lattice.shift;
   out.depth = reader.list<float>();
@@ -101,7 +101,7 @@ RayTask read_ray_task(ListReader& task) {
 std::string bytes_of(const RayMap& map) {
   std::string out;
   ListWriter writer(out);
-  writer.one(Lattice{map.stride, map.width, map.height, map.shift});
+  writer.one(SentLattice{map.stride, map.width, map.height, map.shift});
   writer.list(map.depth);
   writer.list(map.weight);
   writer.list(map.before);
