@@ -4,11 +4,11 @@
     scripts/check_tidy.py BUILD [JOBS]
 
 clang-tidy goes through all headers that a file includes, the precompiled ones, too. So it looks at as many files of a
-target at once as one file can include (cmake/group_sources.py): more than the compiler does, which takes memory for them.
+target at once as one file can include (cmake/group_sources.py).
 
 What was found clean is kept by its contents in the user's cache folder (below XDG_CACHE_HOME or ~/.cache), as ccache keeps
 objects: by those of all files that the compiler read for it, the command, the checks and clang-tidy's version. Prints what is
-wrong, or, where nothing is, how many files were looked at; fails where anything is wrong."""
+wrong, or, where nothing is, how many groups were looked at; fails where anything is wrong."""
 import concurrent.futures
 import functools
 import hashlib
@@ -83,7 +83,7 @@ def larger_groups(build: Path, units: list[dict], read: dict[str, list[Path]]) -
             groups.append({"directory": parts[0]["directory"], "file": str(file),
                            "command": parts[0]["command"].replace(parts[0]["file"], str(file)),
                            "made": sorted(made for part in held for made in part["made"]),
-                           "read": sorted({path for part in held for path in part["read"]} - {Path(part["file"]) for part in held})})
+                           "read": sorted({path for part in held for path in part["read"]})})
     return groups
 
 

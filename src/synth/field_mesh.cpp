@@ -73,7 +73,7 @@ glm::dvec3 gradient(const Field& field, const glm::dvec3& p, double step) {
   return g;
 }
 
-/// Newton's method along the gradient where the vertex was: it is near enough for later steps, too.
+/// Newton's method with the gradient of where the vertex was, which is near enough for all steps.
 void project(const Field& field, double step, TriMesh& mesh) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.positions.size(), 1024),
                     [&](const tbb::blocked_range<std::size_t>& range) {

@@ -63,7 +63,7 @@ TEST(Verdict, ResidualsCountByWhatTheyCoverOfTheObject) {
 }
 
 TEST(Verdict, CamerasWithErrorsOfTheirOwnAreNotOffAlike) {
-  // Of 0.65 of the motion's length two fifths of its square are in common.
+  // 0.65 of the motion is two fifths of its square.
   const Verdict found = with([](Signals& s) { s.cameras_moved = 6, s.cameras_moved_alike = 3.9; });
   ASSERT_FALSE(found.reasons.empty());
   EXPECT_THAT(found.reasons, Each(Not(HasSubstr("off alike"))));
